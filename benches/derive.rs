@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
 use lindstedt::Values;
-use lindstedt::impact::hertz::Design;
+use lindstedt::impact::hertz::StiffnessDesign;
 use lindstedt::impact::{self, Setup};
 use lindstedt::method::{Options, numbers, solve};
 use lindstedt::solution::Method;
@@ -68,7 +68,7 @@ fn methods(criterion: &mut Criterion) {
 }
 
 fn contact(criterion: &mut Criterion) {
-    let stiffness = Design::default().stiffness().expect("a stiffness");
+    let stiffness = StiffnessDesign::default().stiffness().expect("a stiffness");
     criterion.bench_function("impact of the paper", |bencher| {
         bencher.iter(|| impact::solve(Setup { stiffness, ..Setup::default() }).expect("an impact"));
     });

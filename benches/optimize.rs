@@ -5,12 +5,12 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::genetic::{generator, search};
-use lindstedt::optimize::{Question, Route, Watch, optimize};
+use lindstedt::optimize::{OptimizationProblem, Route, StudyObserver, optimize};
 
 fn benches(criterion: &mut Criterion) {
-    let question = Question::default();
+    let question = OptimizationProblem::default();
     let space = question.space().expect("a box");
-    let middle = space.at(&[0.5; 4]);
+    let middle = space.point_at(&[0.5; 4]);
     criterion.bench_function("optimize/one design", |bencher| {
         bencher.iter(|| question.follow(&middle, Route::Chain, false));
     });
@@ -26,14 +26,14 @@ fn benches(criterion: &mut Criterion) {
         bencher.iter(|| {
             let evaluate = |point: &[f64]| match question.follow(point, Route::Chain, false) {
                 Ok(design) => question.evaluation(&design),
-                Err(_) => lindstedt::genetic::Evaluation::of(f64::INFINITY),
+                Err(_) => lindstedt::genetic::Evaluation::unconstrained(f64::INFINITY),
             };
             search(&space, evaluate, &question.genetic, &mut generator(1, 0), &mut |_| true)
         });
     });
     slow.bench_function("a study of two runs", |bencher| {
-        let two = Question { runs: 2, ..question.clone() };
-        bencher.iter(|| optimize(two.clone(), vec![], &Watch::default()));
+        let two = OptimizationProblem { runs: 2, ..question.clone() };
+        bencher.iter(|| optimize(two.clone(), vec![], &StudyObserver::default()));
     });
 }
 

@@ -2,12 +2,13 @@
 //! `cargo bench --workspace --bench response`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use lindstedt::response::{Question, respond};
+use lindstedt::response::{ResponseRequest, respond};
 
-fn duffing(harmonics: Option<usize>) -> Question {
+fn duffing(harmonics: Option<usize>) -> ResponseRequest {
     let equation = "x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0";
-    let question = Question::new(equation, "Omega", [0.5, 2.5], "F = 3/10").expect("a question");
-    Question { harmonics, ..question }
+    let question =
+        ResponseRequest::new(equation, "Omega", [0.5, 2.5], "F = 3/10").expect("a question");
+    ResponseRequest { harmonics, ..question }
 }
 
 fn benches(criterion: &mut Criterion) {

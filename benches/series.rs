@@ -5,12 +5,13 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lindstedt::Symbol;
 use lindstedt::exact::{Integers, Polynomial, Polynomials, Ring};
 use lindstedt::method::secular::{
-    Amplitude, Detuning, Extent, ForceTerm, Scheme, expand, expand_numbers, expand_polynomials,
+    AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, expand, expand_numbers,
+    expand_polynomials,
 };
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::AmplitudeConvention;
 
-fn scheme(amplitude: Amplitude) -> Scheme {
+fn scheme(amplitude: AmplitudeKind) -> Scheme {
     Scheme {
         normalisation: AmplitudeConvention::Initial,
         amplitude,
@@ -27,8 +28,8 @@ fn numbers(criterion: &mut Criterion) {
     let duffing = vec![term(3, 0, integer(1))];
     let van_der_pol = vec![term(2, 1, integer(4)), term(0, 1, integer(-1))];
     let works = [
-        ("Duffing", duffing, Amplitude::Free, [10, 20, 40, 80]),
-        ("van der Pol", van_der_pol, Amplitude::Determined, [8, 16, 32, 64]),
+        ("Duffing", duffing, AmplitudeKind::Free, [10, 20, 40, 80]),
+        ("van der Pol", van_der_pol, AmplitudeKind::Determined, [8, 16, 32, 64]),
     ];
     for (name, force, amplitude, orders) in works {
         let mut group = criterion.benchmark_group(format!("series: {name}"));
@@ -37,12 +38,14 @@ fn numbers(criterion: &mut Criterion) {
             let scheme = scheme(amplitude);
             group.bench_function(BenchmarkId::new("motion", order), |bencher| {
                 bencher.iter(|| {
-                    expand_numbers(&force, order, &scheme, Extent::Motion).expect("an expansion")
+                    expand_numbers(&force, order, &scheme, ExpansionScope::Motion)
+                        .expect("an expansion")
                 });
             });
             group.bench_function(BenchmarkId::new("frequency alone", order), |bencher| {
                 bencher.iter(|| {
-                    expand_numbers(&force, order, &scheme, Extent::Frequency).expect("an expansion")
+                    expand_numbers(&force, order, &scheme, ExpansionScope::Frequency)
+                        .expect("an expansion")
                 });
             });
             // What it was before, and is where an equation has no symmetry.
@@ -60,13 +63,14 @@ fn symbols(criterion: &mut Criterion) {
     let ring = Polynomials(Integers);
     let letter = |name| FourierSeries::constant(ring, Polynomial::symbol(Symbol::new(name)));
     let force = [term(2, 0, letter("a2")), term(3, 0, letter("a3")), term(5, 0, letter("a5"))];
-    let scheme = scheme(Amplitude::Free);
+    let scheme = scheme(AmplitudeKind::Free);
     let mut group = criterion.benchmark_group("series: three symbols");
     group.sample_size(10);
     for order in [2, 4, 6, 8] {
         group.bench_function(BenchmarkId::new("motion", order), |bencher| {
             bencher.iter(|| {
-                expand_polynomials(&force, order, &scheme, Extent::Motion).expect("an expansion")
+                expand_polynomials(&force, order, &scheme, ExpansionScope::Motion)
+                    .expect("an expansion")
             });
         });
         group.bench_function(BenchmarkId::new("over polynomials", order), |bencher| {

@@ -6,7 +6,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
 use lindstedt::impact::{Integrator, Model, Settings, Start, simulate, simulate_many};
-use lindstedt::trajectory::{Course, sweep};
+use lindstedt::trajectory::{TrajectoryRequest, sweep};
 
 const REST: Start = Start { x: -1.5, velocity: 0.0 };
 
@@ -86,7 +86,7 @@ fn workloads(criterion: &mut Criterion) {
 /// follows it.
 fn sweep_of_an_equation(criterion: &mut Criterion) {
     let equation = Oscillator::parse("x'' + 2*zeta*x' + sin(x) = 0").expect("an equation");
-    let mut course = Course::of_equation(&equation);
+    let mut course = TrajectoryRequest::of_equation(&equation);
     course.begin("x".into(), -1.5).expect("a state");
     let dampings: Vec<Vec<f64>> =
         (0..100).map(|index| vec![0.01 + 0.0019 * f64::from(index)]).collect();

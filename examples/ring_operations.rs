@@ -9,8 +9,10 @@ use std::cell::Cell;
 use std::error::Error;
 use std::rc::Rc;
 
-use lindstedt::exact::{Indivisible, Integer, Integers, Ring, factorial};
-use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, expand};
+use lindstedt::exact::{Integer, Integers, NotInvertible, Ring, factorial};
+use lindstedt::method::secular::{
+    AmplitudeKind, Detuning, ForceTerm, Scheme, SecularExpansion, expand,
+};
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::AmplitudeConvention;
 
@@ -71,7 +73,7 @@ impl Ring for Counted {
         &self,
         elements: impl IntoIterator<Item = &'a mut Integer>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         Integers.divide(elements, divisor)
     }
     fn reduce<'a>(
@@ -128,7 +130,7 @@ fn expanded(
     ring: &Counted,
     work: &str,
     order: usize,
-) -> Result<Expansion<Counted>, Box<dyn Error>> {
+) -> Result<SecularExpansion<Counted>, Box<dyn Error>> {
     let term = |order, position, velocity, numerator: i64, denominator: &Integer| ForceTerm {
         order,
         position,
@@ -138,15 +140,15 @@ fn expanded(
     };
     let one = Integer::from(1);
     let (force, amplitude) = match work {
-        "W1" => (vec![term(1, 3, 0, 1, &one)], Amplitude::Free),
+        "W1" => (vec![term(1, 3, 0, 1, &one)], AmplitudeKind::Free),
         "W2" => {
             let sine = (1..=order).map(|n| {
                 let sign = if n.is_multiple_of(2) { 1 } else { -1 };
                 term(n, 2 * n as u32 + 1, 0, sign, &factorial(2 * n as u32 + 1))
             });
-            (sine.collect(), Amplitude::Free)
+            (sine.collect(), AmplitudeKind::Free)
         }
-        "W3" => (vec![term(1, 2, 1, 4, &one), term(1, 0, 1, -1, &one)], Amplitude::Determined),
+        "W3" => (vec![term(1, 2, 1, 4, &one), term(1, 0, 1, -1, &one)], AmplitudeKind::Determined),
         _ => return Err(format!("no work {work}").into()),
     };
     let scheme = Scheme {

@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use lindstedt::expr::parse_expression;
-use lindstedt::system::{Event, Integrator, Options, System};
+use lindstedt::system::{Event, Integrator, System, SystemOptions};
 
 const EQUATIONS: [(&str, &str); 4] = [
     ("a", "p"),
@@ -31,16 +31,17 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
     let links = System::parse(&EQUATIONS, &[])?;
     let start = [1.5, -0.5, 0.0, 0.0];
     let upright = Event::record(parse_expression("a")?);
-    let path = links.solve(0.0, &start, END, &[upright], &Options::default())?;
-    let by_runge_kutta = Options { integrator: Integrator::RungeKutta, ..Options::default() };
+    let path = links.solve(0.0, &start, END, &[upright], &SystemOptions::default())?;
+    let by_runge_kutta =
+        SystemOptions { integrator: Integrator::RungeKutta, ..SystemOptions::default() };
     let check = links.solve(0.0, &start, END, &[], &by_runge_kutta)?;
 
     let mut out = String::from("Two links, released at rest\n\n     t          a          b\n");
     let (mut drift, mut difference) = (0.0_f64, 0.0_f64);
     for index in 0..=200 {
         let time = END * f64::from(index) / 200.0;
-        let state = path.at(time).ok_or("the motion ends before")?;
-        let other = check.at(time).ok_or("the motion ends before")?;
+        let state = path.states_at(time).ok_or("the motion ends before")?;
+        let other = check.states_at(time).ok_or("the motion ends before")?;
         drift = drift.max((energy(&state) - energy(&start)).abs());
         for (one, other) in state.iter().zip(other) {
             difference = difference.max((one - other).abs());

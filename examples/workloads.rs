@@ -8,7 +8,8 @@ use std::time::Instant;
 use lindstedt::Symbol;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, factorial};
 use lindstedt::method::secular::{
-    Amplitude, Detuning, Expansion, Extent, ForceTerm, Scheme, expand_numbers, expand_polynomials,
+    AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, SecularExpansion, expand_numbers,
+    expand_polynomials,
 };
 use lindstedt::series::{FourierSeries, fraction};
 use lindstedt::solution::AmplitudeConvention;
@@ -45,21 +46,21 @@ fn sine(order: usize) -> Vec<ForceTerm<Integers>> {
 fn timed(
     force: &[ForceTerm<Integers>],
     order: usize,
-    amplitude: Amplitude,
-) -> Result<Expansion<Integers>, Box<dyn Error>> {
+    amplitude: AmplitudeKind,
+) -> Result<SecularExpansion<Integers>, Box<dyn Error>> {
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
         amplitude,
         detuning: Detuning::Acceleration,
     };
     let start = Instant::now();
-    let expansion = expand_numbers(force, order, &scheme, Extent::Motion)?;
+    let expansion = expand_numbers(force, order, &scheme, ExpansionScope::Motion)?;
     println!("T {:.9}", start.elapsed().as_secs_f64());
     Ok(expansion)
 }
 
 fn conservative(force: &[ForceTerm<Integers>], order: usize) -> Result<(), Box<dyn Error>> {
-    let expansion = timed(force, order, Amplitude::Free)?;
+    let expansion = timed(force, order, AmplitudeKind::Free)?;
     for (k, square) in expansion.frequency_squared.iter().enumerate() {
         println!("W {k} {}", mean(square));
     }
@@ -73,7 +74,7 @@ fn conservative(force: &[ForceTerm<Integers>], order: usize) -> Result<(), Box<d
 fn van_der_pol(order: usize) -> Result<(), Box<dyn Error>> {
     let number = |value: i64| Rational::from_integer(value.into());
     let force = [term(1, 2, 1, number(4)), term(1, 0, 1, number(-1))];
-    let expansion = timed(&force, order, Amplitude::Determined)?;
+    let expansion = timed(&force, order, AmplitudeKind::Determined)?;
     let twice = |series: &FourierSeries<Integers>| mean(&series.times(2));
     for k in 0..=order / 2 {
         println!("W {k} {}", mean(&expansion.frequency[2 * k]));
@@ -109,11 +110,11 @@ fn symbolic(order: usize) -> Result<(), Box<dyn Error>> {
         .collect();
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
-        amplitude: Amplitude::Free,
+        amplitude: AmplitudeKind::Free,
         detuning: Detuning::Acceleration,
     };
     let start = Instant::now();
-    let expansion = expand_polynomials(&force, order, &scheme, Extent::Frequency)?;
+    let expansion = expand_polynomials(&force, order, &scheme, ExpansionScope::Frequency)?;
     println!("T {:.9}", start.elapsed().as_secs_f64());
     for (n, square) in expansion.frequency_squared.iter().enumerate() {
         let (numerator, denominator) = square.mean();

@@ -1,7 +1,8 @@
 //! Classical oscillators by name, each with its source and, where one is printed, the published
 //! law.
 //!
-//! In: a name. Out: an [`Entry`] with an equation to be parsed, and which methods apply to it.
+//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, and which methods apply to
+//! it.
 //!
 //! A published law is only what a derived one is compared with: nothing here is ever used as an
 //! answer.
@@ -17,14 +18,14 @@ pub use crate::spelling::nearest;
 
 /// A classical oscillator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct CatalogEntry {
     /// The name on the command line.
     pub name: &'static str,
     /// The name in running text.
     pub title: &'static str,
     /// The equation of motion.
     pub equation: &'static str,
-    /// Where it is studied.
+    /// The publication that studies it.
     pub source: &'static str,
     /// The published law, for comparison.
     pub published: Option<Published>,
@@ -62,204 +63,204 @@ const NAYFEH_MOOK_DAMPED: &str =
 const MICKENS: &str = "R. E. Mickens, Truly Nonlinear Oscillations, World Scientific 2010";
 
 /// Every oscillator, in the order of the listing.
-pub const CATALOG: &[Entry] = &[
-    Entry {
+pub const CATALOG: &[CatalogEntry] = &[
+    CatalogEntry {
         name: "pendulum",
         title: "mathematical pendulum",
         equation: "x'' + sin(x) = 0",
         source: "NIST Digital Library of Mathematical Functions, 22.19(i): the expansion of omega = pi/(2 K(sin^2(A/2)))",
         published: omega("1 - A^2/16 + A^4/3072", 4),
     },
-    Entry {
+    CatalogEntry {
         name: "cubic-pendulum",
         title: "pendulum with the sine cut after its cubic term",
         equation: "x'' + x - x^3/6 = 0",
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equations (11) and (12)",
         published: omega_squared("1 - A^2/8", 2),
     },
-    Entry {
+    CatalogEntry {
         name: "quintic-pendulum",
         title: "pendulum with the sine cut after its quintic term",
         equation: "x'' + x - x^3/6 + x^5/120 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - A^2/16 + A^4/3072", 4),
     },
-    Entry {
+    CatalogEntry {
         name: "duffing",
         title: "hardening spring of Duffing",
         equation: "x'' + x + eps*x^3 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 + 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
     },
-    Entry {
+    CatalogEntry {
         name: "duffing-softening",
         title: "softening spring of Duffing",
         equation: "x'' + x - eps*x^3 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
     },
-    Entry {
+    CatalogEntry {
         name: "double-well",
         title: "two wells, unstable between them",
         equation: "x'' - x + x^3 = 0",
         source: "J. Guckenheimer, P. Holmes, Nonlinear Oscillations, Dynamical Systems and Bifurcations, Springer 1983, section 2.2",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "pure-cubic",
         title: "spring without a linear part",
         equation: "x'' + x^3 = 0",
         source: MICKENS,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "quintic",
         title: "quintic spring",
         equation: "x'' + x + eps*x^5 = 0",
         source: MICKENS,
         published: omega("1 + 5*eps*A^4/16", 1),
     },
-    Entry {
+    CatalogEntry {
         name: "helmholtz",
         title: "quadratic spring of Helmholtz",
         equation: "x'' + x + eps*x^2 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - 5*eps^2*A^2/12", 2),
     },
-    Entry {
+    CatalogEntry {
         name: "mixed-parity",
         title: "quadratic and cubic spring",
         equation: "x'' + x + eps*(alpha*x^2 + beta*x^3) = 0",
         source: NAYFEH_MOOK,
         published: omega("1 + 3*beta*eps*A^2/8", 1),
     },
-    Entry {
+    CatalogEntry {
         name: "van-der-pol",
         title: "oscillator of van der Pol",
         equation: "x'' - mu*(1 - x^2)*x' + x = 0",
         source: "C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693",
         published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
     },
-    Entry {
+    CatalogEntry {
         name: "rayleigh",
         title: "oscillator of Rayleigh",
         equation: "x'' - mu*(1 - x'^2/3)*x' + x = 0",
         source: "Lord Rayleigh, Philosophical Magazine 15 (1883) 229-235; its x' solves van der Pol's equation, so the law is that of Andersen and Geer",
         published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
     },
-    Entry {
+    CatalogEntry {
         name: "duffing-harmonic",
         title: "Duffing-harmonic oscillator",
         equation: "x'' + x^3/(1 + x^2) = 0",
         source: "R. E. Mickens, J. Sound Vib. 244 (2001) 563-567",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "relativistic",
         title: "relativistic harmonic oscillator",
         equation: "x'' + (1 - x'^2)^(3/2)*x = 0",
         source: "R. E. Mickens, J. Sound Vib. 212 (1998) 905-908",
         published: omega_squared("1 - 3*A^2/8", 2),
     },
-    Entry {
+    CatalogEntry {
         name: "mathews-lakshmanan",
         title: "mass that depends on position",
         equation: "(1 + x^2)*x'' - x*x'^2 + x = 0",
         source: "P. M. Mathews, M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215-218: omega^2 = 1/(1 + A^2)",
         published: omega_squared("1 - A^2 + A^4", 4),
     },
-    Entry {
+    CatalogEntry {
         name: "morse",
         title: "molecular bond of Morse",
         equation: "x'' + exp(-x) - exp(-2*x) = 0",
         source: "P. M. Morse, Phys. Rev. 34 (1929) 57-64",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "toda",
         title: "one link of Toda's lattice",
         equation: "x'' + exp(x) - 1 = 0",
         source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "quadratic-odd",
         title: "odd quadratic spring",
         equation: "x'' + x*abs(x) = 0",
         source: MICKENS,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "signum",
         title: "constant force towards the middle",
         equation: "x'' + sgn(x) = 0",
         source: MICKENS,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "cube-root",
         title: "cube-root spring",
         equation: "x'' + x^(1/3) = 0",
         source: "R. E. Mickens, J. Sound Vib. 246 (2001) 375-378",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "rotating-pendulum",
         title: "pendulum on a rotating support",
         equation: "x'' + sin(x) - lambda*sin(x)*cos(x) = 0",
         source: NAYFEH_MOOK,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "magnetic-wire",
         title: "current-carrying wire beside a fixed one",
         equation: "x'' + x - lambda/(1 - x) = 0",
         source: NAYFEH_MOOK,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "damped-pendulum",
         title: "pendulum with viscous damping",
         equation: "x'' + 2*zeta*x' + sin(x) = 0",
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equation (7) without friction, excitation and barrier",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "forced-duffing",
         title: "hardening spring of Duffing, damped and driven",
         equation: "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.1",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "forced-helmholtz",
         title: "quadratic spring of Helmholtz, damped and driven",
         equation: "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.2",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "mathieu-duffing",
         title: "spring of Duffing whose stiffness is driven",
         equation: "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 5.7",
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "dry-friction",
         title: "spring with the dry friction of Coulomb",
         equation: "x'' + alpha*sgn(x') + x = 0",
         source: NAYFEH_MOOK_DAMPED,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "quadratic-damping",
         title: "spring in a fluid that resists by the square of the speed",
         equation: "x'' + c*abs(x')*x' + x = 0",
         source: NAYFEH_MOOK_DAMPED,
         published: None,
     },
-    Entry {
+    CatalogEntry {
         name: "damped-duffing",
         title: "hardening spring with viscous damping",
         equation: "x'' + 2*zeta*x' + x + eps*x^3 = 0",
@@ -274,7 +275,7 @@ pub const CATALOG: &[Entry] = &[
 /// let pendulum = lindstedt::catalog::find("pendulum").expect("an entry");
 /// assert_eq!(pendulum.equation, "x'' + sin(x) = 0");
 /// ```
-pub fn find(name: &str) -> Option<&'static Entry> {
+pub fn find(name: &str) -> Option<&'static CatalogEntry> {
     CATALOG.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
 }
 
@@ -288,7 +289,7 @@ pub fn find(name: &str) -> Option<&'static Entry> {
 /// let answers = methods(van_der_pol);
 /// assert!(answers.iter().any(|(_, answer)| answer.is_ok()) && answers.iter().any(|(_, answer)| answer.is_err()));
 /// ```
-pub fn methods(entry: &Entry) -> Vec<(Method, Result<(), Refusal>)> {
+pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), Refusal>)> {
     let attempt = |method| {
         let options = Options { method: Some(method), ..Options::default() };
         let oscillator = Oscillator::parse(entry.equation)?;

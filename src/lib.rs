@@ -15,7 +15,7 @@
 //! let at = "A = 3/2".parse()?;
 //! let judged = judge(&pendulum, &solution, &at, 0.01)?;
 //! assert_eq!(judged.verdict, Verdict::Fail); // 1.49 % off at 1.5 rad
-//! println!("{}, at t = 1: {}", solution.motion_at(&at)?, solution.at(1.0, &at)?);
+//! println!("{}, at t = 1: {}", solution.motion_at(&at)?, solution.displacement_at(1.0, &at)?);
 //! let document = lindstedt::export::json::solution(&solution, Some(&judged));
 //! println!("{}", serde_json::to_string_pretty(&document)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -16,53 +16,55 @@ use crate::symbol::Symbol;
 pub struct Claim {
     /// Its name, one of its own in a file.
     pub id: String,
-    /// Where it is printed.
+    /// The place in the publication.
     pub place: String,
-    /// What is claimed, in words.
+    /// The claim in words.
     pub says: String,
-    /// How it is computed.
-    pub question: Question,
-    /// What is printed: one entry, or the rows of a table.
-    pub entries: Vec<Entry>,
-    /// What may be supposed: for each subject its alternatives, of which at most one is.
+    /// The computation of the claimed quantity.
+    pub question: ClaimComputation,
+    /// The printed text: one entry, or the rows of a table.
+    pub entries: Vec<PrintedEntry>,
+    /// The suppositions that may be made: for each subject its alternatives, of which at most one
+    /// holds.
     pub suppositions: Vec<Vec<Supposition>>,
     /// A number that the publication does not print, to be solved for.
     pub unknown: Option<Unknown>,
-    /// What the publication does not print and the claim cannot be computed without, in words.
+    /// Quantities that the publication does not print and the claim cannot be computed without, in
+    /// words.
     pub needs: Vec<String>,
     /// The verdict that is known already; without it a claim is expected to be reproduced.
     pub expected: Option<Verdict>,
-    /// What a reader should know beside it.
+    /// A note for the reader.
     pub note: Option<String>,
 }
 
 /// One thing that is printed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct PrintedEntry {
     /// Values of this entry alone.
     pub values: BTreeMap<Symbol, Expr>,
     /// As it is printed.
     pub printed: String,
-    /// How that is read, where it is printed in words.
+    /// The reading of an entry printed in words.
     pub read_as: Option<String>,
-    /// What that says.
-    pub stated: Stated,
+    /// The statement that it makes.
+    pub stated: PrintedStatement,
 }
 
-/// What a printed text says.
+/// The statement of a printed text.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Stated {
+pub enum PrintedStatement {
     /// A number.
     Number(Printed),
     /// A formula.
     Formula(Expr),
-    /// How the numbers of all entries follow each other.
+    /// The order of the numbers of all entries.
     Trend(Trend),
-    /// No more than the claim itself says.
+    /// The text says no more than the claim itself.
     Words,
 }
 
-/// How numbers follow each other.
+/// The order of a sequence of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trend {
     /// Each is smaller than the one before: `falls`.
@@ -111,30 +113,30 @@ impl Trend {
     }
 }
 
-/// How a claim is computed.
+/// The computation of a claimed quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
-    /// What is computed.
-    pub quantity: Quantity,
+pub struct ClaimComputation {
+    /// The quantity.
+    pub quantity: ClaimQuantity,
     /// The equation of motion, for what is derived from one.
     pub equation: Option<Oscillator>,
     /// Method, order and the like.
     pub options: Options,
-    /// How the line of equation (15) is fitted.
+    /// The rule of the line of equation (15).
     pub rule: Rule,
     /// Values of names, which may use each other.
     pub values: BTreeMap<Symbol, Expr>,
-    /// What stands for pi.
+    /// The value that stands for pi.
     pub pi: Option<Expr>,
-    /// How digits come about.
+    /// The rule by which digits are cut or rounded.
     pub rounding: Rounding,
     /// The relative error that is allowed, in place of digits; of a trend, what counts as the same.
     pub tolerance: Option<f64>,
 }
 
-/// What is computed.
+/// The quantity that is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Quantity {
+pub enum ClaimQuantity {
     /// A number: a formula in values and in what the program computes, [`NAMES`](super::NAMES).
     Value(Expr),
     /// The coefficient of a term in a derived law.
@@ -168,13 +170,13 @@ pub enum Quantity {
         /// The generalised force.
         force: Expr,
     },
-    /// How a formula changes from entry to entry.
+    /// The change of a formula from entry to entry.
     Trend(Expr),
-    /// How many coordinates an equation has: letters with two primes.
+    /// Number of coordinates of an equation: letters with two primes.
     Coordinates(Expr),
     /// Options that are to go together.
     Settings(Vec<(String, String)>),
-    /// Nothing: what it needs is not printed.
+    /// No quantity: what it needs is not printed.
     Nothing,
 }
 
@@ -250,7 +252,7 @@ fn decimal_text(value: &Expr) -> String {
     }
 }
 
-impl Question {
+impl ClaimComputation {
     /// The question with this supposed.
     pub(super) fn supposing(&self, suppositions: &[&Supposition]) -> Self {
         let mut question = self.clone();
@@ -274,7 +276,7 @@ impl Question {
     }
 }
 
-impl Quantity {
+impl ClaimQuantity {
     fn read_as(&mut self, other: &Expr) {
         match self {
             Self::Value(formula)
@@ -291,13 +293,13 @@ impl Quantity {
     }
 }
 
-/// What is found of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// To every printed digit.
+    /// The claim is reproduced to every printed digit.
     Reproduced,
-    /// To every printed digit, by something that the publication does not say and the program
-    /// found.
+    /// The claim is reproduced to every printed digit under an assumption that the publication does
+    /// not state and the program found.
     UnderAssumption,
     /// Something that is needed is not printed.
     NotReproducible,

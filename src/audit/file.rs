@@ -14,7 +14,10 @@ use std::str::FromStr;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown};
+use super::claim::{
+    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, PrintedStatement, Supposition, Trend,
+    Unknown,
+};
 use super::printed::Printed;
 use super::{Claims, MOST_COMBINATIONS, identity, options};
 use crate::decimal::decimal;
@@ -32,20 +35,24 @@ use values::{
     symbol, table, tolerance, verdict,
 };
 
-/// What is wrong, and where.
+/// An error in the file and its position.
 struct Mistake {
     span: Range<usize>,
     what: String,
     help: Option<String>,
 }
 
-type Found<T> = Result<T, Mistake>;
+type ReadResult<T> = Result<T, Mistake>;
 
-fn mistake<T>(span: Range<usize>, what: impl Into<String>) -> Found<T> {
+fn mistake<T>(span: Range<usize>, what: impl Into<String>) -> ReadResult<T> {
     Err(Mistake { span, what: what.into(), help: None })
 }
 
-fn helped<T>(span: Range<usize>, what: impl Into<String>, help: impl Into<String>) -> Found<T> {
+fn helped<T>(
+    span: Range<usize>,
+    what: impl Into<String>,
+    help: impl Into<String>,
+) -> ReadResult<T> {
     Err(Mistake { span, what: what.into(), help: Some(help.into()) })
 }
 
@@ -69,7 +76,7 @@ impl FromStr for Claims {
 }
 
 /// Names with what stands for them.
-type Table = BTreeMap<String, Spanned<toml::Value>>;
+type NamedValues = BTreeMap<String, Spanned<toml::Value>>;
 type Text = Spanned<String>;
 
 #[derive(Deserialize)]
@@ -78,7 +85,7 @@ struct Document {
     #[serde(default)]
     title: String,
     #[serde(default)]
-    values: Table,
+    values: NamedValues,
     #[serde(default)]
     claim: Vec<Section>,
 }
@@ -106,7 +113,7 @@ struct Section {
     amplitude: Option<Text>,
     taylor: Option<Spanned<u32>>,
     linearisation: Option<Text>,
-    values: Option<Spanned<Table>>,
+    values: Option<Spanned<NamedValues>>,
     settings: Option<Spanned<BTreeMap<String, Text>>>,
     printed: Option<Text>,
     read_as: Option<Text>,
@@ -127,12 +134,12 @@ struct Section {
 #[serde(deny_unknown_fields)]
 struct Row {
     #[serde(default)]
-    values: Table,
+    values: NamedValues,
     printed: Option<Text>,
     read_as: Option<Text>,
 }
 
-/// What may be supposed, in lists of alternatives.
+/// The suppositions that may be made, in lists of alternatives.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Suppose {
@@ -144,10 +151,10 @@ struct Suppose {
     amplitude: Vec<Text>,
     linearisation: Vec<Text>,
     formula: Vec<Text>,
-    values: Vec<Table>,
+    values: Vec<NamedValues>,
 }
 
-fn read(document: Document) -> Found<Option<Claims>> {
+fn read(document: Document) -> ReadResult<Option<Claims>> {
     let values = table(&document.values)?;
     let mut ids: BTreeSet<String> = BTreeSet::new();
     let mut claims = Vec::new();
@@ -163,7 +170,7 @@ fn read(document: Document) -> Found<Option<Claims>> {
     Ok((!claims.is_empty()).then_some(Claims { title: document.title, claims }))
 }
 
-fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
+fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> ReadResult<Claim> {
     let kind = kind(section)?;
     check_keys(section, kind)?;
     // In a formula the names of the file stay letters.
@@ -176,7 +183,7 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
     }
     let entries = entries(section, kind)?;
     let unknown = unknown(section, &values)?;
-    let question = Question {
+    let question = ClaimComputation {
         quantity: quantity(section, kind)?,
         equation: section.equation.as_ref().map(equation).transpose()?,
         options: options_of(section)?,
@@ -216,9 +223,9 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
     Ok(claim)
 }
 
-/// What is computed.
-fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
-    let needed = |key: &str, text: &Option<Text>| -> Found<Text> {
+/// Reads the quantity of a claim.
+fn quantity(section: &Section, kind: &str) -> ReadResult<ClaimQuantity> {
+    let needed = |key: &str, text: &Option<Text>| -> ReadResult<Text> {
         match text {
             Some(text) => Ok(text.clone()),
             None => mistake(
@@ -230,7 +237,7 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
             ),
         }
     };
-    let formula = || -> Found<Expr> { equal_to_zero(&needed("formula", &section.formula)?) };
+    let formula = || -> ReadResult<Expr> { equal_to_zero(&needed("formula", &section.formula)?) };
     let squared = || match section.of.as_ref().map(|of| (of.get_ref().as_str(), of.span())) {
         None | Some(("frequency_squared", _)) => Ok(true),
         Some(("frequency", _)) => Ok(false),
@@ -242,9 +249,9 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
         needed("equation", &section.equation)?;
     }
     Ok(match kind {
-        "" => Quantity::Nothing,
-        "value" => Quantity::Value(expression(&needed("formula", &section.formula)?)?),
-        "trend" => Quantity::Trend(expression(&needed("formula", &section.formula)?)?),
+        "" => ClaimQuantity::Nothing,
+        "value" => ClaimQuantity::Value(expression(&needed("formula", &section.formula)?)?),
+        "trend" => ClaimQuantity::Trend(expression(&needed("formula", &section.formula)?)?),
         "coefficient" => {
             let text = needed("term", &section.term)?;
             let term = expression(&text)?;
@@ -258,10 +265,10 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
                     format!("`{term}` is no product of powers, such as A^2*eps"),
                 );
             }
-            Quantity::Coefficient { squared: squared()?, term }
+            ClaimQuantity::Coefficient { squared: squared()?, term }
         }
-        "law" => Quantity::Law { squared: squared()? },
-        "taylor" => Quantity::Taylor {
+        "law" => ClaimQuantity::Law { squared: squared()? },
+        "taylor" => ClaimQuantity::Taylor {
             formula: formula()?,
             degree: match section.order.as_ref().map(Spanned::get_ref) {
                 Some(Order::Power(degree)) if *degree <= MOST_TAYLOR => *degree,
@@ -276,22 +283,22 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
                 }
             },
         },
-        "identity" => Quantity::Identity(formula()?),
-        "motion" => Quantity::Motion {
+        "identity" => ClaimQuantity::Identity(formula()?),
+        "motion" => ClaimQuantity::Motion {
             kinetic: expression(&needed("kinetic", &section.kinetic)?)?,
             potential: section.potential.as_ref().map_or(Ok(Expr::zero()), expression)?,
             force: section.force.as_ref().map_or(Ok(Expr::zero()), expression)?,
         },
-        "coordinates" => Quantity::Coordinates(formula()?),
-        "options" => Quantity::Settings(settings(section)?),
-        name => Quantity::Value(Expr::symbol(name)),
+        "coordinates" => ClaimQuantity::Coordinates(formula()?),
+        "options" => ClaimQuantity::Settings(settings(section)?),
+        name => ClaimQuantity::Value(Expr::symbol(name)),
     })
 }
 
 /// The highest degree of a Taylor polynomial.
 const MOST_TAYLOR: u32 = 100;
 
-fn settings(section: &Section) -> Found<Vec<(String, String)>> {
+fn settings(section: &Section) -> ReadResult<Vec<(String, String)>> {
     let Some(settings) = &section.settings else {
         return mistake(
             section.id.span(),
@@ -318,8 +325,8 @@ fn settings(section: &Section) -> Found<Vec<(String, String)>> {
     settings.get_ref().iter().map(one).collect()
 }
 
-/// What is printed.
-fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
+/// Reads the printed entries of a claim.
+fn entries(section: &Section, kind: &str) -> ReadResult<Vec<PrintedEntry>> {
     let id = section.id.get_ref();
     let several = section.entries.as_ref();
     let own = |row: &Row| table(&row.values);
@@ -353,11 +360,11 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
                 text.span(),
                 "the entries of a trend have `values` alone: what is printed is the trend",
             ),
-            None => Ok(Entry {
+            None => Ok(PrintedEntry {
                 values: own(row.get_ref())?,
                 printed: printed.clone(),
                 read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
-                stated: Stated::Trend(trend),
+                stated: PrintedStatement::Trend(trend),
             }),
         };
         return rows.get_ref().iter().map(row).collect();
@@ -379,7 +386,7 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
                     format!("an entry of claim `{id}` has no number: give `printed`"),
                 );
             };
-            Ok(Entry {
+            Ok(PrintedEntry {
                 values: own(row.get_ref())?,
                 printed: printed.get_ref().clone(),
                 read_as: row.get_ref().read_as.as_ref().map(|text| text.get_ref().clone()),
@@ -389,14 +396,14 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
         return rows.get_ref().iter().map(row).collect();
     }
     let stated = match (&section.printed, kind) {
-        (None, "" | "options") => Stated::Words,
+        (None, "" | "options") => PrintedStatement::Words,
         (None, _) => return no_number(section),
         (Some(printed), kind) => stated(kind, section.read_as.as_ref().unwrap_or(printed))?,
     };
     if let (Some(text), "" | "options") = (&section.read_as, kind) {
         return mistake(text.span(), "`read_as` says nothing here: there is no number to be read");
     }
-    Ok(vec![Entry {
+    Ok(vec![PrintedEntry {
         values: BTreeMap::new(),
         printed: section.printed.as_ref().map_or(String::new(), |text| text.get_ref().clone()),
         read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
@@ -404,7 +411,7 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
     }])
 }
 
-fn no_number<T>(section: &Section) -> Found<T> {
+fn no_number<T>(section: &Section) -> ReadResult<T> {
     helped(
         section.id.span(),
         format!("claim `{}` has nothing that is printed", section.id.get_ref()),
@@ -412,17 +419,17 @@ fn no_number<T>(section: &Section) -> Found<T> {
     )
 }
 
-/// What a printed text says, for this quantity.
-fn stated(kind: &str, text: &Text) -> Found<Stated> {
+/// Reads the statement of a printed text about this quantity.
+fn stated(kind: &str, text: &Text) -> ReadResult<PrintedStatement> {
     match kind {
-        "" | "options" => Ok(Stated::Words),
+        "" | "options" => Ok(PrintedStatement::Words),
         "law" => {
             let right = text.get_ref().rsplit('=').next().unwrap_or_default();
-            Ok(Stated::Formula(parsed(right, text.span())?))
+            Ok(PrintedStatement::Formula(parsed(right, text.span())?))
         }
-        "taylor" | "identity" | "motion" => Ok(Stated::Formula(equal_to_zero(text)?)),
+        "taylor" | "identity" | "motion" => Ok(PrintedStatement::Formula(equal_to_zero(text)?)),
         _ => match Printed::read(text.get_ref()) {
-            Some(printed) => Ok(Stated::Number(printed)),
+            Some(printed) => Ok(PrintedStatement::Number(printed)),
             None => helped(
                 text.span(),
                 format!("`{}` is no number", text.get_ref()),
@@ -432,7 +439,7 @@ fn stated(kind: &str, text: &Text) -> Found<Stated> {
     }
 }
 
-fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<Unknown>> {
+fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> ReadResult<Option<Unknown>> {
     let Some(name) = &section.unknown else {
         return Ok(None);
     };
@@ -450,7 +457,7 @@ fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<U
             format!("`{symbol}` has a value and is no unknown: give one of them"),
         );
     }
-    let end = |value: &toml::Value| -> Found<f64> {
+    let end = |value: &toml::Value| -> ReadResult<f64> {
         let expr = number(value, within.span())?;
         let found = identity::with_definitions(&expr, values).and_then(|expr| {
             let number = expr.evaluate(&BTreeMap::new());
@@ -472,7 +479,7 @@ fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<U
     Ok(Some(Unknown { name: symbol, within: ends }))
 }
 
-fn options_of(section: &Section) -> Found<Options> {
+fn options_of(section: &Section) -> ReadResult<Options> {
     let order = section.order.as_ref().map(|order| *order.get_ref());
     Ok(Options {
         method: section.method.as_ref().map(method).transpose()?,
@@ -485,15 +492,15 @@ fn options_of(section: &Section) -> Found<Options> {
     })
 }
 
-fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
+fn suppositions(suppose: &Suppose) -> ReadResult<Vec<Vec<Supposition>>> {
     let each = |texts: &[Text],
-                read: &dyn Fn(&Text) -> Found<Supposition>|
-     -> Found<Vec<Supposition>> { texts.iter().map(read).collect() };
+                read: &dyn Fn(&Text) -> ReadResult<Supposition>|
+     -> ReadResult<Vec<Supposition>> { texts.iter().map(read).collect() };
     let order = |order: &Order| match *order {
         Order::Power(order) => Supposition::Order(order),
         Order::Degrees(degrees) => Supposition::Degrees(degrees),
     };
-    let pi = |value: &Spanned<toml::Value>| -> Found<Supposition> {
+    let pi = |value: &Spanned<toml::Value>| -> ReadResult<Supposition> {
         let found = number(value.get_ref(), value.span())?;
         match found.as_number().is_some_and(|number| *number > Rational::default()) {
             true => Ok(Supposition::Pi(found)),
@@ -508,8 +515,8 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
             .values
             .iter()
             .map(|values| Ok(Supposition::Values(table(values)?.into_iter().collect())))
-            .collect::<Found<_>>()?,
-        suppose.pi.iter().map(pi).collect::<Found<_>>()?,
+            .collect::<ReadResult<_>>()?,
+        suppose.pi.iter().map(pi).collect::<ReadResult<_>>()?,
         each(&suppose.rounding, &|text| Ok(Supposition::Rounding(rounding(text)?)))?,
         each(&suppose.formula, &|text| {
             Ok(Supposition::Formula(expression(text)?, text.get_ref().clone()))

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::symbol::Symbol;
 
-/// How two expressions differ.
+/// The difference of two expressions.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Difference {
+pub(super) struct TermDifference {
     /// The terms of the first that the second does not have.
     pub(super) only_first: Vec<Expr>,
     /// The terms of the second that the first does not have.
@@ -23,11 +23,11 @@ pub(super) struct Difference {
 const POINTS: usize = 64;
 const ENOUGH: usize = 8;
 
-/// The difference of two expressions; none where they are the same.
+/// The difference of two expressions; `None` if they are the same.
 ///
 /// # Errors
 /// Expressions too large to be written out; no point at which both have a value.
-pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<Difference>, String> {
+pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<TermDifference>, String> {
     let words = |error: ExprError| error.to_string();
     let (one, other) = (first.expand().map_err(words)?, second.expand().map_err(words)?);
     let rest = (&one - &other).expand().map_err(words)?;
@@ -38,7 +38,7 @@ pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<Differenc
         let terms = these.terms().iter().filter(|term| !those.terms().contains(term));
         terms.cloned().collect()
     };
-    Ok(Some(Difference { only_first: apart(&one, &other), only_second: apart(&other, &one) }))
+    Ok(Some(TermDifference { only_first: apart(&one, &other), only_second: apart(&other, &one) }))
 }
 
 /// Whether two expressions have the same value wherever both have one.

@@ -2,7 +2,7 @@
 //! table.
 //!
 //! In: an [`Audit`]'s question, a list of [`Claim`]s, from a file by [`Claims`] or made in Rust.
-//! Out: the [`Audit`], a [`Finding`] for each: `reproduced` to every printed digit;
+//! Out: the [`Audit`], a [`ClaimFinding`] for each: `reproduced` to every printed digit;
 //! `reproduced-under-assumption`, by the fewest of the things that the claim allows to be supposed,
 //! or by an unknown number solved for; `not-reproducible` for want of what is not printed;
 //! `inconsistent` with what is computed. What is printed is only ever compared with.
@@ -39,10 +39,13 @@ mod unknown;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub use claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown, Verdict};
+pub use claim::{
+    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, PrintedStatement, Supposition, Trend,
+    Unknown, Verdict,
+};
 pub use printed::{Printed, Relation, Rounding};
-pub use quantity::{Computed, Lack, NAMES};
-pub use unknown::Demand;
+pub use quantity::{Computed, NAMES, NotComputable};
+pub use unknown::RequiredValue;
 
 use crate::decimal::{decimal, significant};
 use crate::exact::Rational;
@@ -56,7 +59,7 @@ use unknown::Trial;
 pub struct Claims {
     /// The publication.
     pub title: String,
-    /// What it claims, in the order in which it is printed.
+    /// Its claims, in the order in which they are printed.
     pub claims: Vec<Claim>,
 }
 
@@ -66,63 +69,63 @@ pub struct Audit {
     /// The publication.
     pub title: String,
     /// A finding for each claim, in the order of the claims.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<ClaimFinding>,
 }
 
-/// What is found of a claim.
+/// The result for one claim.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Finding {
+pub struct ClaimFinding {
     /// The claim.
     pub claim: Claim,
     /// The verdict.
     pub verdict: Verdict,
-    /// What was tried, the claim alone first; the last one reproduces, where one does.
-    pub tried: Vec<Tried>,
-    /// What the claim asks of its unknown, where that was solved for.
-    pub demand: Option<Demand>,
-    /// What is not printed and needed, where that decides.
+    /// The attempts, that of the claim alone first; the last one reproduces the claim if any does.
+    pub tried: Vec<ClaimAttempt>,
+    /// The value of the unknown that the claim requires, if it was solved for.
+    pub demand: Option<RequiredValue>,
+    /// Quantities that are needed and not printed, if that decides.
     pub missing: Vec<String>,
-    /// Why the verdict is what it is, sentence by sentence.
+    /// The reason why the verdict is what it is, sentence by sentence.
     pub evidence: Vec<String>,
 }
 
 /// A claim computed under some suppositions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tried {
-    /// What is supposed, nothing for the claim alone.
+pub struct ClaimAttempt {
+    /// The suppositions; empty for the claim alone.
     pub supposing: Vec<Supposition>,
-    /// The same in words, and the value of an unknown that was solved for.
+    /// The suppositions in words, and the value of an unknown that was solved for.
     pub words: Vec<String>,
-    /// What is computed for each entry, or what it lacks.
-    pub computed: Vec<Result<Computed, Lack>>,
-    /// Which entries are reproduced.
+    /// The computed value of each entry, or the reason why there is none.
+    pub computed: Vec<Result<Computed, NotComputable>>,
+    /// Whether each entry is reproduced.
     pub reproduced: Vec<bool>,
 }
 
-impl Tried {
+impl ClaimAttempt {
     /// Whether all of it is reproduced.
     pub fn is_reproduced(&self) -> bool {
         self.reproduced.iter().all(|entry| *entry)
     }
 
-    /// What is supposed, in a line.
+    /// The suppositions in one line.
     fn in_a_line(&self) -> String {
         self.words.join(" and ")
     }
 }
 
-impl Finding {
-    /// What is supposed where the claim is reproduced under an assumption; empty where nothing is.
+impl ClaimFinding {
+    /// The assumption under which the claim is reproduced; empty if there is none.
     pub fn assumption(&self) -> String {
         if self.verdict != Verdict::UnderAssumption {
             return String::new();
         }
-        self.shown().map(Tried::in_a_line).unwrap_or_default()
+        self.displayed_attempt().map(ClaimAttempt::in_a_line).unwrap_or_default()
     }
 
-    /// What is to be shown of what was tried: what reproduces, or the claim alone.
-    pub fn shown(&self) -> Option<&Tried> {
+    /// The attempt to be shown: one that reproduces the claim, or that of the claim alone.
+    pub fn displayed_attempt(&self) -> Option<&ClaimAttempt> {
         let best = self.tried.iter().find(|tried| tried.is_reproduced());
         best.or(self.tried.first())
     }
@@ -138,7 +141,7 @@ impl Finding {
 }
 
 impl Audit {
-    /// How many claims have this verdict.
+    /// Number of claims with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.findings.iter().filter(|finding| finding.verdict == verdict).count()
     }
@@ -146,7 +149,7 @@ impl Audit {
     /// Whether every verdict is the expected one; with `strict`, whether every claim is reproduced,
     /// whatever is expected.
     pub fn passes(&self, strict: bool) -> bool {
-        let passes = |finding: &Finding| match strict {
+        let passes = |finding: &ClaimFinding| match strict {
             true => finding.verdict.is_reproduced(),
             false => finding.is_as_expected(),
         };
@@ -156,7 +159,7 @@ impl Audit {
 
 /// Computes every claim, and holds those that share an unknown number against each other.
 pub fn audit(claims: Claims) -> Audit {
-    let mut findings: Vec<Finding> = claims.claims.into_iter().map(judge).collect();
+    let mut findings: Vec<ClaimFinding> = claims.claims.into_iter().map(judge).collect();
     share_unknowns(&mut findings);
     Audit { title: claims.title, findings }
 }
@@ -181,19 +184,19 @@ fn combinations(subjects: &[Vec<Supposition>]) -> Vec<Vec<&Supposition>> {
     found
 }
 
-fn judge(claim: Claim) -> Finding {
+fn judge(claim: Claim) -> ClaimFinding {
     let choices = combinations(&claim.suppositions);
-    let mut tried: Vec<Tried> = Vec::new();
+    let mut tried: Vec<ClaimAttempt> = Vec::new();
     for chosen in &choices {
         tried.push(attempt(&claim, chosen));
-        if tried.last().is_some_and(Tried::is_reproduced) {
+        if tried.last().is_some_and(ClaimAttempt::is_reproduced) {
             break;
         }
     }
     let mut demand = None;
-    let is_reproduced = tried.last().is_some_and(Tried::is_reproduced);
+    let is_reproduced = tried.last().is_some_and(ClaimAttempt::is_reproduced);
     if let (Some(unknown), false) = (claim.unknown, is_reproduced) {
-        // What is supposed of the unknown itself leaves nothing to solve for.
+        // If a supposition gives the unknown a value, there is nothing to solve for.
         let supplies = |one: &&Supposition| match one {
             Supposition::Values(values) => values.iter().any(|(name, _)| *name == unknown.name),
             _ => false,
@@ -204,7 +207,7 @@ fn judge(claim: Claim) -> Finding {
             Some((found, chosen))
         });
         // The first that lies where it may, or else the first of all.
-        let demands: Vec<(Demand, &Vec<&Supposition>)> = demands.collect();
+        let demands: Vec<(RequiredValue, &Vec<&Supposition>)> = demands.collect();
         let within = demands.iter().find(|(found, _)| found.is_within);
         if let Some((found, chosen)) = within {
             let question = claim.question.supposing(chosen);
@@ -227,8 +230,12 @@ fn judge(claim: Claim) -> Finding {
     finding(claim, tried, demand, vec![])
 }
 
-/// What a claim would need of its unknown, where that is more than it may be.
-fn outside_words(demand: &Demand, question: &Question, chosen: &[&Supposition]) -> String {
+/// The value of the unknown that a claim requires, in words, if it lies outside of its range.
+fn outside_words(
+    demand: &RequiredValue,
+    question: &ClaimComputation,
+    chosen: &[&Supposition],
+) -> String {
     let [low, high] = demand.unknown.within.map(|end| significant(end, 3));
     let supposed = match words(question, chosen, None).join(" and ") {
         none if none.is_empty() => none,
@@ -242,28 +249,32 @@ fn outside_words(demand: &Demand, question: &Question, chosen: &[&Supposition]) 
 }
 
 /// The claim under these suppositions.
-fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
+fn attempt(claim: &Claim, chosen: &[&Supposition]) -> ClaimAttempt {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
-    // What is not printed must be supposed before anything can be computed.
+    // Quantities that are not printed must be supposed before anything can be computed.
     let supplied =
         chosen.iter().any(|one| !matches!(one, Supposition::Rounding(_) | Supposition::Pi(_)));
     if !claim.needs.is_empty() && !supplied {
         let needs: BTreeSet<String> = claim.needs.iter().cloned().collect();
-        return Tried {
+        return ClaimAttempt {
             supposing: chosen.iter().map(|one| (*one).clone()).collect(),
             words: words(&question, chosen, None),
-            computed: claim.entries.iter().map(|_| Err(Lack::Missing(needs.clone()))).collect(),
+            computed: claim
+                .entries
+                .iter()
+                .map(|_| Err(NotComputable::Missing(needs.clone())))
+                .collect(),
             reproduced: vec![false; claim.entries.len()],
         };
     }
     compare(claim, &question, &evaluator, chosen, None)
 }
 
-/// What is supposed in words, with the numbers of what follows from the values of the claim, and
-/// the value of an unknown.
+/// The suppositions in words, with the numbers that follow from the values of the claim, and the
+/// value of an unknown.
 fn words(
-    question: &Question,
+    question: &ClaimComputation,
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
 ) -> Vec<String> {
@@ -290,42 +301,41 @@ fn words(
 /// Computes every entry and compares it with what is printed.
 fn compare(
     claim: &Claim,
-    question: &Question,
+    question: &ClaimComputation,
     evaluator: &Evaluator,
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
-) -> Tried {
-    let computed: Vec<Result<Computed, Lack>> =
+) -> ClaimAttempt {
+    let computed: Vec<Result<Computed, NotComputable>> =
         claim.entries.iter().map(|entry| evaluator.compute(&entry.values, unknown)).collect();
     let numbers: Option<Vec<f64>> =
         computed.iter().map(|found| found.as_ref().ok()?.number()).collect();
-    let comes_out = |(entry, found): (&Entry, &Result<Computed, Lack>)| match (&entry.stated, found)
-    {
-        (Stated::Number(printed), Ok(Computed::Number(number))) => {
+    let comes_out = |(entry, found): (&PrintedEntry, &Result<Computed, NotComputable>)| match (
+        &entry.stated,
+        found,
+    ) {
+        (PrintedStatement::Number(printed), Ok(Computed::Number(number))) => {
             printed.is_reproduced_by(*number, question.rounding, question.tolerance)
         }
-        (Stated::Number(printed), Ok(Computed::Exact(number))) => {
+        (PrintedStatement::Number(printed), Ok(Computed::Exact(number))) => {
             printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
         }
-        (Stated::Number(printed), Ok(Computed::Absent)) => printed.is_reproduced_exactly_by(
-            &Rational::default(),
-            question.rounding,
-            question.tolerance,
-        ),
-        (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
+        (PrintedStatement::Number(printed), Ok(Computed::Absent)) => printed
+            .is_reproduced_exactly_by(&Rational::default(), question.rounding, question.tolerance),
+        (PrintedStatement::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &question.values);
             printed
                 .and_then(|printed| identity::difference(&printed, formula))
                 .is_ok_and(|rest| rest.is_none())
         }
-        (Stated::Trend(trend), Ok(_)) => {
+        (PrintedStatement::Trend(trend), Ok(_)) => {
             let same = question.tolerance.unwrap_or(SAME);
             numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
         }
-        (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
+        (PrintedStatement::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
         _ => false,
     };
-    Tried {
+    ClaimAttempt {
         supposing: chosen.iter().map(|one| (*one).clone()).collect(),
         words: words(question, chosen, unknown),
         reproduced: claim.entries.iter().zip(&computed).map(comes_out).collect(),
@@ -338,13 +348,13 @@ fn compare(
 pub const SAME: f64 = 1e-3;
 
 /// The unknown of a claim, under these suppositions.
-fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option<Demand> {
+fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option<RequiredValue> {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     unknown::solve(unknown, &|value| {
         let found = compare(claim, &question, &evaluator, chosen, Some((unknown.name, value)));
         let differences = claim.entries.iter().zip(&found.computed).map(|(entry, found)| {
-            let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
+            let (PrintedStatement::Number(printed), Ok(found)) = (&entry.stated, found) else {
                 return f64::NAN;
             };
             found.number().map_or(f64::NAN, |number| number - printed.middle(question.rounding))
@@ -356,10 +366,10 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
 /// The verdict on what was tried.
 fn finding(
     claim: Claim,
-    tried: Vec<Tried>,
-    demand: Option<Demand>,
+    tried: Vec<ClaimAttempt>,
+    demand: Option<RequiredValue>,
     outside: Vec<String>,
-) -> Finding {
+) -> ClaimFinding {
     let alone = tried.first();
     let best = tried.iter().find(|tried| tried.is_reproduced());
     let mut missing: BTreeSet<String> = BTreeSet::new();
@@ -367,12 +377,12 @@ fn finding(
     if best.is_none() {
         for found in alone.iter().flat_map(|tried| &tried.computed) {
             match found {
-                Err(Lack::Missing(names)) => missing.extend(names.iter().cloned()),
-                Err(Lack::Refused(reason)) => refusal = Some(reason.clone()),
+                Err(NotComputable::Missing(names)) => missing.extend(names.iter().cloned()),
+                Err(NotComputable::Refused(reason)) => refusal = Some(reason.clone()),
                 Ok(_) => {}
             }
         }
-        // What is solved for is not missing.
+        // An unknown that is solved for is not missing.
         if let Some(unknown) = claim.unknown {
             missing.remove(unknown.name.name());
         }
@@ -393,11 +403,13 @@ fn finding(
     evidence.extend(outside);
     match (best, verdict) {
         (None, Verdict::Inconsistent) if demand.is_none() => {
-            evidence.extend(alone.map(|alone| against(&claim, alone)).unwrap_or_default());
+            evidence.extend(
+                alone.map(|alone| computed_versus_printed(&claim, alone)).unwrap_or_default(),
+            );
         }
         _ => {}
     }
-    evidence.extend(others(&claim, &tried));
+    evidence.extend(other_attempts(&claim, &tried));
     if let Some(demand) = demand.filter(|demand| demand.is_within && best.is_some()) {
         let name = demand.unknown.name;
         let [low, high] = demand.unknown.within.map(|end| significant(end, 3));
@@ -406,42 +418,42 @@ fn finding(
             "{name} is not printed; every {name} from {least} to {greatest} makes it come out, of those from {low} to {high}"
         ));
     }
-    Finding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
+    ClaimFinding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
 }
 
-/// What is computed in place of what is printed.
-fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
+/// The computed values beside the printed ones, in words.
+fn computed_versus_printed(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
         let count = tried.reproduced.iter().filter(|entry| **entry).count();
         return vec![format!("{count} of {} entries come out", claim.entries.len())];
     }
-    if let Some(Stated::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
+    if let Some(PrintedStatement::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
         return vec![format!("computed: {}", numbers_of(claim, tried))];
     }
     let entries = claim.entries.iter().zip(&tried.computed);
     let each = entries.flat_map(|(entry, found)| match (&entry.stated, found) {
-        (Stated::Number(_), Ok(Computed::Absent)) => {
+        (PrintedStatement::Number(_), Ok(Computed::Absent)) => {
             vec![format!("printed {}, but the derived law has no such term", entry.printed)]
         }
-        (Stated::Number(printed), Ok(found)) => {
+        (PrintedStatement::Number(printed), Ok(found)) => {
             let number = found.number().unwrap_or(f64::NAN);
-            vec![versus(entry, printed, number)]
+            vec![number_versus_printed(entry, printed, number)]
         }
-        (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
+        (PrintedStatement::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &claim.question.values);
             formula_versus(printed, formula)
         }
-        (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.clone(),
+        (PrintedStatement::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.clone(),
         _ => vec![],
     });
     each.collect()
 }
 
 /// A number beside the printed one.
-fn versus(entry: &Entry, printed: &Printed, number: f64) -> String {
+fn number_versus_printed(entry: &PrintedEntry, printed: &Printed, number: f64) -> String {
     let read = entry.read_as.as_ref().map_or(String::new(), |text| format!(", read as {text}"));
-    let computed = printed.alike(number, 6);
+    let computed = printed.formatted_alike(number, 6);
     let difference = match printed.relation {
         Relation::Equal if number.is_finite() && printed.value * number > 0.0 => {
             let ratio = printed.value / number;
@@ -483,19 +495,19 @@ fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> 
 /// The coefficient of a term that does not occur, in words.
 pub(crate) const ABSENT: &str = "0, no such term";
 
-/// What is computed for all entries.
-fn numbers_of(claim: &Claim, tried: &Tried) -> String {
+/// The computed values of all entries.
+fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
     let words = claim.entries.iter().zip(&tried.computed).map(|(entry, found)| match found {
         Ok(Computed::Number(number)) => match &entry.stated {
-            Stated::Number(printed) => printed.alike(*number, 6),
+            PrintedStatement::Number(printed) => printed.formatted_alike(*number, 6),
             _ => decimal(*number),
         },
         Ok(Computed::Exact(fraction)) => fraction.to_string(),
         Ok(Computed::Absent) => ABSENT.to_owned(),
         Ok(Computed::Formula(formula)) => formula.to_string(),
         Ok(Computed::Conflicts(conflicts)) => format!("{} conflicts", conflicts.len()),
-        Err(Lack::Missing(_)) => "none".to_owned(),
-        Err(Lack::Refused(reason)) => reason.clone(),
+        Err(NotComputable::Missing(_)) => "none".to_owned(),
+        Err(NotComputable::Refused(reason)) => reason.clone(),
     });
     words.collect::<Vec<_>>().join(", ")
 }
@@ -503,11 +515,13 @@ fn numbers_of(claim: &Claim, tried: &Tried) -> String {
 /// Suppositions that are told of at most.
 const TOLD: usize = 8;
 
-/// What comes of the other things that were tried: a sentence each.
-fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
+/// The results of the other attempts, a sentence each.
+fn other_attempts(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     let entries = claim.entries.len();
-    let is_trend =
-        matches!(claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
+    let is_trend = matches!(
+        claim.entries.first().map(|entry| &entry.stated),
+        Some(PrintedStatement::Trend(_))
+    );
     let told = tried.iter().enumerate().filter(|(index, one)| {
         // The claim alone is told elsewhere, but for how much of it comes out.
         let worth = *index > 0 || entries > 1 && !is_trend && tried.len() > 1;
@@ -542,11 +556,11 @@ fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
 }
 
 /// Claims that share an unknown must ask for the same values of it.
-fn share_unknowns(findings: &mut [Finding]) {
-    let demanded = |finding: &Finding| {
+fn share_unknowns(findings: &mut [ClaimFinding]) {
+    let demanded = |finding: &ClaimFinding| {
         finding.demand.filter(|demand| demand.is_within && finding.verdict.is_reproduced())
     };
-    let demands: Vec<(usize, String, Demand)> = findings
+    let demands: Vec<(usize, String, RequiredValue)> = findings
         .iter()
         .enumerate()
         .filter_map(|(index, finding)| Some((index, finding.claim.id.clone(), demanded(finding)?)))
@@ -560,7 +574,8 @@ fn share_unknowns(findings: &mut [Finding]) {
             unknown::in_common(&[demand.range, of_other.range]).is_some()
         });
         let finding = &mut findings[*index];
-        let range = |demand: &Demand| demand.range.map(|end| significant(end, 4)).join(" to ");
+        let range =
+            |demand: &RequiredValue| demand.range.map(|end| significant(end, 4)).join(" to ");
         if let Some((_, id, of_other)) = against.first() {
             finding.verdict = Verdict::Inconsistent;
             finding.evidence.push(format!(

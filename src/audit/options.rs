@@ -1,5 +1,4 @@
-//! Which options of a genetic algorithm go together: what a table of options says is checked rule
-//! by rule.
+//! Rules for the options of a genetic algorithm: a table of options is checked rule by rule.
 //!
 //! The names are those of the toolbox in general use, and the rules what its documentation says of
 //! them: which functions take genes that are numbers, which constraints a population of bits can
@@ -22,7 +21,7 @@ pub(super) const KNOWN: [&str; 12] = [
     "stall generations",
 ];
 
-/// What an option needs of another one.
+/// A condition that an option sets on another one.
 struct Rule {
     option: &'static str,
     /// The value that has the need; any where there is none.
@@ -95,7 +94,8 @@ const RULES: [Rule; 8] = [
     },
 ];
 
-/// What these options have against each other, a sentence each; what is not stated breaks no rule.
+/// The rules that these options break, a sentence each; an option that is not stated breaks no
+/// rule.
 pub(super) fn conflicts(settings: &[(String, String)]) -> Vec<String> {
     let stated = |name: &str| {
         settings.iter().find(|(option, _)| option == name).map(|entry| entry.1.as_str())

@@ -9,10 +9,10 @@ use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::expr::parse_expression;
 
-/// How digits come about.
+/// The rule by which digits are cut or rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Rounding {
-    /// To the nearest: `rounded`.
+    /// Rounding to nearest: `rounded`.
     #[default]
     Rounded,
     /// Cut off behind the last one: `cut`.
@@ -40,21 +40,21 @@ impl Rounding {
     }
 }
 
-/// What a printed number says of the true one.
+/// The relation of a printed number to the true one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
-    /// It is this one.
+    /// The true number is this one.
     Equal,
-    /// It is below, `<` or `<=`.
+    /// The true number is below, `<` or `<=`.
     Below,
-    /// It is above, `>` or `>=`.
+    /// The true number is above, `>` or `>=`.
     Above,
 }
 
 /// A number as it is printed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Printed {
-    /// What it says.
+    /// The relation to the true number.
     pub relation: Relation,
     /// Whether a bound belongs to what is allowed.
     with_bound: bool,
@@ -71,7 +71,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// Reads a number; nothing where the text is none.
+    /// Reads a number; `None` if the text is none.
     ///
     /// ```
     /// use lindstedt::audit::{Printed, Rounding};
@@ -147,14 +147,14 @@ impl Printed {
         self.digits.split_once('.').map_or(0, |(_, part)| part.len())
     }
 
-    /// How many digits it has that say something.
+    /// Number of significant digits.
     pub fn significant_digits(&self) -> usize {
         let digits = self.digits.bytes().filter(u8::is_ascii_digit);
         digits.skip_while(|digit| *digit == b'0').count()
     }
 
     /// Whether a number is printed so: by its digits, or within a relative tolerance, or on the
-    /// right side of a bound. What is no number never is.
+    /// right side of a bound. What is not a number never is.
     pub fn is_reproduced_by(
         &self,
         number: f64,
@@ -182,7 +182,8 @@ impl Printed {
         }
     }
 
-    /// The same of a fraction: one that is printed as a fraction must be it, exactly.
+    /// Whether a fraction reproduces the printed number: one that is printed as a fraction must be
+    /// equal to it.
     pub fn is_reproduced_exactly_by(
         &self,
         number: &Rational,
@@ -212,7 +213,7 @@ impl Printed {
             && (zeros || (number < 0.0) == (self.value < 0.0))
     }
 
-    /// Where a number must cross to be printed so: the middle of what is printed.
+    /// The middle of the interval of numbers that are printed so.
     pub(super) fn middle(&self, rounding: Rounding) -> f64 {
         let unit = self.scale * 10_f64.powi(-(self.decimals() as i32));
         match rounding {
@@ -224,7 +225,7 @@ impl Printed {
     }
 
     /// Another number in the same unit, with two digits more than are printed and at least so many.
-    pub fn alike(&self, number: f64, least: usize) -> String {
+    pub fn formatted_alike(&self, number: f64, least: usize) -> String {
         let digits = (self.significant_digits() + 2).max(least);
         match self.percent {
             true => format!("{} %", significant(100.0 * number, digits)),

@@ -1,22 +1,22 @@
-//! What a claim may be about: the names that formulas may use, and the program that computes them.
+//! The quantities of a claim: the names that formulas may use, and the program that computes them.
 //!
-//! In: a [`Question`] and the values of an entry. Out: what is computed, or what it lacks. The
-//! numbers come from where every other command has them: laws from
+//! In: a [`ClaimComputation`] and the values of an entry. Out: what is computed, or what it lacks.
+//! The numbers come from where every other command has them: laws from
 //! [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts
 //! from [`impact`](crate::impact), rest times from its simulation.
 
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::claim::{Quantity, Question};
+use super::claim::{ClaimComputation, ClaimQuantity};
 use super::{identity, options};
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Node};
 use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing,
-    ThreePhases, course, hertz, three_phases,
+    ContactSpeed, Form, Impact, ImpactProblem, Integrator, Model, PhaseReading, Settings, Setup,
+    Start, ThreePhases, course, hertz, three_phases,
 };
 use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
@@ -26,10 +26,10 @@ use crate::series::taylor::taylor;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{DEFAULT_TOLERANCE, Extent, judge_to, needed_values};
+use crate::verify::{DEFAULT_TOLERANCE, VerificationScope, judge_to, needed_values};
 
-/// What the program computes by name, beside the values that a file gives: the name, what it needs,
-/// what it is.
+/// The quantities that the program computes by name, beside the values that a file gives: the name,
+/// its arguments, its meaning.
 pub const NAMES: [(&str, &str, &str); 29] = [
     ("frequency", "equation, its parameters, A", "omega by the method"),
     ("true_frequency", "equation, its parameters, A", "omega of the true motion"),
@@ -82,7 +82,7 @@ pub const NAMES: [(&str, &str, &str); 29] = [
     ),
 ];
 
-/// What is computed.
+/// The result of a computation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Computed {
     /// A number.
@@ -93,7 +93,7 @@ pub enum Computed {
     Absent,
     /// A formula.
     Formula(Expr),
-    /// What options have against each other.
+    /// The rules that options break.
     Conflicts(Vec<String>),
 }
 
@@ -109,9 +109,9 @@ impl Computed {
     }
 }
 
-/// Why nothing is computed.
+/// The reason why nothing is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lack {
+pub enum NotComputable {
     /// These are not given.
     Missing(BTreeSet<String>),
     /// There is no such number, for this reason.
@@ -120,28 +120,28 @@ pub enum Lack {
 
 /// Computes one question, for any entry and any value of an unknown.
 pub(super) struct Evaluator<'a> {
-    question: &'a Question,
+    question: &'a ClaimComputation,
     law: OnceCell<Result<(Oscillator, Solution), String>>,
     swing: OnceCell<Result<(Oscillator, Solution), String>>,
 }
 
 impl<'a> Evaluator<'a> {
-    pub(super) fn new(question: &'a Question) -> Self {
+    pub(super) fn new(question: &'a ClaimComputation) -> Self {
         Self { question, law: OnceCell::new(), swing: OnceCell::new() }
     }
 
-    /// What is computed with the values of an entry, and of an unknown where one is tried.
+    /// Computes the quantity with the values of an entry, and of an unknown if one is tried.
     pub(super) fn compute(
         &self,
         entry: &BTreeMap<Symbol, Expr>,
         unknown: Option<(Symbol, f64)>,
-    ) -> Result<Computed, Lack> {
+    ) -> Result<Computed, NotComputable> {
         let question = self.question;
         let mut values = question.values.clone();
         values.extend(entry.iter().map(|(name, value)| (*name, value.clone())));
         match &question.quantity {
-            Quantity::Value(formula) | Quantity::Trend(formula) => {
-                let mut scope = Scope {
+            ClaimQuantity::Value(formula) | ClaimQuantity::Trend(formula) => {
+                let mut scope = EvaluationScope {
                     evaluator: self,
                     known: unknown.into_iter().collect(),
                     values,
@@ -150,41 +150,44 @@ impl<'a> Evaluator<'a> {
                 };
                 scope.formula(formula).map(Computed::Number)
             }
-            Quantity::Coefficient { squared, term } => {
+            ClaimQuantity::Coefficient { squared, term } => {
                 let law = self.polynomial(*squared)?;
-                let monomial = monomial(term)
-                    .ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
+                let monomial = monomial(term).ok_or_else(|| {
+                    NotComputable::Refused(format!("`{term}` is no product of powers"))
+                })?;
                 coefficient(&law, &monomial)
             }
-            Quantity::Law { squared } => {
+            ClaimQuantity::Law { squared } => {
                 Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?)))
             }
-            Quantity::Taylor { formula, degree } => {
+            ClaimQuantity::Taylor { formula, degree } => {
                 let about = [(Symbol::new("x"), Rational::default())];
                 let parts = taylor(formula, &about, *degree)
-                    .map_err(|error| Lack::Refused(error.to_string()))?;
+                    .map_err(|error| NotComputable::Refused(error.to_string()))?;
                 Ok(Computed::Formula(Expr::sum(parts)))
             }
-            Quantity::Identity(formula) => identity::with_definitions(formula, &values)
+            ClaimQuantity::Identity(formula) => identity::with_definitions(formula, &values)
                 .map(Computed::Formula)
-                .map_err(Lack::Refused),
-            Quantity::Motion { kinetic, potential, force } => {
+                .map_err(NotComputable::Refused),
+            ClaimQuantity::Motion { kinetic, potential, force } => {
                 motion([kinetic, potential, force], &values)
                     .map(Computed::Formula)
-                    .map_err(Lack::Refused)
+                    .map_err(NotComputable::Refused)
             }
-            Quantity::Coordinates(formula) => {
+            ClaimQuantity::Coordinates(formula) => {
                 let symbols = formula.symbols();
                 let accelerations = symbols.iter().filter(|symbol| symbol.primes() == 2);
                 Ok(Computed::Number(accelerations.count() as f64))
             }
-            Quantity::Settings(settings) => Ok(Computed::Conflicts(options::conflicts(settings))),
-            Quantity::Nothing => Err(Lack::Missing(BTreeSet::new())),
+            ClaimQuantity::Settings(settings) => {
+                Ok(Computed::Conflicts(options::conflicts(settings)))
+            }
+            ClaimQuantity::Nothing => Err(NotComputable::Missing(BTreeSet::new())),
         }
     }
 
     /// The derived law.
-    fn law(&self) -> Result<&(Oscillator, Solution), Lack> {
+    fn law(&self) -> Result<&(Oscillator, Solution), NotComputable> {
         let Some(equation) = &self.question.equation else {
             return Err(missing("equation"));
         };
@@ -193,11 +196,11 @@ impl<'a> Evaluator<'a> {
                 solve(equation, &self.question.options).map_err(|error| error.to_string())?;
             Ok((equation.clone(), solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
 
     /// omega or omega^2 as a polynomial.
-    fn polynomial(&self, squared: bool) -> Result<Polynomial, Lack> {
+    fn polynomial(&self, squared: bool) -> Result<Polynomial, NotComputable> {
         let (_, solution) = self.law()?;
         let found = match squared {
             true => solution.law.frequency_squared(),
@@ -205,13 +208,13 @@ impl<'a> Evaluator<'a> {
         };
         found.cloned().ok_or_else(|| {
             let name = if squared { "omega^2" } else { "omega" };
-            Lack::Refused(format!("{} gives no polynomial for {name}", solution.title()))
+            NotComputable::Refused(format!("{} gives no polynomial for {name}", solution.title()))
         })
     }
 
     /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2
     /// where none is asked for.
-    fn swing(&self) -> Result<&(Oscillator, Solution), Lack> {
+    fn swing(&self) -> Result<&(Oscillator, Solution), NotComputable> {
         let found = self.swing.get_or_init(|| {
             let words = |error: &dyn std::error::Error| error.to_string();
             let equation = match &self.question.equation {
@@ -225,16 +228,16 @@ impl<'a> Evaluator<'a> {
             let solution = solve(&equation, &options).map_err(|error| words(&error))?;
             Ok((equation, solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
 }
 
-fn missing(name: &str) -> Lack {
-    Lack::Missing(BTreeSet::from([name.to_owned()]))
+fn missing(name: &str) -> NotComputable {
+    NotComputable::Missing(BTreeSet::from([name.to_owned()]))
 }
 
-fn refused(error: &impl std::fmt::Display) -> Lack {
-    Lack::Refused(error.to_string())
+fn refused(error: &impl std::fmt::Display) -> NotComputable {
+    NotComputable::Refused(error.to_string())
 }
 
 /// A product of powers as a monomial.
@@ -248,7 +251,7 @@ fn monomial(term: &Expr) -> Option<Monomial> {
 ///
 /// # Errors
 /// A letter that the law does not have, or a power of it beyond the last one that was derived.
-fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
+fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, NotComputable> {
     if law.terms().any(|(monomial, _)| monomial == wanted) {
         return Ok(Computed::Exact(law.coefficient(wanted)));
     }
@@ -257,13 +260,13 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
         let [least, greatest] =
             powers.fold([0, 0], |[least, greatest], one| [least.min(one), greatest.max(one)]);
         if [least, greatest] == [0, 0] {
-            return Err(Lack::Refused(format!(
+            return Err(NotComputable::Refused(format!(
                 "`{letter}` does not occur in the derived law `{}`",
                 Expr::from(law)
             )));
         }
         if power > greatest {
-            return Err(Lack::Refused(format!(
+            return Err(NotComputable::Refused(format!(
                 "the derived law `{}` ends before the power {power} of `{letter}`: ask for a higher `order`",
                 Expr::from(law)
             )));
@@ -273,18 +276,18 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
 }
 
 /// The names of one evaluation and what they are.
-struct Scope<'a, 'b> {
+struct EvaluationScope<'a, 'b> {
     evaluator: &'b Evaluator<'a>,
     values: BTreeMap<Symbol, Expr>,
     known: BTreeMap<Symbol, f64>,
-    /// What is being worked out, to see circles.
+    /// The names under evaluation, to detect circular definitions.
     open: Vec<Symbol>,
     impact: Option<Box<Impact>>,
 }
 
-impl Scope<'_, '_> {
+impl EvaluationScope<'_, '_> {
     /// The value of a formula.
-    fn formula(&mut self, formula: &Expr) -> Result<f64, Lack> {
+    fn formula(&mut self, formula: &Expr) -> Result<f64, NotComputable> {
         let formula = match &self.evaluator.question.pi {
             Some(pi) => with_pi(formula, pi).map_err(|error| refused(&error))?,
             None => formula.clone(),
@@ -295,36 +298,36 @@ impl Scope<'_, '_> {
     }
 
     /// The values of these names: all that are missing are told at once.
-    fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, Lack> {
+    fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, NotComputable> {
         let (mut found, mut lacking) = (BTreeMap::new(), BTreeSet::new());
         for name in names {
             match self.value(*name) {
                 Ok(value) => {
                     found.insert(*name, value);
                 }
-                Err(Lack::Missing(names)) => lacking.extend(names),
+                Err(NotComputable::Missing(names)) => lacking.extend(names),
                 Err(reason) => return Err(reason),
             }
         }
         match lacking.is_empty() {
             true => Ok(found),
-            false => Err(Lack::Missing(lacking)),
+            false => Err(NotComputable::Missing(lacking)),
         }
     }
 
-    fn numbers<const N: usize>(&mut self, names: [&str; N]) -> Result<[f64; N], Lack> {
+    fn numbers<const N: usize>(&mut self, names: [&str; N]) -> Result<[f64; N], NotComputable> {
         let names = names.map(Symbol::new);
         let found = self.all(&names)?;
         Ok(names.map(|name| found.get(&name).copied().unwrap_or(f64::NAN)))
     }
 
-    fn value(&mut self, name: Symbol) -> Result<f64, Lack> {
+    fn value(&mut self, name: Symbol) -> Result<f64, NotComputable> {
         if let Some(value) = self.known.get(&name) {
             return Ok(*value);
         }
         let value = match self.values.get(&name).cloned() {
             Some(_) if self.open.contains(&name) => {
-                return Err(Lack::Refused(format!("`{name}` is defined by itself")));
+                return Err(NotComputable::Refused(format!("`{name}` is defined by itself")));
             }
             Some(formula) => {
                 self.open.push(name);
@@ -338,8 +341,8 @@ impl Scope<'_, '_> {
         Ok(value)
     }
 
-    /// What the program computes under this name.
-    fn computed(&mut self, name: &str) -> Result<f64, Lack> {
+    /// Computes the quantity of this name.
+    fn computed(&mut self, name: &str) -> Result<f64, NotComputable> {
         match name {
             "frequency" => self.frequency(),
             "true_frequency" => Ok(self.judged()?.true_frequency),
@@ -347,32 +350,33 @@ impl Scope<'_, '_> {
                 let judged = self.judged()?;
                 judged
                     .max_deviation
-                    .ok_or_else(|| Lack::Refused("the formula has no motion".to_owned()))
+                    .ok_or_else(|| NotComputable::Refused("the formula has no motion".to_owned()))
             }
             "hertz_factor" => Ok(hertz::duration_factor()),
             "rest_time" => self.rest_time(true),
             "rest_time_without_barrier" => self.rest_time(false),
             "primary_rest_time" => self.primary_rest_time(),
             "primary_rest_time_locked" | "primary_rest_time_without" => {
-                let others = self.primary()?.others();
+                let others = self.primary()?.undamped_and_locked();
                 let alone = match name {
                     "primary_rest_time_locked" => others.locked,
                     _ => others.without,
                 };
-                alone
-                    .rest_time
-                    .ok_or_else(|| Lack::Refused("the main mass alone never rests".to_owned()))
+                alone.rest_time.ok_or_else(|| {
+                    NotComputable::Refused("the main mass alone never rests".to_owned())
+                })
             }
-            // The best value of so many generations ago is needed beside that of now.
+            // The best value of this many generations ago is needed beside that of now.
             "stall_generation" => {
                 let [window] = self.numbers(["window"])?;
                 Ok(window + 1.0)
             }
             "paper_deviation" => {
                 let impact = self.impact()?;
-                let column = impact.column(Reading::Paper);
-                let column = column
-                    .ok_or_else(|| Lack::Refused(impact.no_paper.clone().unwrap_or_default()))?;
+                let column = impact.column(PhaseReading::Paper);
+                let column = column.ok_or_else(|| {
+                    NotComputable::Refused(impact.no_paper.clone().unwrap_or_default())
+                })?;
                 Ok(column.deviation.total / impact.amplitude())
             }
             "energy_speed" | "energy_penetration" | "energy_duration" => {
@@ -382,8 +386,9 @@ impl Scope<'_, '_> {
             "line_slope" | "line_constant" | "line_depth" => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
                 let [barrier] = self.numbers(["xc"])?;
-                let fitted =
-                    phases.fitted.ok_or_else(|| Lack::Refused("there is no line".to_owned()))?;
+                let fitted = phases
+                    .fitted
+                    .ok_or_else(|| NotComputable::Refused("there is no line".to_owned()))?;
                 Ok(match name {
                     "line_slope" => fitted.line.slope,
                     "line_constant" => fitted.line.q(barrier),
@@ -393,7 +398,7 @@ impl Scope<'_, '_> {
             _ if name.starts_with("paper_") && is_a_name(name) => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
                 of_phases(name, &phases)
-                    .ok_or_else(|| Lack::Refused("the approach is no cosine".to_owned()))
+                    .ok_or_else(|| NotComputable::Refused("the approach is no cosine".to_owned()))
             }
             _ if name.starts_with("true_") && is_a_name(name) => {
                 let numbers = self.impact()?.truth.quantities();
@@ -404,14 +409,14 @@ impl Scope<'_, '_> {
         }
     }
 
-    fn frequency(&mut self) -> Result<f64, Lack> {
+    fn frequency(&mut self) -> Result<f64, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let square =
             frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
         match square > 0.0 {
             true => Ok(square.sqrt()),
-            false => Err(Lack::Refused(format!(
+            false => Err(NotComputable::Refused(format!(
                 "omega^2 = {} by {}, which is no frequency",
                 crate::decimal::decimal(square),
                 solution.title()
@@ -419,19 +424,19 @@ impl Scope<'_, '_> {
         }
     }
 
-    /// The formula beside the true motion there; how far it is good nobody asks.
-    fn judged(&mut self) -> Result<crate::verify::Verification, Lack> {
+    /// The formula and the true motion at the values, without the range of the formula.
+    fn judged(&mut self) -> Result<crate::verify::Verification, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
-        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, Extent::Motion)
+        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, VerificationScope::Motion)
             .map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.
-    fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, Lack> {
+    fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, NotComputable> {
         let (equation, law) = self.evaluator.swing()?;
-        // How stiff the barrier is says nothing of the way to it.
+        // The stiffness of the barrier does not matter for the motion before the impact.
         let hits = NAMES.iter().any(|(known, needs, _)| *known == name && needs.contains("gamma"));
         let needed: Vec<Symbol> = ["A", "xc", "gamma"][..if hits { 3 } else { 2 }]
             .iter()
@@ -452,7 +457,7 @@ impl Scope<'_, '_> {
             let others = equation.parameters.iter().map(|name| number(name.name()));
             function.call(&std::iter::once(x).chain(others).collect::<Vec<f64>>())
         };
-        let swing = Swing {
+        let swing = ImpactProblem {
             amplitude: number("A"),
             barrier: number("xc"),
             stiffness: if hits { number("gamma") } else { hertz::DEFAULT_STIFFNESS },
@@ -466,7 +471,7 @@ impl Scope<'_, '_> {
     }
 
     /// The impact with its true motion.
-    fn impact(&mut self) -> Result<&Impact, Lack> {
+    fn impact(&mut self) -> Result<&Impact, NotComputable> {
         if self.impact.is_none() {
             let [amplitude, barrier, stiffness] = self.numbers(["A", "xc", "gamma"])?;
             let question = self.evaluator.question;
@@ -485,16 +490,18 @@ impl Scope<'_, '_> {
             let found = crate::impact::solve(setup).map_err(|error| refused(&error))?;
             self.impact = Some(Box::new(found));
         }
-        self.impact.as_deref().ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
+        self.impact
+            .as_deref()
+            .ok_or_else(|| NotComputable::Refused("there is no impact".to_owned()))
     }
 
     /// A main mass that nothing drives.
-    fn primary(&mut self) -> Result<Primary, Lack> {
+    fn primary(&mut self) -> Result<Primary, NotComputable> {
         let [mass, stiffness, damping] = self.numbers(["mass_ratio", "kappa", "delta"])?;
         Ok(Primary { mass, stiffness, damping, force: 0.0, frequency: 0.0 })
     }
 
-    fn primary_rest_time(&mut self) -> Result<f64, Lack> {
+    fn primary_rest_time(&mut self) -> Result<f64, NotComputable> {
         let names = ["mass_ratio", "kappa", "delta", "y0", "xc", "gamma", "mu", "zeta", "alpha"];
         let [_, _, _, displacement, barrier, gamma, mu, zeta, alpha] = self.numbers(names)?;
         let model = Model { zeta, alpha, gamma, mu, right: Some(barrier), ..Model::default() };
@@ -506,7 +513,7 @@ impl Scope<'_, '_> {
         motion.rest_time().map_err(|reason| refused(&reason))
     }
 
-    fn rest_time(&mut self, with_barrier: bool) -> Result<f64, Lack> {
+    fn rest_time(&mut self, with_barrier: bool) -> Result<f64, NotComputable> {
         let barrier = match with_barrier {
             true => Some(self.numbers(["xc", "gamma", "mu", "A", "zeta", "alpha"])?),
             false => None,
@@ -549,10 +556,10 @@ fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Exp
     Expr::divide(left, &inertia).and_then(|left| left.expand()).map_err(words)
 }
 
-/// How long a motion is followed to its rest, in units of 1/omega.
+/// The longest time for which a motion is followed to its rest, in units of 1/omega.
 const LONGEST: f64 = 2000.0;
 
-/// How long a main mass is followed.
+/// The longest time for which a main mass is followed.
 const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 
 /// The numbers of an impact in the order of [`ThreePhases::quantities`].
@@ -584,11 +591,11 @@ fn arguments(equation: &Oscillator) -> Vec<Symbol> {
 }
 
 /// Doubles as values.
-fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
+fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, NotComputable> {
     let mut values = Values::default();
     for (name, number) in numbers {
-        let number =
-            from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
+        let number = from_f64(*number)
+            .ok_or_else(|| NotComputable::Refused(format!("`{name}` is no number")))?;
         values.insert(*name, Expr::number(number)).map_err(|error| refused(&error))?;
     }
     Ok(values)

@@ -6,11 +6,11 @@
 //! reproduces are found by bisection. The first such range is taken.
 
 use super::claim::Unknown;
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 
 /// The values of an unknown that a claim asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
+pub struct RequiredValue {
     /// The unknown, and where it may lie.
     pub unknown: Unknown,
     /// A value that reproduces what is printed.
@@ -23,18 +23,18 @@ pub struct Demand {
 
 /// Points of the grid inside of the range, and beyond it on either side.
 const POINTS: usize = 120;
-/// How far beyond a range of positive numbers is looked for what a claim would need, as a factor.
+/// The factor by which the search for a required value goes beyond a range of positive numbers.
 const BEYOND: f64 = 1e15;
 
-/// What is asked of one value of the unknown: whether all that is printed comes out, and by how
-/// much each number of it differs from what is printed; no number where there is none.
+/// The result for one value of the unknown: whether all printed numbers are reproduced, and the
+/// difference of each of them from the printed one; empty if there are none.
 pub(super) struct Trial {
     pub(super) reproduces: bool,
     pub(super) differences: Vec<f64>,
 }
 
 /// The values of the unknown for which a claim comes out, within its range or else beyond it.
-pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Option<Demand> {
+pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Option<RequiredValue> {
     let [low, high] = unknown.within;
     let by_ratio = low > 0.0;
     let place = |from: f64, to: f64, part: f64| match by_ratio {
@@ -51,7 +51,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     };
     if let Some((value, range)) = first(&grid(low, high), try_value) {
         let range = [range[0].max(low), range[1].min(high)];
-        return Some(Demand {
+        return Some(RequiredValue {
             unknown,
             value: nearest(value, range, try_value),
             range,
@@ -61,7 +61,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     let mut downwards = grid(below, low);
     downwards.reverse();
     let found = first(&grid(high, above), try_value).or_else(|| first(&downwards, try_value));
-    found.map(|(value, range)| Demand {
+    found.map(|(value, range)| RequiredValue {
         unknown,
         value: nearest(value, range, try_value),
         range,
@@ -119,7 +119,7 @@ fn range_about(
                 return inside;
             }
         }
-        let [last, _] = bisect(reproduces, inside, outside, Until::Halvings(60));
+        let [last, _] = bisect(reproduces, inside, outside, BisectionStop::Halvings(60));
         last
     };
     let [low, high] = neighbours;
@@ -137,7 +137,7 @@ fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64
     find_root(difference, range[0], range[1]).unwrap_or(known)
 }
 
-/// What all of these ranges have in common.
+/// The intersection of all of these ranges; `None` if it is empty.
 pub(super) fn in_common(ranges: &[[f64; 2]]) -> Option<[f64; 2]> {
     let low = ranges.iter().map(|range| range[0]).fold(f64::NEG_INFINITY, f64::max);
     let high = ranges.iter().map(|range| range[1]).fold(f64::INFINITY, f64::min);
@@ -153,7 +153,7 @@ mod tests {
         function: impl Fn(f64) -> f64,
         printed: f64,
         half: f64,
-    ) -> Option<Demand> {
+    ) -> Option<RequiredValue> {
         let unknown = Unknown { name: "u".into(), within };
         solve(unknown, &|value| Trial {
             reproduces: (function(value) - printed).abs() <= half,

@@ -3,22 +3,22 @@
 
 use std::path::PathBuf;
 
-use lindstedt::export::html::{self, Page};
+use lindstedt::export::html::{self, HtmlPage};
 use lindstedt::export::{latex, printable, text};
 use lindstedt::report::Document;
 use lindstedt::solution::Solution;
 
-use super::{Common, Failure, Format, Outcome, whole};
+use super::{Common, Failure, Format, Outcome, text_writer};
 
 /// A result, and how it is written in each format.
 pub(super) struct Answer<'a> {
-    /// What it says.
+    /// The answer.
     pub(super) document: &'a Document<'a>,
-    /// How many characters a line of its text has at most.
+    /// The largest width of a line of text, in characters.
     pub(super) width: usize,
-    /// Its picture, drawn when it is asked for; none where a kind of result has none.
+    /// Its picture, drawn when it is asked for; `None` if a kind of result has none.
     pub(super) picture: Option<Draw<'a>>,
-    /// What no document is made into: JSON, tables of comma-separated values, programs.
+    /// Writes the formats that are not made of a document: JSON, comma-separated values, programs.
     pub(super) other: &'a dyn Fn(Format) -> Result<String, Failure>,
 }
 
@@ -38,7 +38,7 @@ impl Answer<'_> {
             format => (self.other)(format)?,
         };
         Ok(Outcome {
-            result: whole(text),
+            result: text_writer(text),
             picture: pictured(common, self.picture),
             note: None,
             verdict: None,
@@ -68,7 +68,7 @@ pub(super) fn drawn(picture: Option<Draw>) -> Result<String, Failure> {
 pub(super) fn page(
     picture: Option<Draw>,
     derivation: Option<(&Solution, bool)>,
-    write: impl FnOnce(&Page) -> String,
+    write: impl FnOnce(&HtmlPage) -> String,
 ) -> String {
     let drawn = picture.map(|draw| {
         draw().map_err(|failure| match failure {
@@ -81,7 +81,7 @@ pub(super) fn page(
     });
     let words: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-    write(&Page {
+    write(&HtmlPage {
         title: &command(&what_is_asked(&words)),
         picture,
         derivation,

@@ -19,11 +19,11 @@ const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 /// Claims of a publication from a file, each computed again, with a verdict
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct AuditArguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
     #[command(flatten)]
-    own: Own,
+    own: StrictArguments,
     #[command(flatten)]
     pub common: Common,
 }
@@ -33,19 +33,19 @@ pub struct Arguments {
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct PaperArguments {
     #[command(flatten)]
-    own: Own,
+    own: StrictArguments,
     #[command(flatten)]
     pub common: Common,
 }
 
 #[derive(Args)]
-struct Own {
+struct StrictArguments {
     /// Exit with code 3 for every claim that is not reproduced, also where the file expects so
     #[arg(long)]
     strict: bool,
 }
 
-impl Work for Arguments {
+impl Work for AuditArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -59,7 +59,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &AuditArguments) -> Result<Outcome, Failure> {
     let text = read(&arguments.file)?;
     let name = match is_standard(&arguments.file) {
         true => "standard input".into(),
@@ -82,7 +82,12 @@ fn run_paper(arguments: &PaperArguments) -> Result<Outcome, Failure> {
     outcome(PAPER, "the paper", &arguments.own, &arguments.common)
 }
 
-fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outcome, Failure> {
+fn outcome(
+    claims: &str,
+    name: &str,
+    own: &StrictArguments,
+    common: &Common,
+) -> Result<Outcome, Failure> {
     if common.tolerance.is_some() {
         return Err(Failure::Usage(
             "--tolerance: each claim has its own digits, or a tolerance in the file".to_owned(),
@@ -104,5 +109,8 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
             format => no_such(format),
         },
     };
-    Ok(Outcome { verdict: Some(Verdict::of(audit.passes(own.strict))), ..answer.outcome(common)? })
+    Ok(Outcome {
+        verdict: Some(Verdict::from_passed(audit.passes(own.strict))),
+        ..answer.outcome(common)?
+    })
 }

@@ -12,7 +12,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
 /// List the classical oscillators that `derive` knows by name
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct CatalogArguments {
     /// One of them, with its source, its published law and what each method says to it; without it
     /// a line for each
     name: Option<String>,
@@ -20,7 +20,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for CatalogArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -30,7 +30,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CatalogArguments) -> Result<Outcome, Failure> {
     if arguments.common.plot.is_some() {
         return Err(Failure::Usage("--plot: the catalogue has no picture".to_owned()));
     }
@@ -55,5 +55,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json::catalog(entries))?,
         format => no_such(format)?,
     };
-    Ok(Outcome { result: whole(text), picture: None, note: None, verdict: None, partial: false })
+    Ok(Outcome {
+        result: text_writer(text),
+        picture: None,
+        note: None,
+        verdict: None,
+        partial: false,
+    })
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use lindstedt::certificate::{self, Beyond, Certified, DampedCertificate, NotCertified};
+use lindstedt::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
 use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use lindstedt::export::printable_in_line;
@@ -17,7 +17,7 @@ use lindstedt::{
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
-use super::derive::{self, Question, Solved};
+use super::derive::{self, EquationArguments, Solved};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_most, tolerance};
@@ -26,9 +26,9 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_mos
 #[derive(Args)]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 #[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads")))]
-pub struct Arguments {
+pub struct CertifyArguments {
     #[command(flatten)]
-    pub question: Question,
+    pub question: EquationArguments,
     /// Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is proved to
     /// be within the tolerance, for every amplitude
     #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
@@ -54,7 +54,7 @@ pub struct CheckArguments {
 /// The time limit of `check` in seconds where none is given.
 pub const LONGEST_CHECK: f64 = 60.0;
 
-/// A certificate of the most harmonics has so many bytes.
+/// A certificate of the most harmonics has this many bytes.
 const LARGEST_CERTIFICATE: usize = 16 << 20;
 
 /// Two positive numbers, the smaller one first.
@@ -67,7 +67,7 @@ fn range(text: &str) -> Result<(Rational, Rational), String> {
     })
 }
 
-impl Work for Arguments {
+impl Work for CertifyArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -81,7 +81,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     if arguments.range.is_some() && arguments.common.format() == Format::Json {
         return Err(Failure::Usage(
@@ -99,7 +99,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(_) => steady_formula(&oscillator, &values).unwrap_or(solution),
         None => solution,
     };
-    derive::needed(&solution, &values)?;
+    derive::check_values(&solution, &values)?;
     let refused = |error: &NotCertified| Failure::refused(error, error.help());
     let tolerance = tolerance(&arguments.common);
     let question = (&solution, &values);
@@ -124,8 +124,10 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         false => certificate::certify(&oscillator, &solution, &values),
     };
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
-    let supervision =
-        Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&PROGRESS) };
+    let supervision = Supervision {
+        interrupt: Interrupt::from_flag(&STOP),
+        progress: Progress::from_counter(&PROGRESS),
+    };
     let validity = arguments.range.as_ref().map(|(low, high)| {
         with_progress("of the range", || {
             certificate::validity(
@@ -147,11 +149,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         tolerance,
     };
     let outcome = printed(&report, &arguments.common)?;
-    let partial = validity.is_some_and(|validity| validity.beyond == Beyond::Stopped);
+    let partial = validity.is_some_and(|validity| validity.beyond == RangeEnd::Stopped);
     Ok(Outcome { partial, ..outcome })
 }
 
-/// The formula of the steady motion under a drive; `None` where there is none.
+/// The formula of the steady motion under a drive; `None` if there is none.
 fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> {
     let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
     let options = with_resonance_at(oscillator, &options, values).ok()?;
@@ -160,7 +162,7 @@ fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> 
 
 /// The proof of a motion that has an amplitude of its own.
 fn without_amplitude(
-    arguments: &Arguments,
+    arguments: &CertifyArguments,
     (solution, values): (&Solution, &Values),
     kind: &str,
     proved: impl FnOnce() -> Result<(DampedCertificate, Certified), NotCertified>,
@@ -205,7 +207,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     };
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
-    // Which of the two kinds it is; the rest is read when that is known.
+    // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let tolerance = tolerance(&arguments.common);
     let (motion, damped);

@@ -17,7 +17,7 @@ use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance,
 
 /// Every method of the field on one equation, in one table, judged against the true motion
 #[derive(Args)]
-pub struct Arguments {
+pub struct CompareArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
@@ -34,7 +34,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for CompareArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -48,9 +48,9 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Compare)?;
+    let formula = formula(&problem, ReadingCommand::Compare)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
@@ -61,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if small.is_some() {
         oscillator
             .small_parameter(small)
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
@@ -93,7 +93,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let notes = notes.into_iter().chain(of_letters.into_iter().flatten());
     let notes: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
     Ok(Outcome {
-        verdict: Some(Verdict::of(passed)),
+        verdict: Some(Verdict::from_passed(passed)),
         note: (!notes.is_empty()).then(|| notes.join("\n")),
         ..answer.outcome(&arguments.common)?
     })

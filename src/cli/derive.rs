@@ -9,10 +9,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
-use lindstedt::expr::{Expr, Letters, parse_expression};
-use lindstedt::method::table::{Choice, Entry, that_take};
+use lindstedt::expr::{Expr, ResultSymbols, parse_expression};
+use lindstedt::method::table::{Choice, MethodEntry, that_take};
 use lindstedt::method::{self, Options, Reason, Refusal};
-use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
+use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, ReadingCommand};
 use lindstedt::report;
 use lindstedt::solution::{
     AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution,
@@ -28,7 +28,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, 
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]
-pub struct Question {
+pub struct EquationArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
@@ -79,9 +79,9 @@ pub struct Question {
 
 /// Derive the frequency law and the motion of an oscillator, to an order
 #[derive(Args)]
-pub struct Arguments {
+pub struct DeriveArguments {
     #[command(flatten)]
-    pub question: Question,
+    pub question: EquationArguments,
     /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a
     /// program as a comment
     #[arg(long)]
@@ -111,7 +111,7 @@ fn ratio(text: &str) -> Result<(u32, u32), String> {
     Ok((above / common, below / common))
 }
 
-/// What stands after `--order`.
+/// Parses the argument of `--order`.
 fn order(text: &str) -> Result<Order, String> {
     let number = |text: &str| {
         let text = text.trim();
@@ -124,7 +124,7 @@ fn order(text: &str) -> Result<Order, String> {
     match *numbers.as_slice() {
         [order] => Ok(Order::Power(order)),
         _ => {
-            let degrees = Degrees::of(&numbers).map(Order::Degrees);
+            let degrees = Degrees::from_list(&numbers).map(Order::Degrees);
             degrees.ok_or_else(|| {
                 "expected a whole number, or the degrees of an approximant".to_owned()
             })
@@ -139,14 +139,14 @@ pub(super) struct Solved {
     pub values: Option<Values>,
     pub solution: Solution,
     /// The letters of the answer.
-    pub letters: Letters,
+    pub letters: ResultSymbols,
 }
 
 /// The answer to a question, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
-pub(super) fn solved(arguments: &Question) -> Result<Solved, Failure> {
+pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Derive)?;
+    let formula = formula(&problem, ReadingCommand::Derive)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
@@ -155,7 +155,7 @@ pub(super) fn solved(arguments: &Question) -> Result<Solved, Failure> {
     if options.small.is_some() {
         oscillator
             .small_parameter(options.small.as_deref())
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let coordinate = oscillator.coordinate;
     let Numbered { oscillator, values, mut notes } =
@@ -184,7 +184,7 @@ pub(super) fn solved(arguments: &Question) -> Result<Solved, Failure> {
 }
 
 /// Refuses values that the formula does not have, and asks for those that it needs.
-pub(super) fn needed(solution: &Solution, values: &Values) -> Result<(), Failure> {
+pub(super) fn check_values(solution: &Solution, values: &Values) -> Result<(), Failure> {
     verify::checked(solution, values).map_err(|error| unjudged(&error))
 }
 
@@ -213,7 +213,10 @@ fn unjudged(error: &VerificationError) -> Failure {
 }
 
 /// Refuses what asks for the motion where it is left out.
-pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Result<(), Failure> {
+pub(super) fn with_motion(
+    question: &EquationArguments,
+    of_motion: &[(&str, bool)],
+) -> Result<(), Failure> {
     match of_motion.iter().find(|(_, given)| question.omega_only && *given) {
         Some((what, _)) => Err(Failure::Usage(format!(
             "{what} asks for the motion, which --omega-only leaves out"
@@ -222,7 +225,7 @@ pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Re
     }
 }
 
-impl Work for Arguments {
+impl Work for DeriveArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -236,7 +239,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
@@ -291,7 +294,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Code(language) => {
             let program =
                 code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
-            let program = program.map_err(|reason| Failure::advised(&reason, reason.help()))?;
+            let program = program.map_err(|reason| Failure::with_advice(&reason, reason.help()))?;
             let space = if derivation.is_empty() { "" } else { "\n" };
             language.comment(&(derivation + space)) + &program
         }
@@ -301,7 +304,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         _ => None,
     });
     Ok(Outcome {
-        result: whole(text),
+        result: text_writer(text),
         picture: pictured(&arguments.common, picture),
         note: asked.map(|asked| {
             format!(
@@ -314,7 +317,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// Does the work on so many threads, or on all.
+/// Does the work on this many threads, or on all.
 fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> T {
     let pool = threads
         .and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count.into()).build().ok());
@@ -324,8 +327,8 @@ fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) ->
     }
 }
 
-/// How long to wait for what there is, once the time is up: an expansion that has begun has orders.
-pub(super) fn patience() -> Duration {
+/// The grace period after a timeout: an expansion that has begun has orders to show.
+pub(super) fn grace_period() -> Duration {
     match PROGRESS.read() {
         (_, 0) => Duration::ZERO,
         _ => Duration::from_secs(60),
@@ -353,7 +356,7 @@ fn solve_at(
             let (known, rest) = values.split(&names);
             let oscillator = oscillator
                 .with_values(&known)
-                .map_err(|error| Failure::advised(&error, error.help()))?;
+                .map_err(|error| Failure::with_advice(&error, error.help()))?;
             let solution = method::solve(&oscillator, options)
                 .map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
@@ -364,20 +367,26 @@ fn solve_at(
 
 /// A refusal, with the term that it names shown in the equation.
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
-    let place = refusal.term().and_then(|term| oscillator.typed.place(term));
+    let place = refusal.term().and_then(|term| oscillator.typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
-    Failure::advised(&format!("{refusal}{shown}"), refusal.help())
+    Failure::with_advice(&format!("{refusal}{shown}"), refusal.help())
 }
 
-/// What a problem says to this command.
-pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<Formula<'_>, Failure> {
+/// Reads the equation and the choices of a problem for this command.
+pub(super) fn formula(
+    problem: &Problem,
+    reader: ReadingCommand,
+) -> Result<FormulaProblem<'_>, Failure> {
     problem.formula(reader).map_err(|error| Failure::refused(&error, error.help()))
 }
 
 /// The oscillator of an equation, about the equilibrium asked for.
-pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscillator, Failure> {
+pub(super) fn oscillator(
+    formula: &FormulaProblem,
+    about: Option<&str>,
+) -> Result<Oscillator, Failure> {
     let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     let Some(about) = about.or(formula.about) else {
         return Ok(oscillator);
     };
@@ -399,13 +408,13 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
 /// The oscillator with the names of its equation that are those of something in an answer kept
 /// apart.
 pub(super) fn named(oscillator: &Oscillator) -> Result<Oscillator, Failure> {
-    oscillator.with_own_names_apart().map_err(|error| Failure::advised(&error, error.help()))
+    oscillator.with_own_names_apart().map_err(|error| Failure::with_advice(&error, error.help()))
 }
 
 /// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one
 /// that is judged has a frequency.
 pub(super) fn notes_on_letters(
-    letters: &Letters,
+    letters: &ResultSymbols,
     coordinate: Symbol,
     solution: &Solution,
     judged: bool,
@@ -423,7 +432,7 @@ pub(super) fn notes_on_letters(
             judged || solution.slow().is_none() && solution.in_time().is_none()
         }
     };
-    let unusual = letters.unusual().filter(|(usual, _)| stands(*usual));
+    let unusual = letters.renamed().filter(|(usual, _)| stands(*usual));
     let note = |(usual, written): (Symbol, Symbol)| Note::OtherLetter {
         usual,
         written,
@@ -470,13 +479,13 @@ fn as_meant(values: &Values, oscillator: &Oscillator) -> Result<Values, Failure>
     let mut meant = Values::default();
     for (name, value) in values.iter() {
         meant
-            .insert(oscillator.meant(name), value.clone())
+            .insert(oscillator.resolve_symbol(name), value.clone())
             .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
     Ok(meant)
 }
 
-/// Where the equilibrium in symbols is not that of the numbers given, the equation with those
+/// If the equilibrium in symbols is not that at the given numbers, returns the equation with those
 /// numbers in it.
 fn with_known_equilibrium(
     oscillator: Oscillator,
@@ -487,7 +496,7 @@ fn with_known_equilibrium(
     };
     let (known, rest) = given.split(&oscillator.parameters);
     let numerical = method::with_numbers_where_needed(&oscillator, &known)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     Ok(match numerical {
         Some(numerical) => (numerical, Some(rest)),
         None => (oscillator, Some(given)),
@@ -495,8 +504,8 @@ fn with_known_equilibrium(
 }
 
 fn options(
-    arguments: &Question,
-    formula: &Formula,
+    arguments: &EquationArguments,
+    formula: &FormulaProblem,
     oscillator: &Oscillator,
 ) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
@@ -528,7 +537,7 @@ fn options(
             chosen.name()
         ))
     };
-    let entry = Entry::of(chosen);
+    let entry = MethodEntry::for_method(chosen);
     if arguments.taylor.is_some() && !entry.takes(Choice::Taylor) {
         return without("--taylor", &that_take(Choice::Taylor));
     }
@@ -592,8 +601,8 @@ fn options(
         resonance: arguments.resonance,
         frequency_alone: arguments.omega_only,
         supervision: Supervision {
-            interrupt: Interrupt::by(&STOP),
-            progress: Progress::by(&PROGRESS),
+            interrupt: Interrupt::from_flag(&STOP),
+            progress: Progress::from_counter(&PROGRESS),
         },
     })
 }
@@ -656,7 +665,7 @@ fn separate_values(text: &str) -> Vec<&str> {
     parts.map(|part| part.trim_matches([',', ';', ' '])).collect()
 }
 
-/// The values of the command line, which win over those of the file; `None` where there are none at
+/// The values of the command line, which win over those of the file; `None` if there are none at
 /// all.
 pub(super) fn exact_values(
     at: &[String],

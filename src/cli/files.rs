@@ -1,4 +1,4 @@
-//! Where results go: checked before the work begins, replaced as a whole when it is done.
+//! The output files: checked before the work begins, replaced as a whole when it is done.
 //!
 //! A file is written under another name beside its place and then renamed, so that a full disk or
 //! an interrupt leaves the old one. `-` is standard output.
@@ -16,8 +16,8 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// How many characters a line of the result should have at most: the width of the terminal that
-/// shows it, or what `COLUMNS` says; 120 in a file or a pipe.
+/// The largest number of characters in a line of the result: the width of the terminal that shows
+/// it, or the value of `COLUMNS`; 120 in a file or a pipe.
 pub(super) fn width(output: Option<&Path>) -> usize {
     const OF_FILES: usize = 120;
     const NARROWEST: usize = 40;
@@ -68,7 +68,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
         .chain(common.plot.as_deref().map(|picture| ("--plot", picture)))
         .collect();
     if let [(_, text), (_, picture)] = named[..]
-        && same(text, picture)
+        && is_same_file(text, picture)
     {
         return Err(Failure::Usage(match is_standard(text) {
             true => {
@@ -85,7 +85,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
         if is_standard(path) {
             continue;
         }
-        if input.is_some_and(|input| !is_standard(input) && same(input, path)) {
+        if input.is_some_and(|input| !is_standard(input) && is_same_file(input, path)) {
             return Err(Failure::Usage(format!(
                 "{option} {} is the file that is read: it would be overwritten; give another name",
                 path.display()
@@ -99,7 +99,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
 /// Writes a result to its place.
 ///
 /// # Errors
-/// What the operating system says, with the name of the place. A closed pipe is none.
+/// The error of the operating system, with the name of the file. A closed pipe is not an error.
 pub(super) fn write(path: Option<&Path>, result: Writer) -> Result<(), String> {
     match path.filter(|path| !is_standard(path)) {
         Some(path) => replace(path, result),
@@ -131,7 +131,7 @@ fn folder(path: &Path) -> &Path {
 }
 
 /// Whether two paths are one place.
-pub(super) fn same(one: &Path, other: &Path) -> bool {
+pub(super) fn is_same_file(one: &Path, other: &Path) -> bool {
     one == other || resolved(one).is_some_and(|place| Some(place) == resolved(other))
 }
 
@@ -140,7 +140,7 @@ fn is_special(path: &Path) -> bool {
     path.metadata().is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// The reason without the name of the file beside it, which nobody asked for.
+/// The reason without the name of the temporary file.
 fn cannot(path: &Path, error: &std::io::Error) -> String {
     format!("cannot write {}: {}", path.display(), error.kind())
 }
@@ -163,7 +163,7 @@ fn writable(path: &Path) -> Result<(), String> {
     if is_special(path) {
         return Ok(());
     }
-    beside(path).map_err(refused).map(drop)
+    new_temporary(path).map_err(refused).map(drop)
 }
 
 fn replace(path: &Path, result: Writer) -> Result<(), String> {
@@ -172,7 +172,7 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
         let mut device = OpenOptions::new().write(true).open(path).map_err(refused)?;
         return result(&mut device).map_err(refused);
     }
-    let file = beside(path).map_err(refused)?;
+    let file = new_temporary(path).map_err(refused)?;
     let mut output = BufWriter::new(file.as_file());
     result(&mut output).and_then(|()| output.flush()).map_err(refused)?;
     drop(output);
@@ -183,7 +183,7 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
 
 /// An empty file beside this place, with the permissions that the file there has, or that a new one
 /// gets. It is gone when it is dropped.
-fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
+fn new_temporary(path: &Path) -> std::io::Result<NamedTempFile> {
     let place = resolved(path).unwrap_or_else(|| path.to_owned());
     let mut builder = Builder::new();
     builder.prefix(".lindstedt-").suffix(".part");

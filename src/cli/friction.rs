@@ -12,7 +12,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text};
 /// rest
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct FrictionArguments {
     /// The friction alpha, between 0 and 1; 0.05 without it, for the paper prints none
     #[arg(long, value_name = "ALPHA", allow_hyphen_values = true)]
     alpha: Option<f64>,
@@ -26,7 +26,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for FrictionArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -36,7 +36,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &FrictionArguments) -> Result<Outcome, Failure> {
     if arguments.common.tolerance.is_some() {
         return Err(Failure::Usage(
             "--tolerance: a study of friction compares two laws and has no verdict".to_owned(),

@@ -21,7 +21,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by
 /// Runge-Kutta
 #[derive(Args, Default)]
-pub struct Arguments {
+pub struct ImpactArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input;
     /// without it the paper's swing
     pub problem: Option<String>,
@@ -61,7 +61,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for ImpactArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -75,8 +75,8 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let problem = asked(arguments)?;
+fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
+    let problem = problem_of(arguments)?;
     let tolerance = tolerance(&arguments.common);
     let setup = Setup::try_from(&problem)?;
     let setup = Setup { tolerance, ..setup };
@@ -97,10 +97,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         },
     };
     let passes = impact.verdicts(tolerance).contains(&Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(&arguments.common)? })
+    Ok(Outcome {
+        verdict: Some(Verdict::from_passed(passes)),
+        ..answer.outcome(&arguments.common)?
+    })
 }
 
-/// What is proved of the impact, and with it of its closed forms.
+/// Encloses the numbers of an impact, and with them the errors of its closed forms.
 fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let foreign = [
         ("an equation of its own", setup.swing.is_some()),
@@ -150,7 +153,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         other: &no_such,
     };
     let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
+    Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
 }
 
 /// A double as the fraction that its decimals say.
@@ -193,11 +196,11 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         },
     };
     let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
+    Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
 }
 
 /// The problem of the file with what the command line says, which wins.
-fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
+fn problem_of(arguments: &ImpactArguments) -> Result<Problem, Failure> {
     let mut asked = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,
@@ -228,14 +231,14 @@ fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::{Reading, SampledMotion};
+    use lindstedt::impact::{PhaseReading, SampledMotion};
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);
     let closed_forms = impact.columns.iter().map(|column| match column.reading {
-        Reading::Paper => ("closed form, paper", CurveStyle::FORMULA),
-        Reading::Energy => ("closed form, energy", CurveStyle::SECOND_FORMULA),
-        Reading::Derived => ("closed form, derived", CurveStyle::THIRD_FORMULA),
+        PhaseReading::Paper => ("closed form, paper", CurveStyle::FORMULA),
+        PhaseReading::Energy => ("closed form, energy", CurveStyle::SECOND_FORMULA),
+        PhaseReading::Derived => ("closed form, derived", CurveStyle::THIRD_FORMULA),
     });
     let styles = std::iter::once(("Runge-Kutta", CurveStyle::RUNGE_KUTTA)).chain(closed_forms);
     let motion = |(path, (label, style))| {

@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::audit::paper;
 use lindstedt::export::json;
 use lindstedt::mechanics::study;
-use lindstedt::problem::{Problem, Reader};
+use lindstedt::problem::{Problem, ReadingCommand};
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
@@ -19,7 +19,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text};
 /// and modes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct LagrangeArguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its
     /// equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for LagrangeArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -44,7 +44,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &LagrangeArguments) -> Result<Outcome, Failure> {
     let common = &arguments.common;
     if common.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -60,7 +60,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
-            problem.check_keys(Reader::Lagrange)?;
+            problem.check_keys(ReadingCommand::Lagrange)?;
             let question =
                 problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
             (question, problem)

@@ -17,7 +17,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text};
 /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct MaterialsArguments {
     /// A TOML file, or - for standard input; without it the paper's design and the materials of its
     /// Table 2
     pub file: Option<PathBuf>,
@@ -32,7 +32,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for MaterialsArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -46,7 +46,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &MaterialsArguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
         Some(path) => from_file(path)?,
@@ -61,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut question = problem
         .materials(arguments.only_own)
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    question.settings = Settings { interrupt: Interrupt::by(&STOP), ..question.settings };
+    question.settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..question.settings };
     if arguments.chain {
         question.integrator = Integrator::Chain;
     }

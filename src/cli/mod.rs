@@ -157,7 +157,7 @@ trait Work: Send + RefUnwindSafe {
 impl Command {
     /// The command with these arguments. It writes pictures and tables and has no parts to wait
     /// for, unless its row says otherwise.
-    const fn of<A: Args + Work + 'static>(name: &'static str) -> Self {
+    const fn new<A: Args + Work + 'static>(name: &'static str) -> Self {
         Self {
             name,
             formats: Formats::PicturesAndTables,
@@ -210,7 +210,7 @@ impl Command {
     }
 
     /// Refuses a format that the command does not have, before any work is done for it.
-    fn takes(&self, format: Format) -> Result<(), Failure> {
+    fn check_format(&self, format: Format) -> Result<(), Failure> {
         let is_taken = matches!(self.formats, Formats::One)
             || Format::OF_ALL.contains(&format)
             || self.formats.listed().contains(&format);
@@ -219,7 +219,7 @@ impl Command {
 }
 
 /// A minute: the patience with work that is stopped and hands back a part.
-fn a_minute() -> Duration {
+fn one_minute() -> Duration {
     Duration::from_secs(60)
 }
 
@@ -232,7 +232,7 @@ enum Formats {
     Pictures,
     /// Pictures and tables of comma-separated values.
     PicturesAndTables,
-    /// No other formats.
+    /// No formats beside those of every result.
     Words,
     /// A single format, whatever the file is called: there is no `--format`.
     One,
@@ -288,7 +288,7 @@ fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
     tolerance.hide(true)
 }
 
-/// What a result is written in.
+/// The format of a result.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Format {
     #[default]
@@ -302,7 +302,7 @@ enum Format {
 }
 
 impl Format {
-    /// Those of every command that has a result.
+    /// The formats of every command that has a result.
     const OF_ALL: [Self; 4] = [Self::Text, Self::Latex, Self::Json, Self::Html];
 
     /// All of them.
@@ -338,7 +338,7 @@ impl Format {
         Self::all().find(is_ending)
     }
 
-    /// How a file is made whose name ends so, of a kind that is not written here.
+    /// Advice for a file with this ending, of a kind that is not written here.
     fn instead_of(ending: &str) -> Option<&'static str> {
         Some(match ending.to_ascii_lowercase().as_str() {
             "pdf" => "write .html and print it, or .tex",
@@ -453,7 +453,7 @@ impl Failure {
     }
 
     /// A refusal with the advice of the library.
-    fn advised(error: &impl Display, advice: Option<Advice>) -> Self {
+    fn with_advice(error: &impl Display, advice: Option<Advice>) -> Self {
         Self::refused(error, advice.as_ref().map(in_flags))
     }
 }
@@ -484,15 +484,16 @@ fn values_of(names: &[Symbol]) -> String {
 type Writer = Box<dyn FnOnce(&mut dyn std::io::Write) -> std::io::Result<()> + Send>;
 
 /// The writer of a text.
-fn whole(text: String) -> Writer {
+fn text_writer(text: String) -> Writer {
     Box::new(move |to| to.write_all(text.as_bytes()))
 }
 
-/// What a command hands back.
+/// The result of a command.
 struct Outcome {
     /// The result.
     result: Writer,
-    /// Where a picture goes, and the picture or why there is none: the result stands without it.
+    /// The path of a picture, and the picture or the reason why there is none: the result is valid
+    /// without it.
     picture: Option<(PathBuf, Result<String, Failure>)>,
     /// Said on standard error.
     note: Option<String>,
@@ -530,7 +531,7 @@ fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
 
 /// The program.
 pub fn run() -> ExitCode {
-    let (command, work) = match asked() {
+    let (command, work) = match parse_command() {
         Ok(asked) => asked,
         Err(error) => {
             // `--help` and `--version` are results and succeed; a closed pipe is no failure of
@@ -544,7 +545,7 @@ pub fn run() -> ExitCode {
     let judged = common.tolerance.is_some() || command.is_judged;
     progress::QUIET.store(common.quiet, Ordering::Relaxed);
     match command
-        .takes(common.format())
+        .check_format(common.format())
         .map_err(|failure| by_ending(failure, &common))
         .and_then(|()| files::check(&common, work.input()))
     {
@@ -575,7 +576,7 @@ fn by_ending(failure: Failure, common: &Common) -> Failure {
     }
 }
 
-/// What came of the work; nothing where it broke.
+/// The result of the work; `None` if it panicked.
 type Worked = Option<Result<Outcome, Failure>>;
 
 /// Exit code and message of work that ends without a result.
@@ -644,7 +645,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// The exit code of a program ended by an interrupt, by the convention of shells.
 const INTERRUPTED: u8 = 130;
 
-/// What reaches the main thread.
+/// A message to the main thread.
 enum Message {
     /// The work is done; nothing where it broke.
     Done(Worked),
@@ -672,7 +673,7 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     let mut no_picture = None;
     match outcome.picture {
         Some((path, Ok(picture))) => {
-            if let Err(error) = files::write(Some(&path), whole(picture)) {
+            if let Err(error) = files::write(Some(&path), text_writer(picture)) {
                 return fail(1, &error);
             }
         }

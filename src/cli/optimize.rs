@@ -12,13 +12,13 @@ use lindstedt::export::json::optimization::{read_record, record_head, record_lin
 use lindstedt::export::{json, optimization};
 use lindstedt::genetic::SearchError;
 use lindstedt::optimize::{
-    OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on,
+    OptimizationProblem, OptimizeError, SearchRun, Study, StudyObserver, optimize, optimize_on,
 };
 use lindstedt::problem::Problem;
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
-use super::files::{is_standard, same, width};
+use super::files::{is_same_file, is_standard, width};
 use super::problem::from_file;
 use super::progress;
 use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read_at_most};
@@ -27,7 +27,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read
 /// of several wishes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct OptimizeArguments {
     /// A TOML file, or - for standard input; without it the paper's study: its Table 4 searched for
     /// the least rest time
     pub file: Option<PathBuf>,
@@ -43,7 +43,7 @@ pub struct Arguments {
     /// Stop after so many evaluations, shared evenly by the runs, or after so many seconds (30s)
     /// with the runs that are done
     #[arg(long, value_name = "N|SECONDSs", value_parser = budget)]
-    budget: Option<Budget>,
+    budget: Option<SearchBudget>,
     /// Write every run to this file as soon as it is done, a line of JSON each
     #[arg(long, value_name = "FILE.jsonl")]
     record: Option<PathBuf>,
@@ -55,28 +55,28 @@ pub struct Arguments {
     pub common: Common,
 }
 
-/// How much a search may take.
+/// The budget of a search.
 #[derive(Clone, Copy, PartialEq)]
-enum Budget {
+enum SearchBudget {
     Evaluations(usize),
     Time(Duration),
 }
 
-fn budget(text: &str) -> Result<Budget, String> {
+fn budget(text: &str) -> Result<SearchBudget, String> {
     let seconds = |text: &str| {
         let seconds = text.parse::<f64>().ok().filter(|seconds| *seconds > 0.0)?;
         Duration::try_from_secs_f64(seconds).ok()
     };
     match (text.strip_suffix('s'), text.parse::<usize>()) {
-        (None, Ok(evaluations)) if evaluations > 0 => Ok(Budget::Evaluations(evaluations)),
+        (None, Ok(evaluations)) if evaluations > 0 => Ok(SearchBudget::Evaluations(evaluations)),
         (Some(text), _) if seconds(text).is_some() => {
-            Ok(Budget::Time(seconds(text).unwrap_or_default()))
+            Ok(SearchBudget::Time(seconds(text).unwrap_or_default()))
         }
         _ => Err("expected a number of evaluations (50000), or of seconds (30s)".to_owned()),
     }
 }
 
-impl Work for Arguments {
+impl Work for OptimizeArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -90,7 +90,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &OptimizeArguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
         Some(path) => from_file(path)?,
@@ -105,11 +105,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         problem.optimize().map_err(|error| Failure::refused(&error, error.help()))?;
     question.seed = arguments.seed.unwrap_or(question.seed);
     question.runs = arguments.runs.map_or(question.runs, |runs| runs as usize);
-    if let Some(Budget::Evaluations(evaluations)) = arguments.budget {
+    if let Some(SearchBudget::Evaluations(evaluations)) = arguments.budget {
         question.genetic.budget = Some(evaluations / question.runs.max(1));
     }
     let deadline = match arguments.budget {
-        Some(Budget::Time(time)) => Instant::now().checked_add(time),
+        Some(SearchBudget::Time(time)) => Instant::now().checked_add(time),
         _ => None,
     };
     question.check().map_err(refused)?;
@@ -125,7 +125,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let note = match (record.trouble(), study.complete) {
+    let note = match (record.warning(), study.complete) {
         (Some(trouble), _) => Some(format!("warning: the record is not complete: {trouble}")),
         (None, false) => Some(format!(
             "warning: stopped early, what there is is kept: {} of {} runs{}",
@@ -142,8 +142,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn search(
-    arguments: &Arguments,
-    question: Question,
+    arguments: &OptimizeArguments,
+    question: OptimizationProblem,
     record: &Record,
     deadline: Option<Instant>,
 ) -> Result<Study, Failure> {
@@ -151,7 +151,7 @@ fn search(
         question.most_work(),
         "{bar:40} {percent} % of the generations, {eta} left at most",
     );
-    let watch = Watch {
+    let watch = StudyObserver {
         stop: &|| {
             STOP.load(Ordering::Relaxed)
                 || deadline.is_some_and(|deadline| Instant::now() >= deadline)
@@ -198,7 +198,10 @@ struct Record {
 const LARGEST_RECORD: usize = 1 << 30;
 
 impl Record {
-    fn open(arguments: &Arguments, question: &Question) -> Result<Self, Failure> {
+    fn open(
+        arguments: &OptimizeArguments,
+        question: &OptimizationProblem,
+    ) -> Result<Self, Failure> {
         let none =
             Self { path: None, known: vec![], file: Mutex::new(None), trouble: Mutex::new(None) };
         let named = [("--record", &arguments.record), ("--resume", &arguments.resume)];
@@ -210,7 +213,7 @@ impl Record {
                 )));
             }
             let others = [&arguments.common.output, &arguments.common.plot, &arguments.file];
-            if others.into_iter().flatten().any(|other| same(other, path)) {
+            if others.into_iter().flatten().any(|other| is_same_file(other, path)) {
                 return Err(Failure::Usage(format!(
                     "{option} {} is read or written as something else: give another name",
                     path.display()
@@ -226,7 +229,7 @@ impl Record {
         }
         let (path, goes_on) = match (&arguments.record, &arguments.resume) {
             (None, None) => return Ok(none),
-            (Some(record), Some(resume)) if same(record, resume) => (resume, true),
+            (Some(record), Some(resume)) if is_same_file(record, resume) => (resume, true),
             (Some(record), _) => (record, false),
             (None, Some(resume)) => (resume, true),
         };
@@ -284,7 +287,7 @@ impl Record {
         }
     }
 
-    fn trouble(&self) -> Option<String> {
+    fn warning(&self) -> Option<String> {
         self.trouble.lock().ok()?.clone()
     }
 }

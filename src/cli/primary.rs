@@ -13,21 +13,21 @@ use lindstedt::verify::Verdict;
 use super::answer::{Answer, Draw, no_such};
 use super::files::width;
 use super::progress::{self, MOTIONS};
-use super::simulate::{Arguments, check_format, check_samples, check_varied};
+use super::simulate::{SimulateArguments, check_format, check_samples, check_varied};
 use super::{Failure, Format, Outcome, STOP, json_text};
 
-pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     check_format(&asked.common)?;
     match asked.sweep.as_slice() {
-        [] => one(problem, asked),
-        axes => many(problem, asked, axes),
+        [] => run_single(problem, asked),
+        axes => run_sweep(problem, asked, axes),
     }
 }
 
-fn one(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
+    let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
     check_samples(&asked.sample, settings.duration, "`duration` in [run]")?;
     let motion = simulate_primary(file.case, &settings)?;
     let report = PrimaryReport { motion: &motion, units: &file.units, samples: &asked.sample };
@@ -49,13 +49,17 @@ fn one(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
             }
             doubt => doubt.map(|doubt| format!("warning: {doubt}")),
         },
-        verdict: Some(Verdict::of(kept && motion.is_complete())),
+        verdict: Some(Verdict::from_passed(kept && motion.is_complete())),
         partial: !report.is_complete(),
         ..answer.outcome(common)?
     })
 }
 
-fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, Failure> {
+fn run_sweep(
+    problem: &Problem,
+    asked: &SimulateArguments,
+    axes: &[Axis],
+) -> Result<Outcome, Failure> {
     let common = &asked.common;
     check_sweep(asked)?;
     let parameters: Vec<PrimaryParameter> = axes
@@ -75,7 +79,7 @@ fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, 
             parameters.iter().copied().zip(grid_values(axes, number)).collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-        let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
+        let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
         motions.push((file.case, settings));
         units.push(file.units);
     }
@@ -99,14 +103,14 @@ fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, 
     Ok(Outcome {
         note: (broken > 0)
             .then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
-        verdict: Some(Verdict::of(broken == 0)),
+        verdict: Some(Verdict::from_passed(broken == 0)),
         partial: broken > 0,
         ..answer.outcome(common)?
     })
 }
 
 /// Refuses what a sweep leaves no place for.
-fn check_sweep(asked: &Arguments) -> Result<(), Failure> {
+fn check_sweep(asked: &SimulateArguments) -> Result<(), Failure> {
     if !asked.sample.is_empty() {
         return Err(Failure::Usage(
             "a sweep reports one line a motion: leave out --sample".to_owned(),

@@ -55,7 +55,7 @@ pub(super) fn path(text: &str) -> Option<&Path> {
     (is_standard(path) || text.ends_with(".toml") || path.is_file()).then_some(path)
 }
 
-/// What a file says, or standard input for `-`, which may also hold a bare equation or a name.
+/// Reads a problem file, or standard input for `-`, which may also hold a bare equation or a name.
 ///
 /// # Errors
 /// See [`problem`].

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Counter;
 use lindstedt::export::printable;
 
-/// How far the work has come.
+/// The progress of the work.
 pub(super) static PROGRESS: Counter = Counter::new();
 
 /// Set by `--quiet`.

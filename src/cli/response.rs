@@ -18,7 +18,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tole
 /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
 /// period doublings, backbone
 #[derive(Args)]
-pub struct Arguments {
+pub struct ResponseArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
@@ -43,7 +43,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for ResponseArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -57,11 +57,11 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Response)?;
+    let formula = formula(&problem, ReadingCommand::Response)?;
     let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     let method = method(arguments.method.as_deref().or(formula.method))?;
     let order = match (arguments.order, formula.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
@@ -79,7 +79,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     };
     let (parameter, range) = range(vary)?;
-    let mut question = Question {
+    let mut question = ResponseRequest {
         oscillator,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
@@ -88,8 +88,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         harmonics: order.filter(|_| method == Method::HarmonicBalance).map(|count| count as usize),
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
-        interrupt: Interrupt::by(&STOP),
-        progress: Progress::by(&PROGRESS),
+        interrupt: Interrupt::from_flag(&STOP),
+        progress: Progress::from_counter(&PROGRESS),
     };
     let slow = match method {
         Method::HarmonicBalance => None,
@@ -100,12 +100,12 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         slow.as_ref().filter(|slow| slow.coordinate() != question.oscillator.coordinate)
     {
         question.oscillator = Oscillator::from_equation(&slow.equation)
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let mut response = with_progress("of this search, or of its points", || respond(&question))
         .map_err(refused)?;
     if let Some(solution) = slow {
-        response = response.beside(solution);
+        response = response.with_slow_equations(solution);
     }
     let answer = Answer {
         document: &report::response(&response),
@@ -130,7 +130,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// How the steady states are to be found.
+/// Parses the name of a method for steady states.
 fn method(name: Option<&str>) -> Result<Method, Failure> {
     let (balance, scales) = (Method::HarmonicBalance, Method::MultipleScales);
     let Some(name) = name else { return Ok(balance) };
@@ -147,7 +147,7 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
 
 /// The slow equations of the primary resonance.
 fn slow_equations(
-    question: &Question,
+    question: &ResponseRequest,
     method: Method,
     order: Option<u32>,
 ) -> Result<Solution, Failure> {

@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lindstedt::export::json::Kind;
 
-use super::{Common, Failure, Outcome, Work, whole};
+use super::{Common, Failure, Outcome, Work, text_writer};
 
 /// Print the JSON Schema of a kind of document: every key with its meaning and unit
 #[derive(Args)]
@@ -53,9 +53,9 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
-        result: whole(arguments.kind.json_schema().to_owned()),
+        result: text_writer(arguments.kind.json_schema().to_owned()),
         picture: None,
         note: None,
         verdict: None,

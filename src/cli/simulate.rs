@@ -23,12 +23,12 @@ use super::primary;
 use super::problem::problem;
 use super::progress::{self, MOTIONS};
 use super::trajectory;
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
 /// equation or mechanism
 #[derive(Args)]
-pub struct Arguments {
+pub struct SimulateArguments {
     /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without
     /// it the paper's pendulum and barrier
     pub problem: Option<String>,
@@ -100,7 +100,7 @@ fn axis(text: &str) -> Result<Axis, String> {
 /// Without `--tolerance`: the energy that may go astray, relative to the largest.
 const ENERGY_TOLERANCE: f64 = 1e-6;
 
-impl Work for Arguments {
+impl Work for SimulateArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -114,13 +114,13 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,
     };
     if problem.equation.is_some() || problem.lagrangian.is_some() {
-        return own(arguments, &problem);
+        return run_equation(arguments, &problem);
     }
     let foreign = [
         ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
@@ -155,13 +155,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     match arguments.sweep.is_empty() {
-        true => one(arguments, &problem),
-        false => many(arguments, &problem),
+        true => run_single(arguments, &problem),
+        false => run_sweep(arguments, &problem),
     }
 }
 
 /// A main mass that carries the pendulum.
-fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn main_mass(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
         ("--chain", arguments.chain),
         ("--integrator", arguments.integrator.is_some()),
@@ -178,7 +178,7 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
 }
 
 /// An equation or a mechanism of one's own.
-fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_equation(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
         ("--chain", arguments.chain),
         ("--jobs", arguments.jobs.is_some()),
@@ -231,7 +231,7 @@ fn refused(error: ProblemError) -> Failure {
     Failure::refused(&error, help)
 }
 
-fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_single(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let asked = Simulate::try_from(problem).map_err(refused)?;
     let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
     let settings = settings(arguments, &asked);
@@ -280,7 +280,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let note = broken
         .map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
     Ok(Outcome {
-        result: whole(text),
+        result: text_writer(text),
         picture,
         note,
         verdict: Some(match &judge {
@@ -295,8 +295,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
 
 /// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
 /// damps the swing.
-fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
-    let settings = Settings { interrupt: Interrupt::by(&STOP), ..asked.settings };
+fn settings(arguments: &SimulateArguments, asked: &Simulate) -> Settings {
+    let settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..asked.settings };
     let damped = asked.case.motion().is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
     match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
         true => Settings { duration: LONGEST_CHAIN, stop_at_rest: true, ..settings },
@@ -304,7 +304,7 @@ fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
     }
 }
 
-/// How long a chain is followed to rest, in units of 1/omega.
+/// The longest time for which a chain is followed to rest, in units of 1/omega.
 const LONGEST_CHAIN: f64 = 1e4;
 
 /// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in
@@ -324,7 +324,7 @@ fn chain_verdict(motion: &Simulation, judge: &Simulation, tolerance: Option<f64>
         }
         _ => false,
     };
-    Verdict::of(agreed && motion.stop.is_complete() && judge.stop.is_complete())
+    Verdict::from_passed(agreed && motion.stop.is_complete() && judge.stop.is_complete())
 }
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
@@ -336,12 +336,12 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
             && judge.impacts.len() == motion.impacts.len()
             && motion.difference(judge, 2001).displacement <= allowed * scale
     });
-    Verdict::of(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
+    Verdict::from_passed(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
 }
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
 fn motions(
-    arguments: &Arguments,
+    arguments: &SimulateArguments,
     problem: &Problem,
 ) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
     let axes = arguments.sweep.as_slice();
@@ -369,7 +369,7 @@ fn motions(
     Ok((motions, settings(arguments, &asked)))
 }
 
-/// Beside each row the rest times of its motion without a barrier and with one that loses nothing.
+/// Adds to each row the rest times of its motion without a barrier and with a lossless one.
 fn add_baseline(
     rows: &mut [Summary],
     motions: &[(Model, Start)],
@@ -390,7 +390,7 @@ fn add_baseline(
     Ok(())
 }
 
-fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
@@ -436,7 +436,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let axes = arguments.sweep.clone();
     Ok(Outcome {
         result: match made_whole {
-            Some(text) => whole(text),
+            Some(text) => text_writer(text),
             None => Box::new(move |to| {
                 let report = SweepReport { axes: &axes, rows: &rows };
                 write(&report, to)
@@ -444,13 +444,13 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         },
         picture,
         note,
-        verdict: Some(Verdict::of(incomplete == 0)),
+        verdict: Some(Verdict::from_passed(incomplete == 0)),
         partial: incomplete > 0,
     })
 }
 
-/// What a sweep leaves no place for.
-fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
+/// Refuses options that a sweep cannot take.
+fn check_sweep(arguments: &SimulateArguments) -> Result<(), Failure> {
     if arguments.sweep.len() > 2 && arguments.common.draws() {
         return Err(Failure::Usage(
             "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \

@@ -19,7 +19,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 /// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest
 /// is stable
 #[derive(Args)]
-pub struct Arguments {
+pub struct StabilityArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// Highest power of the small parameters, all together, that is kept; 6 without it
@@ -46,7 +46,7 @@ pub struct Arguments {
 /// Points of a curve of a chart.
 const STEPS: u32 = 60;
 
-impl Work for Arguments {
+impl Work for StabilityArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -60,11 +60,11 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Stability)?;
+    let formula = formula(&problem, ReadingCommand::Stability)?;
     let oscillator = oscillator(&formula, None)?;
-    let usual = Options::default();
+    let usual = HillOptions::default();
     let order = match formula.order {
         None => None,
         Some(Order::Power(order)) => Some(order),
@@ -75,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             ));
         }
     };
-    let options = Options {
+    let options = HillOptions {
         order: arguments.order.or(order).unwrap_or(usual.order),
         tongues: arguments.tongues.map_or(usual.tongues, |tongues| tongues as usize),
         small: match arguments.small.is_empty() {
@@ -117,12 +117,15 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             (format, _) => no_such(format),
         },
     };
-    Ok(Outcome { verdict: report.passes().map(Verdict::of), ..answer.outcome(&arguments.common)? })
+    Ok(Outcome {
+        verdict: report.passes().map(Verdict::from_passed),
+        ..answer.outcome(&arguments.common)?
+    })
 }
 
 /// A refusal, with the term that it names shown in the equation.
 fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
-    let place = error.term().and_then(|term| typed.place(term));
+    let place = error.term().and_then(|term| typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::refused(&format!("{error}{shown}"), error.help())
 }

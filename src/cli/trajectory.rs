@@ -5,9 +5,10 @@ use lindstedt::expr::Expr;
 use lindstedt::impact::sweep::{grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
-use lindstedt::system::{End, Integrator, SystemError};
+use lindstedt::system::{Integrator, PathEnd, SystemError};
 use lindstedt::trajectory::{
-    Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep,
+    DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryError, TrajectoryRequest,
+    in_words, sweep,
 };
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
@@ -20,12 +21,12 @@ use super::progress::{self, MOTIONS};
 use super::simulate::{Arguments, Method, check_format, check_samples};
 use super::{Failure, Format, Outcome, STOP, json_text, values_of};
 
-pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
     check_format(common)?;
     let course = course(problem, asked)?;
     if !asked.sweep.is_empty() {
-        return many(&course, asked);
+        return run_sweep(&course, asked);
     }
     check_samples(&asked.sample, course.duration, "--until")?;
     let by = |integrator: Integrator| course.clone().follow_by(integrator).map_err(refused);
@@ -84,11 +85,11 @@ pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failu
 /// The motion by power series, and by Runge-Kutta beside it.
 ///
 /// # Errors
-/// Where the series come to an end that Runge-Kutta passes: there is nothing to compare it with.
-fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
+/// The series end at a point that Runge-Kutta passes: there is nothing to compare.
+fn by_both(course: &TrajectoryRequest) -> Result<[Trajectory; 2], Failure> {
     let by = |integrator: Integrator| course.clone().follow_by(integrator);
     let end = match by(Integrator::Taylor) {
-        Ok(motion) if motion.reason() != End::Singular => {
+        Ok(motion) if motion.reason() != PathEnd::Singular => {
             return Ok([motion, by(Integrator::RungeKutta).map_err(refused)?]);
         }
         Err(error @ TrajectoryError::System(SystemError::Start(_))) => Err(error),
@@ -131,7 +132,7 @@ fn refused(error: TrajectoryError) -> Failure {
 }
 
 /// The course of the file with the start, the values and the duration of the command line.
-fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
+fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequest, Failure> {
     let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
     course.section = section(&course, asked)?;
     let needed = course.parameters();
@@ -141,7 +142,7 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
     }
     course.values = values.numbers();
     course.after = asked.after.unwrap_or(0.0);
-    course.interrupt = Interrupt::by(&STOP);
+    course.interrupt = Interrupt::from_flag(&STOP);
     if let Some(until) = asked.until {
         course.duration = until;
     }
@@ -203,7 +204,10 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
 }
 
 /// The section asked for.
-fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failure> {
+fn section(
+    course: &TrajectoryRequest,
+    asked: &SimulateArguments,
+) -> Result<Option<PoincareSection>, Failure> {
     let read = |option: &str, text: &str| {
         expression(text).map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
     };
@@ -217,10 +221,10 @@ fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failur
             period if moves(&period) => Err(Failure::Usage(format!(
                 "--every {text}: a period does not depend on the motion; for where something grows through zero: --section"
             ))),
-            period => Ok(Some(Section::Every(period))),
+            period => Ok(Some(PoincareSection::Every(period))),
         },
         (None, Some(text)) => match read("section", text)? {
-            expression if moves(&expression) => Ok(Some(Section::Rising(expression))),
+            expression if moves(&expression) => Ok(Some(PoincareSection::Rising(expression))),
             _ => Err(Failure::Usage(format!(
                 "--section {text}: never grows through zero, for it does not depend on the motion; for equal times: --every"
             ))),
@@ -230,7 +234,7 @@ fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failur
 }
 
 /// Many motions.
-fn many(course: &Course, asked: &Arguments) -> Result<Outcome, Failure> {
+fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
     if asked.integrator.is_some() || !asked.sample.is_empty() || common.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -289,10 +293,10 @@ fn many(course: &Course, asked: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { partial: note.is_some(), note, ..answer.outcome(common)? })
 }
 
-/// What is missing of so many motions, where anything is.
+/// The part that is missing of this number of motions, in words; `None` if nothing is.
 fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     let kept = "stopped early, what there is is kept";
-    let interrupted = motions.iter().filter(|motion| motion.reason == End::Interrupted).count();
+    let interrupted = motions.iter().filter(|motion| motion.reason == PathEnd::Interrupted).count();
     if motions.len() < all || interrupted > 0 {
         let cut = match interrupted {
             0 => String::new(),
@@ -300,7 +304,7 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
         };
         return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
     }
-    let number = motions.iter().position(|motion| motion.reason != End::Reached)?;
+    let number = motions.iter().position(|motion| motion.reason != PathEnd::Reached)?;
     Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 
@@ -309,5 +313,5 @@ fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Ver
     let kept = motion.balance.as_ref().is_none_or(|balance| balance.residual <= allowed);
     let agreed =
         judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
-    Verdict::of(kept && agreed && motion.is_complete())
+    Verdict::from_passed(kept && agreed && motion.is_complete())
 }

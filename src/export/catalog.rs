@@ -2,7 +2,7 @@
 //! `export::json`.
 
 use super::latex;
-use crate::catalog::{Entry, methods};
+use crate::catalog::{CatalogEntry, methods};
 
 /// One entry with its equation, its source, what is published, and which methods apply; of several
 /// a line each with name, equation and title.
@@ -14,15 +14,15 @@ use crate::catalog::{Entry, methods};
 /// assert!(text(CATALOG).lines().any(|line| line.starts_with("duffing ")));
 /// assert!(text(&CATALOG[..1]).contains("published: "));
 /// ```
-pub fn text(entries: &[Entry]) -> String {
+pub fn text(entries: &[CatalogEntry]) -> String {
     if let [entry] = entries {
         return entry_as_text(entry);
     }
-    let width = |text: fn(&Entry) -> &str| {
+    let width = |text: fn(&CatalogEntry) -> &str| {
         entries.iter().map(|entry| text(entry).chars().count()).max().unwrap_or(0)
     };
     let (name, equation) = (width(|entry| entry.name), width(|entry| entry.equation));
-    let line = |entry: &Entry| {
+    let line = |entry: &CatalogEntry| {
         format!("{:name$}  {:equation$}  {}\n", entry.name, entry.equation, entry.title)
     };
     entries.iter().map(line).collect()
@@ -34,12 +34,12 @@ pub fn text(entries: &[Entry]) -> String {
 /// use lindstedt::catalog::CATALOG;
 /// assert!(lindstedt::export::catalog::latex(CATALOG).contains(r"\item[duffing]"));
 /// ```
-pub fn latex(entries: &[Entry]) -> String {
+pub fn latex(entries: &[CatalogEntry]) -> String {
     let items: Vec<String> = entries.iter().map(item).collect();
     format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
 }
 
-fn entry_as_text(entry: &Entry) -> String {
+fn entry_as_text(entry: &CatalogEntry) -> String {
     let mut lines = vec![
         format!("{}: {}", entry.name, entry.title),
         format!("  {}", entry.equation),
@@ -88,7 +88,7 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
 }
 
 /// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.
-fn item(entry: &Entry) -> String {
+fn item(entry: &CatalogEntry) -> String {
     let law = entry.published.map(|law| {
         let law = law.to_string();
         format!(", published $ {} $", latex::typed(law.trim_end_matches(" + ...")))

@@ -69,14 +69,14 @@ impl Language {
     }
 }
 
-/// Why an answer is no program.
+/// The reason why an answer has no program.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoCode {
     /// The frequency is solved for.
     #[error("no program: {0}")]
     SolvedByNumbers(String),
-    /// It has no frequency at the values.
+    /// The answer has no frequency at the values.
     #[error("no program: the formula has no motion at these values{}", .0.as_ref().map_or(String::new(), |reason| format!(": {reason}")))]
     NoMotion(Option<String>),
     /// The amplitude changes.
@@ -115,7 +115,7 @@ impl NoCode {
 /// those at the values of the verification; `tolerance` is that of its verdict.
 ///
 /// # Errors
-/// [`NoCode`], where the answer is no formula for a periodic motion.
+/// [`NoCode`], where the answer is not a formula for a periodic motion.
 ///
 /// ```
 /// use lindstedt::export::code::{self, Language};
@@ -143,18 +143,17 @@ pub fn solution(
 struct Syntax {
     /// Its name on the command line.
     name: &'static str,
-    /// What begins a comment.
+    /// The start of a comment.
     comment: &'static str,
     /// Names that no variable may have, beside those of the functions that a program calls.
     reserved: &'static [&'static str],
-    /// What stands behind a whole number, such as `.0` where a number without a point is an
-    /// integer.
+    /// The suffix of a whole number, such as `.0` if a number without a point is an integer.
     point: &'static str,
     /// pi.
     pi: &'static str,
     /// Product and quotient.
     operators: [&'static str; 2],
-    /// The same between values, of which arrays may be made.
+    /// The separators between values, of which arrays may be made.
     between_values: [&'static str; 2],
     /// A power.
     power: fn(&Base, Exponent) -> String,
@@ -162,21 +161,20 @@ struct Syntax {
     function: fn(Function) -> &'static str,
     /// The text of a function that the library of the language does not have.
     helper: fn(Function) -> Option<&'static str>,
-    /// What stands before and after the value of a variable; whether that is made of numbers
-    /// written out alone.
+    /// The text before and after the value of a variable; the flag says whether the value is made
+    /// of literal numbers alone.
     variable: fn(&str, bool) -> [String; 2],
-    /// What stands before and after a result.
+    /// The text before and after a result.
     result: [&'static str; 2],
     /// The size of a variable in place of itself.
     size: fn(&str) -> String,
     /// Ends a function without a value where a variable is not positive, for a reason in words;
     /// between them the variable that is spoilt where all of it is computed at once.
     positive: fn(&str, &str, &str) -> String,
-    /// How an expression is broken that is longer than a line.
+    /// The way in which an expression longer than a line is broken.
     breaks: Break,
-    /// What stands before the functions: what a program needs of the library, and what makes it a
-    /// whole.
-    beginning: fn(&Used) -> String,
+    /// The text before the functions: imports, and the frame of the program.
+    beginning: fn(&UsedRoutines) -> String,
     /// A whole function.
     routine: fn(&Text) -> String,
 }
@@ -188,7 +186,7 @@ fn commented(text: &str, prefix: &str) -> String {
 
 /// The base of a power.
 struct Base {
-    /// Where something is around it.
+    /// The text of the base inside of other brackets.
     inside: String,
     /// As an operand.
     operand: String,
@@ -210,7 +208,7 @@ enum Exponent<'a> {
     Real(&'a str),
 }
 
-/// How an expression is broken.
+/// The way in which long expressions are broken.
 enum Break {
     /// Before a sign.
     BeforeSigns,
@@ -220,15 +218,15 @@ enum Break {
     AfterSigns(&'static str),
 }
 
-/// What stands below the beginning of a program.
-struct Used<'a> {
+/// The functions of a program, to which its beginning is adapted.
+struct UsedRoutines<'a> {
     /// Its text.
     text: &'a str,
     /// The functions that it consists of.
     routines: &'a [&'static str],
 }
 
-impl Used<'_> {
+impl UsedRoutines<'_> {
     /// Whether this word stands in the text.
     fn has(&self, word: &str) -> bool {
         let inside = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
@@ -251,7 +249,7 @@ struct Text<'a> {
 
 /// A program, whatever its language.
 struct Program {
-    /// What is said before it, line by line.
+    /// The comment in front of it, line by line.
     header: Vec<String>,
     routines: Vec<Routine>,
 }
@@ -259,32 +257,32 @@ struct Program {
 /// A function of numbers.
 struct Routine {
     name: &'static str,
-    /// What it is, in words.
+    /// Its description in words.
     about: String,
     arguments: Vec<Symbol>,
     body: Vec<Statement>,
     result: Value,
 }
 
-/// What a function does before its result.
+/// A statement of a function before its result.
 enum Statement {
     /// A variable.
     Variable(Symbol, Value),
-    /// From here on the size of an argument stands for it.
+    /// The size of an argument replaces it from here on.
     Size(Symbol),
     /// Without this being positive there is no value, for the reason given; what the value is
     /// computed with is the second.
     Positive(Symbol, Symbol, String),
 }
 
-/// What is computed.
+/// The value that a function returns.
 #[derive(Clone)]
 enum Value {
     /// An expression.
     Expression(Expr),
     /// Terms in this order.
     Sum(Vec<Value>),
-    /// The same, each on a line of its own where there is more than one line.
+    /// Several values, each on a line of its own if there is more than one line.
     Lines(Vec<Value>),
     /// Factors in this order.
     Product(Vec<Value>),

@@ -2,10 +2,10 @@
 //! checks of the data, the house style, and three figures ready made, [`impact_figure`],
 //! [`motion_figure`] and [`backbone_figure`].
 //!
-//! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal
-//! Design* (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9
-//! shows a constant. A point that is not finite is an error, never a silent gap. On a logarithmic
-//! axis negative values are an error, and zeros, where an error curve meets its reference, are left
+//! Equal numbers give equal bytes. Colours are those of Okabe and Ito, *Color Universal Design*
+//! (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a
+//! constant. A point that is not finite is an error, never a silent gap. On a logarithmic axis
+//! negative values are an error, and zeros, at which an error curve meets its reference, are left
 //! out. Without the feature `plot` every figure is [`FigureError::LeftOut`].
 //!
 //! ```
@@ -113,14 +113,14 @@ pub(super) type Points = Vec<(f64, f64)>;
 
 /// A thin grey line across a panel, always inside the axes, with words for the legend or none.
 #[derive(Clone, Copy, Debug)]
-pub enum Guide<'a> {
+pub enum GuideLine<'a> {
     /// A vertical line at a value of the abscissa.
     X(f64, &'a str),
     /// A horizontal line at a value of the ordinate.
     Y(f64, &'a str),
 }
 
-/// How an axis is divided.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps are equal distances.
@@ -138,7 +138,7 @@ pub struct Panel<'a> {
     /// Quantity and, last and in parentheses, unit: `time t (s)`. Very large or small numbers are
     /// divided by a power of ten, which is named there: `time t (10⁻⁶ s)`.
     pub x_label: &'a str,
-    /// The same for the ordinate.
+    /// Quantity and unit of the ordinate, likewise.
     pub y_label: &'a str,
     /// Division of the abscissa.
     pub x_scale: Scale,
@@ -147,14 +147,14 @@ pub struct Panel<'a> {
     /// The curves, the last on top; at least one.
     pub curves: Vec<Curve<'a>>,
     /// Lines across the panel.
-    pub guides: Vec<Guide<'a>>,
+    pub guides: Vec<GuideLine<'a>>,
 }
 
-/// Why there is no figure.
+/// The reason why there is no figure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {
-    /// No panel, or a panel (named) without a curve.
+    /// There is no panel, or a panel (named) has no curve.
     #[error("nothing to draw in {0}: leave it out or give it data")]
     Empty(String),
     /// A curve (named) with fewer than two points to join.
@@ -190,11 +190,11 @@ pub struct ImpactMotion<'a> {
     pub style: CurveStyle,
     /// Samples (t, x, x'): for the pendulum t in units of 1/omega, x in rad, x' = dx/d(omega t).
     pub samples: &'a [(f64, f64, f64)],
-    /// One contact: (time since touch, depth), in the same units; empty where there is none.
+    /// One contact: (time since touch, depth), in the same units; empty if there is none.
     pub contact: &'a [(f64, f64)],
 }
 
-/// What [`impact_figure`] draws.
+/// The data of [`impact_figure`].
 #[derive(Clone, Copy, Debug)]
 pub struct ImpactFigure<'a> {
     /// Barrier on the left, in the unit of x.
@@ -239,7 +239,7 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     let motions = data.motions.iter();
     let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
     let time: Vec<_> = motions.map(|motion| time_points(motion.samples)).collect();
-    let barriers = |guide: fn(f64, &'static str) -> Guide<'static>| {
+    let barriers = |guide: fn(f64, &'static str) -> GuideLine<'static>| {
         let left = data.left_barrier.map(|at| guide(at, LEFT));
         let right = data.right_barrier.map(|at| guide(at, RIGHT));
         left.into_iter().chain(right).collect()
@@ -252,20 +252,21 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     };
     let enlarged = [with_unit("time since touch", time), with_unit("depth", displacement)];
     let mut panels = vec![
-        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(Guide::X)),
-        panel("Motion in time", [time, displacement], motions, barriers(Guide::Y)),
+        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(GuideLine::X)),
+        panel("Motion in time", [time, displacement], motions, barriers(GuideLine::Y)),
     ];
     let touching = data.motions.iter().filter(|motion| !motion.contact.is_empty());
     let contacts: Vec<_> = touching.map(|m| curve(m.label, m.contact, m.style)).collect();
     if !contacts.is_empty() {
         let labels = enlarged.each_ref().map(String::as_str);
-        let touch = vec![Guide::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
+        let touch =
+            vec![GuideLine::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
         panels.push(panel("Contact, enlarged", labels, contacts, touch));
     }
     figure(&panels, data.caption)
 }
 
-/// What [`motion_figure`] draws.
+/// The data of [`motion_figure`].
 #[derive(Clone, Copy, Debug)]
 pub struct MotionFigure<'a> {
     /// Name of the coordinate: `x`.
@@ -350,7 +351,7 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let panels = [
         panel(shown, [&time, &displacement], motions, vec![]),
         panel("Phase plane", [&displacement, &velocity], orbits, vec![]),
-        panel("Difference", [&time, &deviation], deviations, vec![Guide::Y(0.0, "")]),
+        panel("Difference", [&time, &deviation], deviations, vec![GuideLine::Y(0.0, "")]),
     ];
     figure(&panels, data.caption)
 }
@@ -407,11 +408,11 @@ pub fn backbone_figure(
         }
     }
     let amplitude = "amplitude A";
-    let mark = || marked.map(|at| Guide::X(at, "")).into_iter();
+    let mark = || marked.map(|at| GuideLine::X(at, "")).into_iter();
     let mut panels =
         vec![panel("Frequency", [amplitude, "frequency \u{3c9}"], frequencies, mark().collect())];
     if !deviations.is_empty() {
-        let guides = mark().chain([Guide::Y(1.0, "")]).collect();
+        let guides = mark().chain([GuideLine::Y(1.0, "")]).collect();
         let mut below = panel("Error", [amplitude, "|error| of \u{3c9} (%)"], deviations, guides);
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
@@ -428,8 +429,8 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
     arranged(panels, caption, true)
 }
 
-/// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may
-/// begin later than the other.
+/// Relative difference of a curve and the truth, in per cent, at the amplitudes that both have:
+/// either may begin later than the other.
 fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, f64)> {
     /// Errors in per cent below which rounding of truth and formula shows.
     const LEAST_ERROR: f64 = 1e-10;
@@ -461,7 +462,7 @@ pub(super) fn panel<'a>(
     title: &'a str,
     labels: [&'a str; 2],
     curves: Vec<Curve<'a>>,
-    guides: Vec<Guide<'a>>,
+    guides: Vec<GuideLine<'a>>,
 ) -> Panel<'a> {
     Panel { title, x_label: labels[0], y_label: labels[1], curves, guides, ..Panel::default() }
 }

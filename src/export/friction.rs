@@ -6,8 +6,8 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{CurveStyle, FigureError, Guide, Points, curve, figure, panel};
-use crate::audit::paper::Table;
+use super::figure::{CurveStyle, FigureError, GuideLine, Points, curve, figure, panel};
+use crate::audit::paper::FrictionTable;
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Simulation, friction::arctangent};
@@ -28,7 +28,7 @@ pub fn csv(study: &FrictionStudy) -> String {
         "# units: speed rad*omega, sign 1, arctangent 1, error %, printed_value 1, printed_error %\n\
          speed,sign,arctangent,error,printed_value,printed_error\n",
     );
-    for row in Table::of(study).rows {
+    for row in FrictionTable::from_study(study).rows {
         let laws = row.laws;
         let [value, error] =
             row.printed.map_or([""; 2], |entries| entries.map(|entry| entry.printed));
@@ -85,7 +85,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
             curve("arctangent", second, CurveStyle::DIFFERENCE),
         ]
     };
-    let zero = || vec![Guide::Y(0.0, "")];
+    let zero = || vec![GuideLine::Y(0.0, "")];
     let panels = [
         panel(
             "Friction near zero speed",
@@ -111,5 +111,5 @@ fn points(motion: &Simulation, from: f64) -> Points {
     const POINTS: usize = 800;
     let times =
         (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| motion.path.at(t).map(|(x, _)| (t, x))).collect()
+    times.filter_map(|t| motion.path.phase_point_at(t).map(|(x, _)| (t, x))).collect()
 }

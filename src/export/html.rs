@@ -11,40 +11,40 @@ mod words;
 use math::Typesetter;
 use words::{definitions, escaped, list, verdict};
 
-use super::latex::{self, Setting, Table};
+use super::latex::{self, LatexTable, Setting};
 use super::{steps, text};
 use crate::decimal::significant;
 use crate::report::{Block, Document, MethodRow};
 use crate::solution::Solution;
 use crate::verify::comparison::Refused;
 
-/// What a page has beside its document.
+/// The parts of a page beside its document.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Page<'a> {
-    /// What a browser shows as its title.
+pub struct HtmlPage<'a> {
+    /// The title that a browser shows.
     pub title: &'a str,
     /// A picture as SVG, or why there is none.
     pub picture: Option<Result<&'a str, &'a str>>,
     /// The answer whose derivation can be unfolded, and whether it is unfolded from the start.
     pub derivation: Option<(&'a Solution, bool)>,
-    /// What made the page: the command that can be typed again.
+    /// The command that made the page and can be typed again.
     pub made_by: &'a str,
 }
 
 /// A document as a page.
 ///
 /// ```
-/// use lindstedt::export::html::{self, Page};
+/// use lindstedt::export::html::{self, HtmlPage};
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
 /// let document = lindstedt::report::solution(&solution, None, 0.01);
-/// let page = html::document(&document, &Page { title: "Duffing", ..Page::default() });
+/// let page = html::document(&document, &HtmlPage { title: "Duffing", ..HtmlPage::default() });
 /// assert!(page.starts_with("<!doctype html>") && page.contains("<math"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn document(document: &Document, page: &Page) -> String {
+pub fn document(document: &Document, page: &HtmlPage) -> String {
     let typesetter = Typesetter::default();
     let mut body =
         Body { typesetter: &typesetter, text: String::new(), rows: Vec::new(), titled: false };
@@ -64,11 +64,11 @@ pub fn document(document: &Document, page: &Page) -> String {
         true => String::new(),
         false => heading(page),
     };
-    whole(&(heading + &body.text), page)
+    page_around(&(heading + &body.text), page)
 }
 
 /// The heading of a page that has no equation as its own.
-fn heading(page: &Page) -> String {
+fn heading(page: &HtmlPage) -> String {
     match page.title {
         "" => String::new(),
         title => format!("<h1>{}</h1>\n", escaped(title)),
@@ -78,17 +78,17 @@ fn heading(page: &Page) -> String {
 /// A text whose lines stand below each other as they are, as a page.
 ///
 /// ```
-/// use lindstedt::export::html::{self, Page};
+/// use lindstedt::export::html::{self, HtmlPage};
 ///
-/// let page = html::lines("a < b\n", &Page::default());
+/// let page = html::lines("a < b\n", &HtmlPage::default());
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
-pub fn lines(text: &str, page: &Page) -> String {
-    whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
+pub fn lines(text: &str, page: &HtmlPage) -> String {
+    page_around(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
 }
 
 /// The page around its body.
-fn whole(body: &str, page: &Page) -> String {
+fn page_around(body: &str, page: &HtmlPage) -> String {
     let picture = match page.picture {
         Some(Ok(picture)) => format!("<figure>\n{}\n</figure>\n", scaled(picture)),
         Some(Err(reason)) => format!("<p class=\"soft\">No picture: {}</p>\n", escaped(reason)),
@@ -122,7 +122,7 @@ fn scaled(picture: &str) -> String {
     }
 }
 
-/// What has been written, and the equations that wait for the end of their display.
+/// The text written so far, and the equations that wait for the end of their display.
 struct Body<'a> {
     typesetter: &'a Typesetter,
     text: String,
@@ -215,7 +215,7 @@ impl Body<'_> {
             Block::Quantities { columns, deviations, shapes, .. } => {
                 let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
                 let of = |(column, (deviation, [approach, contact, back])): (
-                    &crate::impact::Reading,
+                    &crate::impact::PhaseReading,
                     (&f64, &[f64; 3]),
                 )| {
                     let words = format!(
@@ -264,7 +264,7 @@ impl Body<'_> {
         self.text.push_str(html);
     }
 
-    fn table(&mut self, table: &Table) {
+    fn table(&mut self, table: &LatexTable) {
         let is_number = |cell: &String| {
             let first = cell.trim_start_matches('$').chars().next();
             first.is_none_or(|first| first.is_ascii_digit() || "+-<".contains(first))
@@ -300,7 +300,7 @@ impl Body<'_> {
     }
 }
 
-/// What is said beside an equation.
+/// The remark beside an equation.
 fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
     match block {
         Block::Value { source, .. } => *source,
@@ -310,7 +310,7 @@ fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
 }
 
 /// Every method with its numbers and its formula.
-fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
+fn methods(rows: &[MethodRow], tolerance: f64) -> LatexTable {
     let cells = text::comparison::cells(rows, tolerance);
     let formulas =
         std::iter::once("formula".to_owned()).chain(rows.iter().map(latex::comparison::with_hbar));
@@ -321,7 +321,7 @@ fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
         .map(|(cells, formula)| cells.map(plain).into_iter().chain([formula]).collect())
         .collect();
     let head = lines.remove(0);
-    Table { places: "lrrrlrl".to_owned(), head, rows: lines, framed: true }
+    LatexTable { places: "lrrrlrl".to_owned(), head, rows: lines, framed: true }
 }
 
 /// Methods that do not apply, those for the same reason together.

@@ -13,7 +13,7 @@ pub(in crate::export) mod rows;
 mod table;
 
 pub use expression::{expression, inside, symbol};
-pub(super) use table::Table;
+pub(super) use table::LatexTable;
 
 pub use super::steps::latex as steps;
 use num_traits::Zero;
@@ -21,7 +21,7 @@ use num_traits::Zero;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
-use crate::impact::Reading;
+use crate::impact::PhaseReading;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -109,7 +109,7 @@ pub(super) fn formula_in_words(words: &str) -> Option<String> {
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     let _letters = solution.letters().in_force();
-    // What a verdict is reached on is said with the tolerance that is usual.
+    // A verdict is reported with the default tolerance.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
 
@@ -140,7 +140,7 @@ pub fn comparison(comparison: &Comparison) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(document: &Document) -> String {
-    let mut page = Page::default();
+    let mut page = LatexPage::default();
     for block in document.sections.iter().flatten() {
         page.add(block);
     }
@@ -193,7 +193,7 @@ fn not_applicable(refused: &Refused) -> String {
 }
 
 /// The verdict on every column.
-fn in_one_line(verdicts: &[(Reading, Verdict)]) -> String {
+fn in_one_line(verdicts: &[(PhaseReading, Verdict)]) -> String {
     let each: Vec<String> = verdicts
         .iter()
         .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))
@@ -201,9 +201,9 @@ fn in_one_line(verdicts: &[(Reading, Verdict)]) -> String {
     format!("verdict: {}", each.join(", "))
 }
 
-/// What has been written, and what waits for the end or for the next table.
+/// The text written so far, and the parts that wait for the end or for the next table.
 #[derive(Default)]
-struct Page {
+struct LatexPage {
     text: String,
     comments: Vec<(Rank, String)>,
     questions: Vec<String>,
@@ -211,12 +211,12 @@ struct Page {
     rows: Vec<String>,
 }
 
-/// How a block is set.
+/// The typesetting of a block.
 pub(super) enum Setting {
     /// Rows of `align*`.
     Equations(Vec<String>),
     /// A table.
-    Table(Table),
+    Table(LatexTable),
     /// Words.
     Words,
 }
@@ -290,7 +290,7 @@ fn unbroken(block: &Block) -> Setting {
     }
 }
 
-impl Page {
+impl LatexPage {
     fn add(&mut self, block: &Block) {
         match (setting(block), block) {
             (Setting::Table(table), _) => {
@@ -306,11 +306,11 @@ impl Page {
             (Setting::Equations(rows), _) => self.rows.extend(rows),
             (Setting::Words, _) => {}
         }
-        self.say(block);
+        self.write_words(block);
     }
 
     /// The words of a block, as comments; an article says the rest in words of its own.
-    fn say(&mut self, block: &Block) {
+    fn write_words(&mut self, block: &Block) {
         match block {
             Block::Title { words, amplitude } => {
                 self.comment(Rank::Note, format!("{words}; {amplitude}"))
@@ -401,7 +401,7 @@ pub(super) fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) ->
     )
 }
 
-/// The motion, one harmonic a line; nothing where only quadrature gives it.
+/// The motion, one harmonic a line; empty if only quadrature gives it.
 fn motion(solution: &Solution) -> Vec<String> {
     let coordinate = symbol(solution.coordinate());
     if let Some(motion) = &solution.closed_motion {
@@ -416,7 +416,7 @@ fn motion(solution: &Solution) -> Vec<String> {
     lines
 }
 
-/// What the angle of a motion is.
+/// The phase of a motion.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
         return format!("{} t", symbol(FREQUENCY));

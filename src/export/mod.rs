@@ -40,7 +40,7 @@ use crate::series::FourierSeries;
 /// The size of a coefficient that is rounding noise of a motion in numbers: what quadrature leaves
 /// of harmonics that are not there.
 pub(crate) fn rounding_noise(motion: &FourierSeries<Doubles>) -> f64 {
-    /// Beside the largest swing.
+    /// Ratio to the largest oscillation below which a harmonic is rounding.
     const NOISE: f64 = 1e-14;
     let swing = |k: usize| motion.cosine(k).mean().0.hypot(motion.sine(k).mean().0);
     NOISE * (1..=motion.highest_harmonic()).map(swing).fold(0.0, f64::max)

@@ -2,18 +2,20 @@
 //! [`text::document`](super::text::document).
 
 use super::csv::{cell, end, head, line};
-use super::figure::{CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel};
+use super::figure::{
+    CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
+};
 use crate::decimal::decimal;
 use crate::impact::Units;
 use crate::impact::primary::{Alone, PrimaryParameter};
-use crate::impact::primary::{Others, PrimaryRow, PrimaryStop};
+use crate::impact::primary::{PrimaryRow, PrimaryStop, UndampedAndLocked};
 use crate::impact::sweep::Spacing;
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// The points of a curve.
 const POINTS: u32 = 2000;
 
-/// How many swings of the locked main mass are drawn large.
+/// Number of swings of the locked main mass that are drawn large.
 const FIRST_SWINGS: f64 = 6.0;
 
 /// The times of a table: those asked for, or equal steps and every touch and release.
@@ -50,7 +52,7 @@ pub fn csv(report: &PrimaryReport) -> String {
         "# units: t 1/omega, x rad, velocity omega, y L, speed L*omega, energy m*g*L\nt,x,velocity,y,speed,energy\n",
     );
     for t in times(report) {
-        text.extend(motion.at(t).map(|state| {
+        text.extend(motion.state_at(t).map(|state| {
             let energy = motion.case.energy(state);
             line([t, state.x, state.velocity, state.y, state.speed, energy])
         }));
@@ -90,7 +92,7 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
     let mut text = head(&columns);
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
         let count = |count: usize| cell(row.is_begun().then_some(count));
-        let Others { locked, without } = row.others;
+        let UndampedAndLocked { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
         let amplitude = row.is_begun().then_some(row.amplitude);
         cells.extend([amplitude, locked.amplitude, without.amplitude].map(cell));
@@ -129,7 +131,8 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let (second, metre) = (report.units.time(), report.units.length);
     let all = PrimaryReport { samples: &[], ..*report };
-    let states: Vec<_> = times(&all).into_iter().filter_map(|t| Some((t, motion.at(t)?))).collect();
+    let states: Vec<_> =
+        times(&all).into_iter().filter_map(|t| Some((t, motion.state_at(t)?))).collect();
     let with: Points = states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
     let angle: Points = states.iter().map(|(t, state)| (t * second, state.x)).collect();
     let energy: Points =
@@ -163,7 +166,7 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         }
     }
     let barriers = [motion.case.model.left, motion.case.model.right].into_iter().flatten();
-    let barriers = barriers.map(|place| Guide::Y(place, "barrier")).collect();
+    let barriers = barriers.map(|place| GuideLine::Y(place, "barrier")).collect();
     const TIME: &str = "time t (s)";
     const PLACE: &str = "displacement y (m)";
     let panel = |title, y_label, curves, guides| panel(title, [TIME, y_label], curves, guides);
@@ -201,7 +204,7 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Points {
     times.iter().map(|t| (t * units.time(), height(*t))).collect()
 }
 
-/// The amplitude of these swings; nothing where the mass creeps back.
+/// The amplitude of these swings; `None` if the mass creeps back.
 fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Points> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
@@ -246,7 +249,7 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         points
     };
-    let alone = |of: fn(&Others) -> Alone| {
+    let alone = |of: fn(&UndampedAndLocked) -> Alone| {
         points(&|row, units| match driven {
             true => Some(of(&row.others).amplitude? * units.length),
             false => Some(of(&row.others).rest_time? * units.time()),

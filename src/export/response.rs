@@ -5,21 +5,21 @@ use std::fmt::Write as _;
 
 use super::csv::cell;
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
-use crate::response::Response;
-use crate::response::{Point, bifurcation::BifurcationKind};
+use crate::response::ResponseDiagram;
+use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
 
 /// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
 /// first line of comment says what the columns are.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let table = lindstedt::export::response::csv(&respond(&question)?);
 /// assert!(table.lines().nth(2).is_some_and(|row| row.starts_with("branch,1,0.5,")));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn csv(response: &Response) -> String {
+pub fn csv(response: &ResponseDiagram) -> String {
     // Nothing gives a self-excited motion a phase, and nothing but itself its frequency.
     let (own, meaning) = match response.self_excited {
         true => ("frequency", "; frequency: theta/t"),
@@ -92,13 +92,13 @@ pub fn csv(response: &Response) -> String {
 /// The ordinates of the panels: of motions of several periods of the drive the peak, of
 /// self-excited ones the frequency as well.
 #[derive(Clone, Copy)]
-enum Height {
+enum Ordinate {
     Amplitude,
     Peak,
     Frequency,
 }
 
-impl Height {
+impl Ordinate {
     fn label(self) -> &'static str {
         match self {
             Self::Amplitude => "amplitude of the first harmonic",
@@ -107,7 +107,7 @@ impl Height {
         }
     }
 
-    fn of(self, amplitude: f64, peak: f64, frequency: f64) -> f64 {
+    fn value(self, amplitude: f64, peak: f64, frequency: f64) -> f64 {
         match self {
             Self::Amplitude => amplitude,
             Self::Peak => peak,
@@ -118,11 +118,12 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Points> {
+fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points> {
     let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
-    let place =
-        |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
+    let place = |point: &SteadyMotion| {
+        (point.parameter, height.value(point.amplitude, point.peak, point.frequency))
+    };
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if (to.stable == Some(true)) != stable {
@@ -138,7 +139,7 @@ fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Points> {
     pieces
 }
 
-/// What stands where branches change.
+/// The marks of bifurcations.
 const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
     (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),
@@ -150,8 +151,8 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
 
 /// The curves of a panel, with what they are called.
 fn curves<'a>(
-    response: &Response,
-    height: Height,
+    response: &ResponseDiagram,
+    height: Ordinate,
     slow_title: &'a str,
 ) -> Vec<(&'a str, Points, CurveStyle)> {
     let mut drawn: Vec<(&str, Points, CurveStyle)> = Vec::new();
@@ -174,14 +175,14 @@ fn curves<'a>(
     let states = states.map(|state| (state.parameter, state.amplitude)).collect();
     draw(slow_title, vec![states], CurveStyle::SLOW);
     let simulated = response.simulated.iter().map(|found| {
-        let height = height.of(found.amplitude, found.peak, found.frequency);
+        let height = height.value(found.amplitude, found.peak, found.frequency);
         (found.parameter, height)
     });
     draw("simulated", vec![simulated.collect()], CurveStyle::SIMULATED);
     for (kind, label, style) in MARKS {
         let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
         let places = of_kind.map(|found| {
-            (found.parameter, height.of(found.amplitude, found.peak, found.frequency))
+            (found.parameter, height.value(found.amplitude, found.peak, found.frequency))
         });
         draw(label, vec![places.collect()], style);
     }
@@ -196,18 +197,18 @@ fn curves<'a>(
 /// As [`figure`].
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// assert!(lindstedt::export::response::picture(&respond(&question)?)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn picture(response: &Response) -> Result<String, FigureError> {
+pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     let asked = &response.question;
-    let heights: &[Height] = match (response.self_excited, asked.periods) {
-        (true, _) => &[Height::Amplitude, Height::Frequency],
-        (false, 1) => &[Height::Amplitude],
-        _ => &[Height::Peak],
+    let heights: &[Ordinate] = match (response.self_excited, asked.periods) {
+        (true, _) => &[Ordinate::Amplitude, Ordinate::Frequency],
+        (false, 1) => &[Ordinate::Amplitude],
+        _ => &[Ordinate::Peak],
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();

@@ -13,10 +13,10 @@ use crate::symbol::Symbol;
 ///
 /// ```
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, chart, transition_curves};
+/// use lindstedt::hill::{HillOptions, chart, transition_curves};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options { tongues: 1, ..Options::default() })?;
+/// let curves = transition_curves(&mathieu, &HillOptions { tongues: 1, ..HillOptions::default() })?;
 /// let chart = chart(&curves, &Default::default(), "eps".into(), 0.5, 10)?;
 /// let table = lindstedt::export::stability::csv(&curves, "eps".into(), &chart);
 /// assert_eq!(table.lines().count(), 1 + 3 * 11);

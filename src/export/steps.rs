@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 use num_traits::Zero;
 
 use super::latex::{self, symbol};
-use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, NOTATION, Step};
+use crate::derivation::{
+    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, NOTATION, Step,
+};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
@@ -20,8 +22,7 @@ fn is_homotopy(solution: &Solution) -> bool {
     solution.method.counts() == Counts::PowersOfBookkeeping
 }
 
-/// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its
-/// corrections.
+/// The factor of the orders `y_n`: the amplitude, or that of a limit cycle before its corrections.
 fn unit(solution: &Solution) -> Symbol {
     let leading = solution.steps.first().and_then(|step| step.amplitude.as_ref());
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
@@ -38,8 +39,8 @@ fn indexed(letter: &str, order: u32) -> String {
     symbol(Symbol::new(&format!("{letter}{order}")))
 }
 
-/// The derivation as text: the orders of an expansion, or the lines of any other method; empty
-/// where there is nothing to show.
+/// The derivation as text: the orders of an expansion, or the lines of any other method; empty if
+/// there is nothing to show.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -195,7 +196,7 @@ pub fn latex(solution: &Solution) -> String {
     }
 }
 
-/// The derivation as rows of `align*`; none where there is nothing to show.
+/// The derivation as rows of `align*`; empty if there is nothing to show.
 pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
@@ -285,7 +286,7 @@ fn condition_as_latex(condition: Condition, y: &str, phase: &str) -> String {
 }
 
 /// A line of a derivation as rows of `align*`: its words above its equation.
-pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
+pub(super) fn line_as_latex(line: &DerivationLine) -> Vec<String> {
     let mut rows = Vec::new();
     if !line.words.is_empty() {
         let colon = if line.equal.is_empty() { "" } else { ":" };
@@ -298,25 +299,25 @@ pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
     rows
 }
 
-fn formula_as_latex(formula: &Formula) -> String {
+fn formula_as_latex(formula: &DerivationFormula) -> String {
     match formula {
-        Formula::Expression(expression) => latex::expression(expression),
-        Formula::Waves { series, phase } => terms::sum(terms::waves(
+        DerivationFormula::Expression(expression) => latex::expression(expression),
+        DerivationFormula::Waves { series, phase } => terms::sum(terms::waves(
             series,
             |coefficient| latex::expression(&Expr::from(coefficient)),
             &latex::NOTATION,
             *phase,
         )),
-        Formula::Oscillator { of, square } => {
+        DerivationFormula::Oscillator { of, square } => {
             let linear = latex::expression(&(square * &Expr::from(*of)));
             format!("{}'' + {linear}", symbol(*of))
         }
-        Formula::AtZero { of, derivatives } => {
+        DerivationFormula::AtZero { of, derivatives } => {
             format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives))
         }
-        Formula::Integral { factor, from, to, integrand, variable } => {
+        DerivationFormula::Integral { factor, from, to, integrand, variable } => {
             let inside = match integrand.as_ref() {
-                Formula::Expression(sum) if sum.terms().len() > 1 => {
+                DerivationFormula::Expression(sum) if sum.terms().len() > 1 => {
                     format!("\\left({}\\right)", latex::inside(sum))
                 }
                 other => formula_as_latex(other),
@@ -329,15 +330,15 @@ fn formula_as_latex(formula: &Formula) -> String {
                 symbol(*variable)
             )
         }
-        Formula::OverRoot(numerator, inside) => format!(
+        DerivationFormula::OverRoot(numerator, inside) => format!(
             "\\frac{{{}}}{{\\sqrt{{{}}}}}",
             latex::expression(numerator),
             match inside.as_ref() {
-                Formula::Expression(inside) => latex::inside(inside),
+                DerivationFormula::Expression(inside) => latex::inside(inside),
                 inside => formula_as_latex(inside),
             }
         ),
-        Formula::Slope { factor, of, by } => format!(
+        DerivationFormula::Slope { factor, of, by } => format!(
             "{}\\frac{{\\mathrm{{d}}{}}}{{\\mathrm{{d}}{}}}",
             before(factor),
             symbol(*of),
@@ -346,7 +347,7 @@ fn formula_as_latex(formula: &Formula) -> String {
     }
 }
 
-/// A factor in front of something that is no expression.
+/// A factor in front of something that is not an expression.
 fn before(factor: &Expr) -> String {
     match (*factor == Expr::one(), factor.terms().len() > 1) {
         (true, _) => String::new(),

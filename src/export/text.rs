@@ -72,7 +72,7 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(document: &Document, width: usize) -> String {
-    let page = Page { width, longest_title: comparison::longest_title(document) };
+    let page = TextLayout { width, longest_title: comparison::longest_title(document) };
     let sections = document.sections.iter();
     let sections: Vec<String> = sections
         .map(|blocks| blocks.iter().map(|block| page.fitted(block, blocks)).collect())
@@ -80,8 +80,8 @@ pub fn document(document: &Document, width: usize) -> String {
     sections.join("\n")
 }
 
-/// What the blocks of a document have in common.
-struct Page {
+/// The common layout of the blocks of a document.
+struct TextLayout {
     width: usize,
     /// The longest name of a method, beside which words stand.
     longest_title: usize,
@@ -173,7 +173,7 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
     facts.iter().map(line).collect()
 }
 
-/// Why an answer has no motion.
+/// The reason why an answer has no motion.
 pub(super) fn without_motion(solution: &Solution) -> &'static str {
     match solution.method {
         // Whose motion is a formula: it was not asked for.
@@ -202,7 +202,7 @@ fn motion(solution: &Solution) -> String {
     lines.join("\n")
 }
 
-/// What the angle of a motion is.
+/// The phase of a motion.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
         return format!("{FREQUENCY}*t");
@@ -221,7 +221,7 @@ fn angle(solution: &Solution) -> String {
     }
 }
 
-/// How a motion that is not periodic was followed, name by name.
+/// The comparison of a motion that is not periodic, line by line.
 fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
     let mut lines =
         vec![("followed to", format!("t = {}: {}", decimal(followed.until), followed.reason))];
@@ -252,14 +252,15 @@ fn judged(
     facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
 }
 
-/// What was judged where, and each number with its name.
+/// The conditions and the numbers of a verification.
 pub(super) fn judgement(
     verification: &Verification,
     series_of_omega: Option<f64>,
     hbar: Symbol,
     tolerance: f64,
 ) -> (String, Vec<(String, String)>) {
-    /// Of the frequency: no order that there is takes such an error into the last digits at once.
+    /// Relative error of the frequency that counts as large: no order takes such an error into the
+    /// last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
     let at: Vec<String> =

@@ -8,7 +8,7 @@ use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
+use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory};
 
 /// The points of a table or a curve where no samples are asked for.
 const POINTS: u32 = 2000;
@@ -28,9 +28,9 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x'".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[0.0], known_until: None };
@@ -47,7 +47,7 @@ pub fn csv(report: &TrajectoryReport) -> String {
         false => times(report),
     };
     for time in times {
-        let state = motion.at(time).into_iter();
+        let state = motion.states_at(time).into_iter();
         text.extend(state.map(|state| line(std::iter::once(time).chain(state))));
     }
     text + &end(motion.is_complete(), in_words(motion.reason()), report.doubt())
@@ -61,9 +61,9 @@ pub fn csv(report: &TrajectoryReport) -> String {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None };
@@ -78,8 +78,10 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         return on_section(motion, section);
     }
     let whole = TrajectoryReport { samples: &[], ..*report };
-    let states: Vec<(f64, Vec<f64>)> =
-        times(&whole).into_iter().filter_map(|time| Some((time, motion.at(time)?))).collect();
+    let states: Vec<(f64, Vec<f64>)> = times(&whole)
+        .into_iter()
+        .filter_map(|time| Some((time, motion.states_at(time)?)))
+        .collect();
     let in_time: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();
@@ -100,7 +102,7 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
 }
 
 /// The states on a section: each coordinate with its velocity.
-fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
+fn on_section(motion: &Trajectory, section: &PoincareSection) -> Result<String, FigureError> {
     let course = &motion.course;
     let count = course.coordinates.len();
     let names: Vec<[String; 2]> =
@@ -155,8 +157,8 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
     }
 }
 
-/// Over what is varied: every state on the section, a bifurcation diagram; without a section the
-/// least and the greatest values.
+/// The picture of a sweep over the varied parameter: every state on the section, a bifurcation
+/// diagram; without a section the least and the greatest values.
 ///
 /// # Errors
 /// As [`figure`].

@@ -1,16 +1,16 @@
 //! The pendulum and its bodies in SI units: `[design]`, or by their own names `[pendulum]`,
 //! `[sphere]` and `[barrier]`.
 //!
-//! In: a [`Problem`]. Out: its [`Design`], from which gamma follows by equation (8), and its
-//! [`Units`]. A quantity has two keys, one of which may be given. The modulus is that of the
+//! In: a [`Problem`]. Out: its [`StiffnessDesign`], from which gamma follows by equation (8), and
+//! its [`Units`]. A quantity has two keys, one of which may be given. The modulus is that of the
 //! barrier alone, as in the paper, unless `[barrier] poisson` is given: then that of a rigid sphere
 //! on it, or with `[sphere] modulus` and `[sphere] poisson` that of both bodies.
 //!
-//! Where gamma is given it wins: the moduli have no say, and there are units where mass, length and
-//! gravity are all given.
+//! A given gamma takes precedence: the moduli are then not used, and there are units if mass,
+//! length and gravity are all given.
 
 use super::{Problem, ProblemError, refused};
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::{Elastic, Modulus, Units};
 
 /// The keys of units, by their own names: those of the pendulum, the radius, those of the moduli,
@@ -27,10 +27,10 @@ impl Problem {
     /// # Errors
     /// A quantity given twice, or one by its own name that is not positive; half an equivalent
     /// modulus.
-    pub(super) fn design(&self) -> Result<Design, ProblemError> {
-        let usual = Design::from(self.design);
+    pub(super) fn design(&self) -> Result<StiffnessDesign, ProblemError> {
+        let usual = StiffnessDesign::from(self.design);
         let (pendulum, sphere) = (&self.pendulum, &self.sphere);
-        Ok(Design {
+        Ok(StiffnessDesign {
             mass: self.one_of(["[pendulum] mass", "[design] mass"], pendulum.mass, usual.mass)?,
             radius: self.one_of(
                 ["[sphere] radius", "[design] radius"],
@@ -60,7 +60,7 @@ impl Problem {
     ) -> Result<f64, ProblemError> {
         let [key, other] = keys;
         match own {
-            Some(_) if self.gives(other) => {
+            Some(_) if self.has_key(other) => {
                 refused(format!("`{key}` and `{other}` say the same: give one of them"))
             }
             Some(value) => positive(key, value),
@@ -123,7 +123,7 @@ impl Problem {
         gamma_follows: bool,
     ) -> Result<Option<Units>, ProblemError> {
         let design = self.design()?;
-        let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.gives(key));
+        let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.has_key(key));
         let silent = |groups: &[&[&'static str]]| first(&groups.concat());
         let [sphere_yield, barrier_yield] =
             [(YIELD[0], self.sphere.yield_limit), (YIELD[1], self.barrier.yield_limit)]
@@ -159,7 +159,7 @@ impl Problem {
             ));
         }
         let given =
-            |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
+            |name: &str, own: &str| self.has_key(own) || self.has_key(&format!("[design] {name}"));
         let needed = ["mass", "length", "gravity"].into_iter().zip(PENDULUM);
         let missing: Vec<&str> =
             needed.filter(|(name, own)| !given(name, own)).map(|(name, _)| name).collect();
@@ -193,10 +193,10 @@ impl Problem {
     /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows
     /// from it, or something that damps is given in SI units; otherwise where mass, length and
     /// gravity are given. What says nothing is no mistake here.
-    pub(super) fn simulation_units(&self, design: &Design) -> Option<Units> {
+    pub(super) fn simulation_units(&self, design: &StiffnessDesign) -> Option<Units> {
         let given = |name: &str| {
             let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
-            keys.iter().any(|key| self.gives(key))
+            keys.iter().any(|key| self.has_key(key))
         };
         let follows = self.contact.gamma.is_none() || self.damps_in_si_units();
         let known = follows || ["mass", "length", "gravity"].into_iter().all(given);
@@ -237,7 +237,7 @@ pub(super) fn needs<T>(key: &str, missing: &str) -> Result<T, ProblemError> {
 mod tests {
     use super::*;
 
-    fn design(text: &str) -> Result<Design, ProblemError> {
+    fn design(text: &str) -> Result<StiffnessDesign, ProblemError> {
         text.parse::<Problem>().unwrap().design()
     }
 
@@ -247,7 +247,7 @@ mod tests {
             "[design]\nmass = 0.02\nradius = 0.01\nlength = 0.25\nmodulus = 2e9\ngravity = 1.6";
         let new = "[pendulum]\nmass = 0.02\nlength = 0.25\ngravity = 1.6\n[sphere]\nradius = 0.01\n[barrier]\nmodulus = 2e9";
         assert_eq!(design(old), design(new));
-        assert_eq!(design(""), Ok(Design::default()));
+        assert_eq!(design(""), Ok(StiffnessDesign::default()));
     }
 
     #[test]

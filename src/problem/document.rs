@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::{ContactDamping, DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
 use crate::solution::Degrees;
 
@@ -57,9 +57,9 @@ pub struct Problem {
     pub units: BTreeMap<String, String>,
     /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
-    /// What a search for the best design may vary, and what it must keep.
+    /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
-    /// How it searches.
+    /// The options of its genetic algorithm.
     pub genetic: GeneticSection,
     /// The keys that are given, as [`keys`](super::keys) names them: what is absent has its
     /// default.
@@ -103,8 +103,8 @@ impl Order {
 
 fn degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Degrees, D::Error> {
     let list = Vec::<u32>::deserialize(deserializer)?;
-    // What an order is is said by the type.
-    Degrees::of(&list).ok_or_else(|| D::Error::custom("no degrees"))
+    // The meaning of an order is given by its type.
+    Degrees::from_list(&list).ok_or_else(|| D::Error::custom("no degrees"))
 }
 
 /// `[pendulum]`: released from rest at `x = -amplitude`.
@@ -115,8 +115,8 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`, or `false` for none.
     pub barrier: Barrier,
-    /// On which side of its place a single barrier is: `right`, or `left` with the release at x =
-    /// amplitude.
+    /// The side of its position on which a single barrier is: `right`, or `left` with the release
+    /// at x = amplitude.
     pub side: Option<BarrierSide>,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,
@@ -173,11 +173,11 @@ pub struct MaterialSection {
     pub yield_limit: Option<f64>,
     /// Its own damping in equation (7), dimensionless.
     pub mu: Option<f64>,
-    /// The same over gamma, dimensionless.
+    /// mu/gamma, dimensionless, in place of mu.
     pub mu_over_gamma: Option<f64>,
-    /// The same by Hunt and Crossley, s/m.
+    /// The contact damping of Hunt and Crossley, s/m, in place of mu.
     pub lambda: Option<f64>,
-    /// The same by its coefficient of restitution.
+    /// The coefficient of restitution, in place of mu.
     pub restitution: Option<f64>,
     /// The speed at which that holds, m/s; without it that of the first touch without damping.
     pub at_speed: Option<f64>,
@@ -192,11 +192,11 @@ pub struct MaterialSection {
 pub struct LimitsSection {
     /// Lower and upper limit of the mass, kg.
     pub mass: Option<Range>,
-    /// Those of the radius of the sphere, m.
+    /// Lower and upper limit of the radius of the sphere, m.
     pub radius: Option<Range>,
-    /// Those of the length, m.
+    /// Lower and upper limit of the length, m.
     pub length: Option<Range>,
-    /// Those of the modulus of the barrier, Pa.
+    /// Lower and upper limit of the modulus of the barrier, Pa.
     pub modulus: Option<Range>,
     /// The density of the sphere, kg/m^3: its mass is then that of its radius.
     pub density: Option<f64>,
@@ -235,7 +235,7 @@ impl TryFrom<Vec<f64>> for Range {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeneticSection {
-    /// What is to be small: one name, or a list of them for a front.
+    /// The objective: one name, or a list of them for a front.
     pub objective: Option<Objectives>,
     /// Individuals.
     pub population: Option<u32>,
@@ -247,7 +247,7 @@ pub struct GeneticSection {
     pub crossover_fraction: Option<f64>,
     /// `heuristic`, `scattered` or `one-point`.
     pub crossover: Option<String>,
-    /// How far beyond the better parent a heuristic child lies.
+    /// Extrapolation of a heuristic child beyond the better parent.
     pub crossover_ratio: Option<f64>,
     /// `adaptive-feasible` or `bit-flip`.
     pub mutation: Option<String>,
@@ -261,13 +261,13 @@ pub struct GeneticSection {
     pub penalty: Option<String>,
     /// The weight that an augmented Lagrangian begins with.
     pub initial_penalty: Option<f64>,
-    /// What that is multiplied by.
+    /// The factor by which that weight grows.
     pub penalty_factor: Option<f64>,
-    /// How far the mass may be from that of the density, in parts.
+    /// Largest deviation of the mass from that of the density, relative.
     pub constraint_tolerance: Option<f64>,
-    /// Over so many generations the best value is watched.
+    /// Number of generations over which the best value is watched.
     pub stall_generations: Option<u32>,
-    /// Below this change of it the search ends.
+    /// Change of the best value below which the search ends.
     pub function_tolerance: Option<f64>,
     /// `average` or `weighted`.
     pub stall_test: Option<String>,
@@ -291,9 +291,9 @@ pub enum Objectives {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BarrierSide {
-    /// At smaller angles.
+    /// The barrier at smaller angles.
     Left,
-    /// At greater angles.
+    /// The barrier at greater angles.
     Right,
 }
 
@@ -336,9 +336,9 @@ pub struct PrimarySection {
     pub stiffness: Option<f64>,
     /// The coefficient of its dashpot, N s/m; none without it.
     pub damping: Option<f64>,
-    /// Where it begins, m.
+    /// The initial displacement, m.
     pub displacement: Option<f64>,
-    /// How fast it begins, m/s.
+    /// The initial speed, m/s.
     pub speed: Option<f64>,
     /// The amplitude of a harmonic force on it, N.
     pub force: Option<f64>,
@@ -368,7 +368,7 @@ pub struct LagrangianSection {
 pub struct Contact {
     /// Dimensionless stiffness; from `[design]` by equation (8) where it is not given.
     pub gamma: Option<f64>,
-    /// For an impact, the whole force of the barrier as an expression in the depth d: `"k*d^2"`.
+    /// The whole force of the barrier for `impact`, as an expression in the depth d: `"k*d^2"`.
     pub force: Option<String>,
     /// Dimensionless contact damping of equation (7).
     pub mu: Option<f64>,
@@ -384,7 +384,7 @@ pub struct Contact {
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2), in place of mu.
     pub damping: Option<f64>,
-    /// For an impact, the law of the contact in the derived phases; `all` for a table of every law.
+    /// The law of the contact in the derived phases of `impact`; `all` for a table of every law.
     pub law: Option<String>,
     /// The rule by which a line replaces the elastic force; `all` for a table of every law of the
     /// contact.
@@ -491,7 +491,7 @@ impl Default for Pendulum {
     }
 }
 
-impl From<DesignSection> for Design {
+impl From<DesignSection> for StiffnessDesign {
     fn from(section: DesignSection) -> Self {
         let DesignSection { mass, radius, length, modulus, gravity } = section;
         Self { mass, radius, length, modulus, gravity }
@@ -500,7 +500,7 @@ impl From<DesignSection> for Design {
 
 impl Default for DesignSection {
     fn default() -> Self {
-        let Design { mass, radius, length, modulus, gravity } = Design::default();
+        let StiffnessDesign { mass, radius, length, modulus, gravity } = StiffnessDesign::default();
         Self { mass, radius, length, modulus, gravity }
     }
 }

@@ -1,7 +1,7 @@
-//! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where
-//! to solve it.
+//! The input of `derive`, `compare` and `response` from a problem file: an equation, its method and
+//! its values.
 
-use super::{Order, Problem, ProblemError, Reader, refused};
+use super::{Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -9,7 +9,7 @@ use crate::values::Values;
 /// An equation of motion and the choices that a file makes for it, as they are written; what it
 /// leaves out is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Formula<'a> {
+pub struct FormulaProblem<'a> {
     /// The equation.
     pub equation: &'a str,
     /// The equilibrium to swing about, `x = 1`.
@@ -37,14 +37,14 @@ impl Problem {
     /// assert_eq!(file.formula(Reader::Derive)?.small, Some("eps"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn formula(&self, reader: Reader) -> Result<Formula<'_>, ProblemError> {
+    pub fn formula(&self, reader: ReadingCommand) -> Result<FormulaProblem<'_>, ProblemError> {
         self.check_keys(reader)?;
         self.check_derived_equation()?;
         let Some(equation) = self.equation.as_deref() else {
             let help = "equation = \"x'' + sin(x) = 0\"".to_owned();
             return Err(ProblemError::new("the file has no `equation`").with_help(help));
         };
-        Ok(Formula {
+        Ok(FormulaProblem {
             equation,
             about: self.about.as_deref(),
             small: self.small.as_deref(),
@@ -89,8 +89,8 @@ impl Problem {
         Ok(values)
     }
 
-    /// Those of [`Problem::exact_values`] that the equation of motion takes: not of a letter that
-    /// stands in the energies of the file and cancels, as a mass does.
+    /// The values of [`Problem::exact_values`] that occur in the equation of motion: not that of a
+    /// letter that stands in the energies of the file and cancels, as a mass does.
     ///
     /// # Errors
     /// As there.

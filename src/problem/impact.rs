@@ -1,9 +1,10 @@
-//! What `impact` reads of a problem file: an undamped swing and its barrier, released from rest.
+//! The input of `impact` from a problem file: an undamped swing and its barrier, released from
+//! rest.
 
-use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, refused};
+use super::{Barrier, BarrierSide, Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::contact::ContactLaw;
-use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{
     CollisionError, ContactDamping, ContactLoss, ContactScales, Rule, Setup, Side, SpeedUnit,
     UnknownRule,
@@ -39,7 +40,7 @@ impl TryFrom<&Problem> for Setup {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     fn try_from(problem: &Problem) -> Result<Self, ProblemError> {
-        problem.check_keys(Reader::Impact)?;
+        problem.check_keys(ReadingCommand::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
         let damps =
             [damping.zeta, damping.alpha].into_iter().chain(damping.viscous).chain(damping.torque);
@@ -61,7 +62,7 @@ impl TryFrom<&Problem> for Setup {
         }
         let swing = swing(problem)?;
         let force = force(problem)?;
-        let given = Numbers::of(problem, swing.as_ref(), force.is_some())?;
+        let given = ImpactValues::from_problem(problem, swing.as_ref(), force.is_some())?;
         let side = match problem.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
             Some(BarrierSide::Right) | None => Side::Right,
@@ -123,19 +124,19 @@ impl TryFrom<&Problem> for Setup {
 
 /// The numbers of an impact that stand among the values, by the letters of the printed equation,
 /// and the other values.
-struct Numbers {
+struct ImpactValues {
     amplitude: Option<f64>,
     barrier: Option<f64>,
     stiffness: Option<f64>,
     others: Values,
 }
 
-impl Numbers {
-    /// What the values of a problem say; what they leave out stands under its key.
+impl ImpactValues {
+    /// Reads the values of a problem; those that they leave out stand under their keys.
     ///
     /// # Errors
     /// A number under both, and for an equation of its own one under neither.
-    fn of(
+    fn from_problem(
         problem: &Problem,
         swing: Option<&Oscillator>,
         has_force: bool,
@@ -157,14 +158,14 @@ impl Numbers {
             *found = own.contains(&name).then(|| values.get(name)).flatten();
             // The command line wins over the file.
             let wins = problem.overriding.contains(written);
-            if found.is_some() && problem.gives(key) && !wins {
+            if found.is_some() && problem.has_key(key) && !wins {
                 return refused(format!(
                     "`{letter}` in [values] and `{key}` say the same: give one of them"
                 ));
             }
         }
         let starts = problem.pendulum.start.is_some();
-        let gives = |index: usize| found[index].is_some() || problem.gives(letters[index].2);
+        let gives = |index: usize| found[index].is_some() || problem.has_key(letters[index].2);
         if starts && gives(0) {
             return refused(
                 "`amplitude` says nothing beside `start`, where the swing is released: give one of them",
@@ -261,7 +262,7 @@ fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ProblemE
     AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
-/// What stands for a table in place of the name of a law or a rule.
+/// The word for a table of all laws in place of the name of one.
 const EVERY_LAW: &str = "all";
 
 /// The rule that replaces the elastic force by a line.
@@ -272,7 +273,7 @@ fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
     }
 }
 
-/// What the contact loses.
+/// The loss in the contact.
 fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ProblemError> {
     let contact = &problem.contact;
     let losses = [
@@ -330,7 +331,7 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));
     }
-    let Design { mass, length, gravity, .. } = problem.design()?;
+    let StiffnessDesign { mass, length, gravity, .. } = problem.design()?;
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],

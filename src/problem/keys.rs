@@ -1,5 +1,4 @@
-//! Which command reads which key of a problem file: a key that would change nothing is refused by
-//! name.
+//! The keys of a problem file that each command reads: a key without effect is refused by name.
 
 use std::fmt;
 
@@ -13,7 +12,7 @@ use super::{Problem, ProblemError, refused};
 
 /// The commands that read problem files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reader {
+pub enum ReadingCommand {
     /// `lindstedt derive`
     Derive,
     /// `lindstedt compare`
@@ -36,12 +35,12 @@ pub enum Reader {
     Response,
 }
 
-use Reader::{
+use ReadingCommand::{
     Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability,
     Trajectory,
 };
 
-impl fmt::Display for Reader {
+impl fmt::Display for ReadingCommand {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Derive => "lindstedt derive",
@@ -58,7 +57,7 @@ impl fmt::Display for Reader {
 }
 
 /// The commands that read a key, or refuse it with a reason of their own.
-fn readers(section: &str, key: &str) -> &'static [Reader] {
+fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
     match (section, key) {
         ("", "equation") => &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
         ("", "method") => &[Derive, Impact, Response],
@@ -68,7 +67,7 @@ fn readers(section: &str, key: &str) -> &'static [Reader] {
         ("", "amplitude") => &[Derive, Impact],
         ("", "about") => &[Derive, Compare, Impact],
         ("", "[values]") => &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response],
-        // What reads an equation of motion reads a mechanism with it.
+        // A command that reads an equation of motion reads a mechanism as well.
         ("lagrangian", _) | ("", "[units]") => {
             &[Derive, Compare, Impact, Trajectory, Lagrange, Response]
         }
@@ -91,10 +90,10 @@ fn readers(section: &str, key: &str) -> &'static [Reader] {
 }
 
 type Keys = &'static [&'static str];
-type Section = (&'static str, fn() -> Keys);
+type KeySection = (&'static str, fn() -> Keys);
 
 /// The sections, each with its keys, in the order in which unread ones are named.
-const SECTIONS: [Section; 15] = [
+const SECTIONS: [KeySection; 15] = [
     ("", || {
         &[
             "equation",
@@ -126,7 +125,7 @@ const SECTIONS: [Section; 15] = [
 
 /// Every key of a problem file, as messages name it, and the commands that read it, or refuse it
 /// with a reason of their own.
-pub fn keys() -> impl Iterator<Item = (String, &'static [Reader])> {
+pub fn keys() -> impl Iterator<Item = (String, &'static [ReadingCommand])> {
     SECTIONS.into_iter().flat_map(|(section, keys)| {
         keys().iter().map(move |key| {
             let name = match section {
@@ -142,13 +141,13 @@ pub fn keys() -> impl Iterator<Item = (String, &'static [Reader])> {
 fn keys_of<'de, T: Deserialize<'de>>() -> Keys {
     let mut keys: Keys = &[];
     // Its type asks for them by name, and is told nothing.
-    let _ = T::deserialize(Names(&mut keys));
+    let _ = T::deserialize(CollectNames(&mut keys));
     keys
 }
 
-struct Names<'a>(&'a mut Keys);
+struct CollectNames<'a>(&'a mut Keys);
 
-impl<'de> Deserializer<'de> for Names<'_> {
+impl<'de> Deserializer<'de> for CollectNames<'_> {
     type Error = serde::de::value::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {
@@ -191,7 +190,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
 
 impl Problem {
     /// Whether the file gives this key: `order`, `[run] duration`.
-    pub(super) fn gives(&self, key: &str) -> bool {
+    pub(super) fn has_key(&self, key: &str) -> bool {
         self.given.iter().any(|given| given == key)
     }
 
@@ -199,7 +198,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`ProblemError`] names the first, and the commands that read it.
-    pub fn check_keys(&self, reader: Reader) -> Result<(), ProblemError> {
+    pub fn check_keys(&self, reader: ReadingCommand) -> Result<(), ProblemError> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
         if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
@@ -212,7 +211,7 @@ impl Problem {
             ));
         }
         for (key, readers) in keys() {
-            if self.gives(&key) && !readers.contains(&reader) {
+            if self.has_key(&key) && !readers.contains(&reader) {
                 // Two readers may be one command.
                 let own = format!("`{reader}`");
                 let mut names: Vec<String> = Vec::new();

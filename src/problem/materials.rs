@@ -1,4 +1,4 @@
-//! What `materials` reads of a problem file: a design, what damps it, and `[[material]]`, the
+//! The input of `materials` from a problem file: a design, its damping, and `[[material]]`, the
 //! barriers that are tried.
 //!
 //! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the
@@ -7,8 +7,8 @@
 
 use super::design::{needs, positive};
 use super::document::MaterialSection;
-use super::simulate::{refuse_two_forms, without};
-use super::{Problem, ProblemError, Reader, SphereSection, refused};
+use super::simulate::{message_of_missing_key, refuse_two_forms};
+use super::{Problem, ProblemError, ReadingCommand, SphereSection, refused};
 use crate::impact::{
     ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion,
     Modulus, Parameter, default_lambda,
@@ -30,7 +30,7 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn materials(&self, only_own: bool) -> Result<MaterialQuestion, ProblemError> {
-        self.check_keys(Reader::Materials)?;
+        self.check_keys(ReadingCommand::Materials)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
@@ -49,7 +49,7 @@ impl Problem {
             case.zeta = DEFAULT_ZETA;
             defaults.push(Parameter::Zeta);
         }
-        if !self.gives("[run] duration") {
+        if !self.has_key("[run] duration") {
             settings.duration = DEFAULT_DURATION;
         }
         let mut materials = match only_own {
@@ -67,8 +67,8 @@ impl Problem {
         })
     }
 
-    /// The same file as it describes the design alone, whose barrier is the modulus at which a
-    /// damping is what is given.
+    /// Returns the file as a description of the design alone, whose barrier has the modulus at
+    /// which the damping is the given one.
     pub(super) fn for_design(&self) -> Self {
         Self {
             sphere: SphereSection { modulus: None, poisson: None, ..self.sphere },
@@ -78,7 +78,7 @@ impl Problem {
 
     /// Refuses an empty list.
     pub(super) fn check_materials(&self) -> Result<(), ProblemError> {
-        match self.material.is_empty() && self.gives("[[material]]") {
+        match self.material.is_empty() && self.has_key("[[material]]") {
             true => refused(
                 "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out",
             ),
@@ -129,7 +129,10 @@ impl Problem {
             ));
         }
         if section.at_speed.is_some() && section.restitution.is_none() {
-            return refused(format!("material `{name}`: {}", without("at_speed", &"restitution")));
+            return refused(format!(
+                "material `{name}`: {}",
+                message_of_missing_key("at_speed", &"restitution")
+            ));
         }
         Ok(Material {
             modulus: modulus.map_err(of_material)?,
@@ -154,7 +157,7 @@ impl Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::Design;
+    use crate::impact::hertz::StiffnessDesign;
 
     fn asked(text: &str) -> Result<MaterialQuestion, ProblemError> {
         text.parse::<Problem>().unwrap().materials(false)
@@ -173,7 +176,7 @@ mod tests {
     fn a_material_has_the_modulus_of_its_bodies() {
         let moduli = |text: &str| {
             let asked = asked(text).unwrap();
-            assert_eq!(asked.case.design, Design::default());
+            assert_eq!(asked.case.design, StiffnessDesign::default());
             asked.materials[3..].iter().map(|material| material.modulus.value()).collect::<Vec<_>>()
         };
         let cork = "[[material]]\nname = \"cork\"\nmodulus = 2e7\n";

@@ -1,5 +1,5 @@
-//! What a file says of a mechanism: energies, forces, units; and the equation that follows, where
-//! there is one coordinate.
+//! The mechanism of a file: energies, forces, units; and the equation that follows, if there is one
+//! coordinate.
 
 use std::collections::BTreeMap;
 
@@ -50,8 +50,8 @@ impl Problem {
         Ok(self.units.iter().map(unit).collect::<Result<_, UnitError>>()?)
     }
 
-    /// The same file with the equation that its energies give, where it has one coordinate: what
-    /// derives, compares and simulates reads that.
+    /// Returns the file with the equation that its energies give, if it has one coordinate: for the
+    /// commands that derive, compare and simulate.
     ///
     /// # Errors
     /// Energies that give none, or terms of a wrong unit.

@@ -1,4 +1,4 @@
-//! What is wrong with a TOML file, in words that need no Rust.
+//! Errors of a TOML file, in words that need no Rust.
 //!
 //! In: the error of the parser: words and a place, for serde hands on nothing else. Out: the same
 //! in the words of a problem file. So its words are read here, and here alone; those of every kind

@@ -44,8 +44,8 @@ pub use document::{
     GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
     Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
-pub use formula::Formula;
-pub use keys::{Reader, keys};
+pub use formula::FormulaProblem;
+pub use keys::{ReadingCommand, keys};
 pub(crate) use mistakes::{at_place, in_words};
 pub use primary::PrimaryProblem;
 pub use simulate::Simulate;
@@ -53,7 +53,8 @@ pub use simulate::Simulate;
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
 
-/// Why a file cannot be taken at its word: what is wrong with which key, and what to write instead.
+/// The reason why a file cannot be taken at its word: what is wrong with which key, and what to
+/// write instead.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ProblemError {
@@ -67,13 +68,13 @@ impl ProblemError {
         Self { message: message.to_string(), help: None }
     }
 
-    /// The same with a way forward.
+    /// Returns the error with advice.
     #[must_use]
     pub(crate) fn with_help(self, help: impl Into<Option<String>>) -> Self {
         Self { help: help.into(), ..self }
     }
 
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         self.help.clone()
     }
@@ -177,10 +178,10 @@ impl Problem {
         }
     }
 
-    /// Where the stiffness of the contact comes from, with this design.
-    fn stiffness_source(&self, design: &Design) -> &'static str {
+    /// The source of the stiffness of the contact, with this design.
+    fn stiffness_source(&self, design: &StiffnessDesign) -> &'static str {
         if self.contact.gamma.is_none() {
-            return match *design == Design::default() {
+            return match *design == StiffnessDesign::default() {
                 true => {
                     "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma"
                 }
@@ -198,7 +199,7 @@ impl Problem {
             let mut keys = without_say
                 .iter()
                 .flat_map(|key| sections.iter().map(move |section| format!("[{section}] {key}")));
-            keys.any(|key| self.gives(&key))
+            keys.any(|key| self.has_key(&key))
         };
         match (gives(&["design"]), gives(&["pendulum", "sphere", "barrier"])) {
             (true, _) => "given: [design] has no say in it",

@@ -1,16 +1,18 @@
-//! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`,
-//! and `[[material]]` to choose from.
+//! The input of `optimize` from a problem file: a pendulum and its damping, `[limits]`,
+//! `[genetic]`, and `[[material]]` to choose from.
 //!
-//! In: a [`Problem`]. Out: a [`Question`]. A quantity of the paper's Table 4 varies between its
-//! limits there unless `[limits]` has others; given in `[design]`, or by its own name, it is fixed.
-//! With `[[material]]` a material takes the place of the modulus.
+//! In: a [`Problem`]. Out: an [`OptimizationProblem`]. A quantity of the paper's Table 4 varies
+//! between its limits there unless `[limits]` has others; given in `[design]`, or by its own name,
+//! it is fixed. With `[[material]]` a material takes the place of the modulus.
 
 use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
-use super::{Objectives, Problem, ProblemError, Reader, refused};
-use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
+use super::{Objectives, Problem, ProblemError, ReadingCommand, refused};
+use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
-use crate::optimize::{DEFAULT_BOX, Limit, Objective, OptimizeError, Question, Variable};
+use crate::optimize::{
+    DEFAULT_BOX, Limit, Objective, OptimizationProblem, OptimizeError, Variable,
+};
 use crate::spelling::nearest;
 
 /// The keys that fix a variable: in `[design]`, or by its own name.
@@ -49,7 +51,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`ProblemError`] names the key. Whether the options make a search is seen by
-    /// [`Question::check`].
+    /// [`OptimizationProblem::check`].
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -60,12 +62,15 @@ impl Problem {
     /// assert_eq!((asked.variables[1].lower, asked.case.design.mass), (0.1, 0.05));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn optimize(&self) -> Result<Question, ProblemError> {
-        self.check_keys(Reader::Optimize)?;
+    pub fn optimize(&self) -> Result<OptimizationProblem, ProblemError> {
+        self.check_keys(ReadingCommand::Optimize)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
-        let mut question = Question { case: self.for_design().case()?, ..Question::default() };
+        let mut question = OptimizationProblem {
+            case: self.for_design().case()?,
+            ..OptimizationProblem::default()
+        };
         let case = &mut question.case;
         if case.left.is_none() && case.right.is_none() {
             return refused(
@@ -81,7 +86,7 @@ impl Problem {
             question.defaults.push(Parameter::Zeta);
         }
         question.settings = self.settings()?;
-        if !self.gives("[run] duration") {
+        if !self.has_key("[run] duration") {
             question.settings.duration = DEFAULT_DURATION;
         }
         self.boundaries(&mut question)?;
@@ -94,8 +99,8 @@ impl Problem {
         Ok(question)
     }
 
-    /// What varies.
-    fn boundaries(&self, question: &mut Question) -> Result<(), ProblemError> {
+    /// Reads the variables.
+    fn boundaries(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         self.check_materials()?;
         self.own_materials(&mut question.materials)?;
@@ -107,7 +112,7 @@ impl Problem {
                 Parameter::Length => limits.length,
                 _ => limits.modulus,
             };
-            let fixed = fixing(parameter).into_iter().find(|key| self.gives(key));
+            let fixed = fixing(parameter).into_iter().find(|key| self.has_key(key));
             let name = parameter.name();
             if parameter == Parameter::Modulus && !question.materials.is_empty() {
                 let key = fixed.or(given.map(|_| "[limits] modulus"));
@@ -136,8 +141,8 @@ impl Problem {
         Ok(())
     }
 
-    /// What must be kept.
-    fn kept(&self, question: &mut Question) -> Result<(), ProblemError> {
+    /// Reads the limits.
+    fn kept(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         let of = [
             (Objective::RestTime, limits.max_rest_time),
@@ -184,8 +189,8 @@ impl Problem {
         }
     }
 
-    /// What carries the pendulum, where its rest counts.
-    fn carried(&self, question: &mut Question) -> Result<(), ProblemError> {
+    /// Reads the main mass that carries the pendulum, if its rest is an objective or limited.
+    fn carried(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limited = question.limits.iter().map(|limit| limit.objective);
         let counts =
             question.objectives.iter().copied().chain(limited).any(Objective::is_of_main_mass);
@@ -221,8 +226,8 @@ impl Problem {
         Ok(())
     }
 
-    /// How it is searched.
-    fn search_options(&self, question: &mut Question) -> Result<(), ProblemError> {
+    /// Reads the options of the search.
+    fn search_options(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let names = match &section.objective {
             None => vec![Objective::RestTime.name().to_owned()],
@@ -246,7 +251,7 @@ impl Problem {
             question.runs = count(section.runs, SEVERAL_RUNS);
             options.generations = count(section.generations, SEVERAL_GENERATIONS);
             for key in ONE_OBJECTIVE {
-                if self.gives(&format!("[genetic] {key}")) {
+                if self.has_key(&format!("[genetic] {key}")) {
                     return Err(OptimizeError::OneObjective(key).into());
                 }
             }
@@ -268,8 +273,8 @@ impl Problem {
         Ok(())
     }
 
-    /// How designs are written as genes, crossed and changed.
-    fn operators(&self, options: &mut Options) -> Result<(), ProblemError> {
+    /// Reads coding, crossover and mutation.
+    fn operators(&self, options: &mut GeneticOptions) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let bits = section.bits.unwrap_or(DEFAULT_BITS);
         let coding = [("real", Coding::Real), ("bits", Coding::Bits(bits))];
@@ -309,8 +314,8 @@ impl Problem {
         Ok(())
     }
 
-    /// What a design pays that breaks a constraint.
-    fn penalty(&self, question: &mut Question) -> Result<(), ProblemError> {
+    /// Reads the penalty of a violated constraint.
+    fn penalty(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let constrained =
             question.density.is_some() || question.elastic || !question.limits.is_empty();
@@ -342,14 +347,14 @@ impl Problem {
         Ok(())
     }
 
-    /// An error where a key is given whose condition, named by `other`, is not there.
+    /// An error if a key is given whose condition, named by `other`, is not there.
     fn needs(
         &self,
         key: &'static str,
         there: bool,
         other: &'static str,
     ) -> Result<(), ProblemError> {
-        match self.gives(&format!("[genetic] {key}")) && !there {
+        match self.has_key(&format!("[genetic] {key}")) && !there {
             true => refused(format!(
                 "`[genetic] {key}` changes nothing without {other}: give that too, or leave it out"
             )),
@@ -361,7 +366,7 @@ impl Problem {
 /// Bits of a number, where they are not given.
 const DEFAULT_BITS: u32 = 16;
 
-/// How often a bit is turned over, where it is not given.
+/// The default probability of a bit flip.
 const DEFAULT_RATE: f64 = 0.01;
 
 /// Runs of a search for a front, where they are not given.
@@ -370,7 +375,7 @@ const SEVERAL_RUNS: usize = 10;
 /// Generations of one, where they are not given.
 const SEVERAL_GENERATIONS: usize = 100;
 
-/// What says nothing to a search for a front.
+/// The keys without effect in a search for a front.
 const ONE_OBJECTIVE: [&str; 14] = [
     "elite",
     "crossover_fraction",
@@ -392,14 +397,14 @@ const ONE_OBJECTIVE: [&str; 14] = [
 mod tests {
     use super::*;
 
-    fn asked(text: &str) -> Result<Question, ProblemError> {
+    fn asked(text: &str) -> Result<OptimizationProblem, ProblemError> {
         text.parse::<Problem>().unwrap().optimize()
     }
 
     #[test]
     fn an_empty_file_is_the_papers_study() {
-        let (of_file, of_library) = (asked("").unwrap(), Question::default());
-        assert_eq!(Question { settings: of_library.settings, ..of_file }, of_library);
+        let (of_file, of_library) = (asked("").unwrap(), OptimizationProblem::default());
+        assert_eq!(OptimizationProblem { settings: of_library.settings, ..of_file }, of_library);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! What `simulate` reads of a file with a main mass, `[primary]`.
+//! The input of `simulate` from a file with a main mass, `[primary]`.
 
 use super::document::{Pendulum, PrimarySection};
-use super::simulate::without;
+use super::simulate::message_of_missing_key;
 use super::{Problem, ProblemError, refused};
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
 use crate::impact::{Parameter, Start, Units};
 
@@ -12,18 +12,18 @@ use crate::impact::{Parameter, Start, Units};
 pub struct PrimaryProblem {
     /// Both bodies and where they begin.
     pub case: PrimaryCase,
-    /// How long and how closely.
+    /// Duration and accuracy.
     pub settings: PrimarySettings,
-    /// What a number is in SI units.
+    /// The units of the numbers.
     pub units: Units,
 }
 
-/// How long both are followed where the file does not say, in units of 1/omega: until the main mass
-/// would have rested with the damper locked and without, within reason.
+/// The default duration, in units of 1/omega: until the main mass would have come to rest with the
+/// damper locked and without, within reason.
 fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;
-    let others = primary.others();
+    let others = primary.undamped_and_locked();
     let rests = [others.locked.rest_time, others.without.rest_time].into_iter().flatten();
     rests.fold(USUAL, |longest, rest| longest.max(1.2 * rest)).min(LONGEST)
 }
@@ -86,7 +86,7 @@ impl Problem {
             return at_rest();
         }
         let usual = PrimarySettings::default();
-        let given = |key: &str| self.gives(&format!("[run] {key}"));
+        let given = |key: &str| self.has_key(&format!("[run] {key}"));
         Ok(PrimaryProblem {
             case: PrimaryCase { primary, model, start },
             settings: PrimarySettings {
@@ -116,7 +116,7 @@ pub(super) fn at_rest<T>() -> Result<T, ProblemError> {
 impl Problem {
     /// Refuses a tolerance, which would change nothing.
     pub(super) fn refuse_tolerance_of_main_mass(&self) -> Result<(), ProblemError> {
-        match self.gives("[run] integrator_tolerance") {
+        match self.has_key("[run] integrator_tolerance") {
             true => refused(
                 "`[run] integrator_tolerance` changes nothing beside [primary], which is followed to rounding accuracy: leave it out",
             ),
@@ -128,12 +128,12 @@ impl Problem {
     /// start.
     pub(super) fn hangs_at_rest(&self) -> bool {
         let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
-        !starts.iter().any(|key| self.gives(key))
+        !starts.iter().any(|key| self.has_key(key))
     }
 }
 
 /// The units of a design.
-fn in_si(design: &Design) -> Units {
+fn in_si(design: &StiffnessDesign) -> Units {
     Units {
         mass: design.mass,
         length: design.length,
@@ -203,8 +203,8 @@ impl PrimarySection {
         let stiffness = self.stiffness.ok_or_else(|| missing("stiffness"))?;
         let pair = ["[primary] force", "[primary] frequency"];
         match (self.force, self.frequency) {
-            (Some(_), None) => return refused(without(pair[0], &pair[1])),
-            (None, Some(_)) => return refused(without(pair[1], &pair[0])),
+            (Some(_), None) => return refused(message_of_missing_key(pair[0], &pair[1])),
+            (None, Some(_)) => return refused(message_of_missing_key(pair[1], &pair[0])),
             _ => {}
         }
         let least = [

@@ -1,9 +1,10 @@
-//! What `simulate` reads of a problem file: a case of equation (7), and how closely to follow it.
+//! The input of `simulate` from a problem file: a case of equation (7), and the accuracy of its
+//! integration.
 
-use super::{Barrier, BarrierSide, Problem, ProblemError, Reader, Run, refused};
+use super::{Barrier, BarrierSide, Problem, ProblemError, ReadingCommand, Run, refused};
 use crate::impact::{Case, ContactDamping, Friction, Parameter, Settings, Side, Units};
 
-/// What a problem file says of a motion.
+/// The motion that a problem file describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulate {
     /// The pendulum, its barrier, its start.
@@ -12,9 +13,9 @@ pub struct Simulate {
     pub settings: Settings,
     /// Whether the file says for how long.
     pub duration_given: bool,
-    /// Where gamma comes from.
+    /// The source of gamma.
     pub gamma_source: &'static str,
-    /// Where mu comes from.
+    /// The source of mu.
     pub mu_source: &'static str,
     /// The pendulum in SI units, where they are known.
     pub units: Option<Units>,
@@ -47,8 +48,8 @@ impl TryFrom<&Problem> for Simulate {
 }
 
 impl Problem {
-    /// What this file says of motions whose `swept` parameters get other values later, as if it
-    /// gave them too.
+    /// Reads the motion of this file, in which the `swept` parameters will get other values later,
+    /// as if the file gave them too.
     ///
     /// # Errors
     /// [`ProblemError`] names the section and the key. Whether the numbers make a motion is seen
@@ -71,7 +72,7 @@ impl Problem {
                 "simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`",
             );
         }
-        self.check_keys(Reader::Simulate)?;
+        self.check_keys(ReadingCommand::Simulate)?;
         refuse_two_forms(gives)?;
         let mut case = self.case()?;
         case.speed_unit = self.speed_unit(swept);
@@ -80,7 +81,7 @@ impl Problem {
         self.check_pairs(gives)?;
         Ok(Simulate {
             settings,
-            duration_given: self.gives("[run] duration"),
+            duration_given: self.has_key("[run] duration"),
             gamma_source: self.stiffness_source(&case.design),
             mu_source: match case.contact_damping {
                 _ if !ContactDamping::FORMS.into_iter().any(gives) => "default",
@@ -113,7 +114,7 @@ impl Problem {
             Parameter::ContactDamping => contact.damping.is_some(),
             Parameter::Viscous => damping.viscous.is_some(),
             Parameter::Torque => damping.torque.is_some(),
-            _ => self.gives(&parameter.to_string()),
+            _ => self.has_key(&parameter.to_string()),
         }
     }
 
@@ -285,10 +286,10 @@ impl Problem {
         let pairs = [
             (FrequencyRatio.to_string(), gives(FrequencyRatio), Beta, gives(Beta)),
             (AtSpeed.to_string(), gives(AtSpeed), Restitution, gives(Restitution)),
-            (friction.to_owned(), self.gives(friction), Alpha, has_friction),
+            (friction.to_owned(), self.has_key(friction), Alpha, has_friction),
         ];
         match pairs.into_iter().find(|(_, given, _, other_given)| *given && !other_given) {
-            Some((key, _, other, _)) => refused(without(&key, &other)),
+            Some((key, _, other, _)) => refused(message_of_missing_key(&key, &other)),
             None => Ok(()),
         }
     }
@@ -324,7 +325,7 @@ impl Run {
 }
 
 /// Words for a key that says something only beside another one.
-pub(super) fn without(key: &str, other: &impl std::fmt::Display) -> String {
+pub(super) fn message_of_missing_key(key: &str, other: &impl std::fmt::Display) -> String {
     format!("`{key}` changes nothing without `{other}`: give that too, or leave it out")
 }
 

@@ -1,9 +1,9 @@
-//! What `simulate` reads of a file with an equation or a mechanism of its own.
+//! The input of `simulate` from a file with an equation or a mechanism of its own.
 
 use super::mechanism::no_mechanism;
-use super::{Problem, ProblemError, Reader};
+use super::{Problem, ProblemError, ReadingCommand};
 use crate::oscillator::Oscillator;
-use crate::trajectory::Course;
+use crate::trajectory::TrajectoryRequest;
 
 impl Problem {
     /// The motion of the equation or the mechanism of the file, from rest at zero: its start and
@@ -20,14 +20,14 @@ impl Problem {
     /// assert_eq!((course.duration, course.parameters()), (10.0, vec!["k".into()]));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn course(&self) -> Result<Course, ProblemError> {
-        self.check_keys(Reader::Trajectory)?;
+    pub fn course(&self) -> Result<TrajectoryRequest, ProblemError> {
+        self.check_keys(ReadingCommand::Trajectory)?;
         let mut course = match (&self.lagrangian, &self.equation) {
             (Some(_), _) => {
                 let mechanism = self.mechanism()?.mechanism;
-                Course::of_mechanism(&mechanism, &mechanism.equations()?)?
+                TrajectoryRequest::of_mechanism(&mechanism, &mechanism.equations()?)?
             }
-            (None, Some(equation)) => Course::of_equation(&Oscillator::parse(equation)?),
+            (None, Some(equation)) => TrajectoryRequest::of_equation(&Oscillator::parse(equation)?),
             (None, None) => return Err(no_mechanism()),
         };
         course.duration = self.run.duration()?;

@@ -2,7 +2,9 @@
 //! its verdict.
 
 use super::{Block, Document};
-use crate::audit::{ABSENT, Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
+use crate::audit::{
+    ABSENT, Audit, ClaimAttempt, ClaimFinding, Computed, NotComputable, PrintedStatement, Verdict,
+};
 use crate::decimal::{decimal, significant};
 
 /// The document of an audit.
@@ -19,7 +21,7 @@ use crate::decimal::{decimal, significant};
 pub fn audit(audit: &Audit) -> Document<'_> {
     let mut sections = vec![summary(audit)];
     for verdict in Verdict::ALL {
-        let found: Vec<&Finding> =
+        let found: Vec<&ClaimFinding> =
             audit.findings.iter().filter(|finding| finding.verdict == verdict).collect();
         if !found.is_empty() {
             sections.push(table(verdict, &found));
@@ -30,7 +32,7 @@ pub fn audit(audit: &Audit) -> Document<'_> {
             && finding.claim.note.is_none()
             && finding.is_as_expected();
         if !plain {
-            sections.push(story(finding));
+            sections.push(finding_blocks(finding));
         }
     }
     Document { sections }
@@ -55,10 +57,10 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
     ]
 }
 
-fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
+fn table<'a>(verdict: Verdict, findings: &[&ClaimFinding]) -> Vec<Block<'a>> {
     let name = verdict.name();
     let assumes = verdict == Verdict::UnderAssumption;
-    let row = |finding: &&Finding| {
+    let row = |finding: &&ClaimFinding| {
         let cells = [
             finding.claim.place.clone(),
             finding.claim.id.clone(),
@@ -79,20 +81,24 @@ pub(crate) fn printed(finding: &Finding) -> String {
     let entries = &finding.claim.entries;
     match &entries[..] {
         [entry] => entry.printed.clone(),
-        [entry, ..] if matches!(entry.stated, Stated::Trend(_)) => entry.printed.clone(),
+        [entry, ..] if matches!(entry.stated, PrintedStatement::Trend(_)) => entry.printed.clone(),
         several => format!("{} entries", several.len()),
     }
 }
 
-/// What is computed, in one line; empty where nothing is.
-pub(crate) fn computed(finding: &Finding) -> String {
-    let Some(shown) = finding.shown() else {
+/// The computed value, in one line; empty if there is none.
+pub(crate) fn computed(finding: &ClaimFinding) -> String {
+    let Some(shown) = finding.displayed_attempt() else {
         return String::new();
     };
-    let trend =
-        matches!(finding.claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
+    let trend = matches!(
+        finding.claim.entries.first().map(|entry| &entry.stated),
+        Some(PrintedStatement::Trend(_))
+    );
     match &shown.computed[..] {
-        [_] => entry(finding, shown, 0).or_else(|| demanded(finding)).unwrap_or_default(),
+        [_] => entry(finding, shown, 0)
+            .or_else(|| required_value_in_words(finding))
+            .unwrap_or_default(),
         several if trend => {
             let each: Vec<String> =
                 (0..several.len()).filter_map(|index| entry(finding, shown, index)).collect();
@@ -105,17 +111,17 @@ pub(crate) fn computed(finding: &Finding) -> String {
     }
 }
 
-/// What a claim would need of an unknown number that may not be so.
-fn demanded(finding: &Finding) -> Option<String> {
+/// The value of an unknown that a claim requires and that it cannot have, in words.
+fn required_value_in_words(finding: &ClaimFinding) -> Option<String> {
     let demand = finding.demand?;
     Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
 }
 
-/// What is computed for an entry, with two digits more than are printed; in the unit of what is
-/// printed; nothing where it lacks something.
-pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<String> {
+/// The computed value of an entry, with two digits more than are printed, in the unit of the
+/// printed number; `None` if it cannot be computed.
+pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) -> Option<String> {
     let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
-        Some(Stated::Number(printed)) => printed.alike(number, 6),
+        Some(PrintedStatement::Number(printed)) => printed.formatted_alike(number, 6),
         _ => decimal(number),
     };
     match tried.computed.get(index)? {
@@ -128,12 +134,12 @@ pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<St
             1 => "one conflict".to_owned(),
             count => format!("{count} conflicts"),
         }),
-        Err(Lack::Missing(_) | Lack::Refused(_)) => None,
+        Err(NotComputable::Missing(_) | NotComputable::Refused(_)) => None,
     }
 }
 
 /// A claim and what speaks for its verdict.
-fn story(finding: &Finding) -> Vec<Block<'_>> {
+fn finding_blocks(finding: &ClaimFinding) -> Vec<Block<'_>> {
     let claim = &finding.claim;
     let place = if claim.place.is_empty() { &claim.id } else { &claim.place };
     let says = if claim.says.is_empty() { String::new() } else { format!(": {}", claim.says) };
@@ -154,7 +160,7 @@ fn story(finding: &Finding) -> Vec<Block<'_>> {
     blocks
 }
 
-/// So many claims, in words.
+/// The number of claims in words.
 fn claims(count: usize) -> String {
     match count {
         1 => "1 claim".to_owned(),

@@ -8,14 +8,14 @@ use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range,
-    Validity, coordinate,
+    Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, RangeEnd,
+    SizeBounds, Validity, coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
     rounded_fraction, rounded_up, significant_fraction,
 };
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
@@ -29,9 +29,9 @@ use crate::verify::Verdict;
 /// A certificate of either kind.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyCertificate<'a> {
-    /// Of a motion whose energy is conserved.
+    /// The certificate of a motion whose energy is conserved.
     Motion(&'a Certificate),
-    /// Of a limit cycle, or of a driven motion.
+    /// The certificate of a limit cycle, or of a driven motion.
     Damped(&'a DampedCertificate),
 }
 
@@ -76,7 +76,8 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What is proved to be periodic, with the letters of the coordinate and of the frequency.
+    /// The statement of the proved periodicity, with the letters of the coordinate and of the
+    /// frequency.
     fn motion(&self, letter: Symbol, omega: &str) -> String {
         match self {
             Self::Motion(certificate) => format!(
@@ -161,9 +162,9 @@ pub struct CertificateReport<'a> {
     pub question: Option<(&'a Solution, &'a Values)>,
     /// The certificate.
     pub certificate: AnyCertificate<'a>,
-    /// What it proves.
+    /// The proved motion and its errors.
     pub certified: &'a Certified,
-    /// How far the formula is proved to hold, where that was asked for.
+    /// The range in which the formula is proved to hold, if it was asked for.
     pub validity: Option<&'a Validity>,
     /// The error of the frequency, of a driven motion that of the amplitude, up to which the
     /// formula passes.
@@ -184,10 +185,10 @@ impl CertificateReport<'_> {
         named.map_or_else(|| "Omega".to_owned(), |named| named.driving_frequency.to_string())
     }
 
-    /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
+    /// Whether the formula is proved to be within the tolerance; `None` if no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
-        Some(Verdict::of(errors.relative.upper <= not_above_typed(self.tolerance)))
+        Some(Verdict::from_passed(errors.relative.upper <= not_above_typed(self.tolerance)))
     }
 }
 
@@ -221,7 +222,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             match (&solution.response, &solution.modulation) {
                 (Some(response), Some(slow)) => slow_equations(solution, response, slow),
                 _ => {
-                    let law = solution.law.shown().into_iter();
+                    let law = solution.law.display_forms().into_iter();
                     law.flat_map(|law| law_blocks(solution, law)).collect()
                 }
             },
@@ -229,7 +230,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         ],
         None => {
             let left = certificate.left_side();
-            vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
+            vec![vec![Block::Line(Cow::Owned(DerivationLine::equation(left, Expr::zero())))]]
         }
     };
     sections.retain(|blocks| !blocks.is_empty());
@@ -313,7 +314,8 @@ fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static st
         true => significant_fraction(value, 6),
         false => value.to_string(),
     };
-    // What is not proved is not said: six digits, the last one towards the inside of the range.
+    // Only proved amplitudes are printed: six digits, the last one rounded towards the inside of
+    // the range.
     let inside = [&neighbours(&validity.from, 6)[1], &neighbours(&validity.to, 6)[0]];
     let [from, to] = match inside[0] <= inside[1] {
         true => inside.map(|end| significant_fraction(end, 6)),
@@ -321,18 +323,18 @@ fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static st
     };
     let within = percent(report.tolerance);
     let beyond = match &validity.beyond {
-        Beyond::Asked => None,
-        Beyond::Further(place) => {
+        RangeEnd::Asked => None,
+        RangeEnd::Further(place) => {
             Some(format!("{omega} is off by more at {letter} = {}, proved", amplitude(place)))
         }
-        Beyond::Open(place) => Some(format!(
+        RangeEnd::Open(place) => Some(format!(
             "at {letter} = {} {omega} is neither proved to be within nor beyond",
             amplitude(place)
         )),
-        Beyond::Unproved(place, reason) => {
+        RangeEnd::Unproved(place, reason) => {
             Some(format!("at {letter} = {}: {reason}", amplitude(place)))
         }
-        Beyond::Stopped => Some("stopped before the end".to_owned()),
+        RangeEnd::Stopped => Some("stopped before the end".to_owned()),
     };
     let proved = format!("{omega} within {within} % for every {letter} from {from} to {to}");
     let proved = match validity.intervals {
@@ -521,18 +523,18 @@ pub(super) fn percent(tolerance: f64) -> String {
 }
 
 /// A number with its two ends, each rounded outwards, in one where they agree.
-fn between(range: Range, unit: &str) -> String {
+fn between(range: SizeBounds, unit: &str) -> String {
     let ends = [range.lower, range.upper].map(from_f64);
     between_exactly(ends, unit)
 }
 
 /// A ratio with its two ends in percent, likewise.
-fn between_percent(range: Range) -> String {
+fn between_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(from_f64(end)? * Integer::from(100));
     between_exactly([range.lower, range.upper].map(percent), " %")
 }
 
-/// Ends of which the second is `None` where nothing is known.
+/// Ends of which the second is `None` if nothing is known.
 fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String {
     /// Digits of ends that agree, and of others.
     const DIGITS: [usize; 2] = [6, 4];
@@ -557,7 +559,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
 }
 
 /// A ratio in percent with six digits where both ends have the same, else as [`between`] says it.
-pub(super) fn rounded_percent(range: Range) -> String {
+pub(super) fn rounded_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(rounded_fraction(&(from_f64(end)? * Integer::from(100)), 6));
     match [range.lower, range.upper].map(percent) {
         [Some(lower), Some(upper)] if lower == upper && !upper.is_zero() => {

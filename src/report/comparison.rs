@@ -1,7 +1,7 @@
 //! Every method on one equation.
 
 use super::{Block, Document, MethodRow};
-use crate::verify::comparison::{Comparison, Row};
+use crate::verify::comparison::{Comparison, ComparisonRow};
 
 /// The document of a comparison: the truth, the table, why some rows have no frequency, who does
 /// not apply, where the true motion is periodic.
@@ -58,7 +58,7 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     Document { sections }
 }
 
-fn method_row(row: &Row) -> MethodRow<'_> {
+fn method_row(row: &ComparisonRow) -> MethodRow<'_> {
     MethodRow {
         row,
         title: row.solution.title(),

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{Block, Document, size_in_percent};
 use crate::decimal::{decimal, significant};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::solution::{Modulation, Response, Solution};
@@ -44,13 +44,20 @@ pub(super) fn driven<'a>(
     Document { sections }
 }
 
-fn equation<'a>(left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
-    Block::Line(Cow::Owned(Line::equation(left, right)))
+fn equation<'a>(
+    left: impl Into<DerivationFormula>,
+    right: impl Into<DerivationFormula>,
+) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
 }
 
 /// Words before an equation.
-fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
-    Block::Line(Cow::Owned(Line::equation(left, right).because(words)))
+fn equation_with_words<'a>(
+    words: &str,
+    left: impl Into<DerivationFormula>,
+    right: impl Into<DerivationFormula>,
+) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right).because(words)))
 }
 
 /// The motion as a function of time.
@@ -101,33 +108,41 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
             let either = [&centre - &width, &centre + &width];
             let words = ["solved for the detuning", "and"];
             for (words, branch) in words.iter().zip(either) {
-                blocks.push(said(words, detuning, branch));
+                blocks.push(equation_with_words(words, detuning, branch));
             }
         }
     }
     if let Some(closed) = &response.closed {
-        blocks.push(said("frequency response", Expr::zero(), closed.relation.clone()));
+        blocks.push(equation_with_words(
+            "frequency response",
+            Expr::zero(),
+            closed.relation.clone(),
+        ));
         if let (Some(detuning), Ok(width)) = (detuning, closed.width_squared.sqrt()) {
-            blocks.push(said("solved for the detuning", detuning, &closed.centre - &width));
-            blocks.push(said("and", detuning, &closed.centre + &width));
+            blocks.push(equation_with_words(
+                "solved for the detuning",
+                detuning,
+                &closed.centre - &width,
+            ));
+            blocks.push(equation_with_words("and", detuning, &closed.centre + &width));
         }
     }
     if let Some(frequency) = solution.law.frequency() {
-        blocks.push(said("backbone", Symbol::new("omega"), polynomial(frequency)));
+        blocks.push(equation_with_words("backbone", Symbol::new("omega"), polynomial(frequency)));
     }
     if let Some(form) = solution.law.closed_form() {
-        blocks.push(said("backbone", Symbol::new("omega"), form.value.clone()));
+        blocks.push(equation_with_words("backbone", Symbol::new("omega"), form.value.clone()));
     }
     let a = solution.amplitude.symbol();
     if let Some(peak) = &response.peak {
-        blocks.push(said("largest amplitude", a, peak.clone()));
+        blocks.push(equation_with_words("largest amplitude", a, peak.clone()));
     }
     for fold in &response.folds {
         let square = Expr::product([Expr::from(a), Expr::from(a)]);
-        blocks.push(said("branches meet at", square, fold.clone()));
+        blocks.push(equation_with_words("branches meet at", square, fold.clone()));
     }
     if let Some(jumps) = &response.jumps {
-        blocks.push(said(
+        blocks.push(equation_with_words(
             "jumps, where this discriminant changes its sign",
             Expr::zero(),
             polynomial(jumps),
@@ -222,7 +237,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     blocks
 }
 
-/// What is said of steady motions that the truncation alone makes.
+/// A remark on steady motions that the truncation alone makes; `None` if there are none.
 fn left_out(count: usize) -> Option<String> {
     let motions = match count {
         0 => return None,
@@ -234,7 +249,7 @@ fn left_out(count: usize) -> Option<String> {
     ))
 }
 
-/// How good the formula of the judged motion is: what it leaves of the equation, and the order of
+/// The quality of the formula of the judged motion: its residual in the equation, and the order of
 /// its error.
 fn quality(verification: &Verification) -> Option<String> {
     let residual = verification.residual?;

@@ -2,7 +2,7 @@
 //! rest.
 
 use super::{Block, Document};
-use crate::audit::paper::{Table, TableRow};
+use crate::audit::paper::{FrictionTable, TableRow};
 use crate::decimal::{decimal, significant};
 use crate::impact::NoRest;
 use crate::impact::friction::{Creep, FrictionStudy, NearRest};
@@ -20,7 +20,7 @@ use crate::impact::friction::{Creep, FrictionStudy, NearRest};
 pub fn friction(study: &FrictionStudy) -> Document<'_> {
     let alpha = study.setup.alpha;
     let near_rest = &study.near_rest;
-    let table = Table::of(study);
+    let table = FrictionTable::from_study(study);
     Document {
         sections: vec![
             vec![
@@ -42,7 +42,7 @@ fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 4))
 }
 
-fn speeds(table: &Table) -> Vec<Block<'static>> {
+fn speeds(table: &FrictionTable) -> Vec<Block<'static>> {
     let row = |row: &TableRow| {
         let [value, error, treatment] = match row.printed {
             Some([value, error]) => [
@@ -85,7 +85,7 @@ fn speeds(table: &Table) -> Vec<Block<'static>> {
     ]
 }
 
-fn readings(table: &Table) -> Vec<Block<'static>> {
+fn readings(table: &FrictionTable) -> Vec<Block<'static>> {
     let rows = table.readings.iter().map(|reading| {
         let counts = [reading.rounded, reading.cut, reading.either].map(|count| count.to_string());
         [&[reading.name.to_owned()], &counts[..]].concat()

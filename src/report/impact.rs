@@ -8,10 +8,10 @@ use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, Quantity,
-    Reading, Setup, SiImpact, Side, YieldCheck,
+    Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, ImpactSymbols,
+    JudgedPhases, Modulus, PhaseReading, Setup, SiImpact, Side, YieldCheck,
 };
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 
@@ -28,7 +28,7 @@ use crate::symbol::Symbol;
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
-        asked(
+        problem_blocks(
             &impact.setup,
             impact.letters,
             [impact.equilibrium, impact.turning_point],
@@ -38,7 +38,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
     for column in &impact.columns {
         sections.push(match (column.reading, &impact.flight) {
-            (Reading::Derived, Some(flight)) => derived(impact, column, flight),
+            (PhaseReading::Derived, Some(flight)) => derived(impact, column, flight),
             _ => papers(impact, column),
         });
     }
@@ -68,7 +68,7 @@ fn is_minus_amplitude(setup: &Setup, equilibrium: f64) -> bool {
     equilibrium == 0.0 && setup.side == Side::Right
 }
 
-/// Where a flight begins and ends, in words.
+/// The turning point of the flights, in words.
 fn release(impact: &Impact) -> String {
     match is_minus_amplitude(&impact.setup, impact.equilibrium) {
         true => "-A".to_owned(),
@@ -95,9 +95,9 @@ fn start(impact: &Impact) -> String {
     )
 }
 
-pub(super) fn asked(
+pub(super) fn problem_blocks(
     setup: &Setup,
-    letters: Letters,
+    letters: ImpactSymbols,
     [equilibrium, turning_point]: [f64; 2],
     damping: f64,
 ) -> Vec<Block<'_>> {
@@ -141,8 +141,8 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
 /// The law in a line, omega^2 where there are two; a balance or an integral stays with
 /// `lindstedt derive`.
 fn first_law(solution: &Solution) -> Vec<Block<'_>> {
-    match solution.law.shown().into_iter().next() {
-        None | Some(Shown::System(_) | Shown::Quadrature(_)) => vec![],
+    match solution.law.display_forms().into_iter().next() {
+        None | Some(DisplayedLaw::System(_) | DisplayedLaw::Quadrature(_)) => vec![],
         Some(shown) => law_blocks(solution, shown),
     }
 }
@@ -152,10 +152,10 @@ fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
 }
 
 /// A reading by the paper's way.
-fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
+fn papers<'a>(impact: &Impact, column: &'a JudgedPhases) -> Vec<Block<'a>> {
     let setup = &impact.setup;
     let words = match column.reading {
-        Reading::Paper => {
+        PhaseReading::Paper => {
             "The paper's way: every join continuous, contact speed from the one-term motion"
                 .to_owned()
         }
@@ -186,21 +186,21 @@ fn energy_speed(impact: &Impact) -> String {
     }
 }
 
-fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block<'a>> {
+fn phases<'a>(impact: &Impact, column: &'a JudgedPhases) -> impl Iterator<Item = Block<'a>> {
     let (letters, release, is_lossy) =
         (impact.letters, release(impact), impact.setup.loss.is_some());
     column.phases.phases.iter().map(move |phase| Block::Phase {
         phase,
         letters,
         release: match phase.name == "return" && is_lossy {
-            true => decimal(phase.at(phase.end).0),
+            true => decimal(phase.phase_point_at(phase.end).0),
             false => release.clone(),
         },
     })
 }
 
 /// The derived reading: its law, how it was chosen, its phases.
-fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<Block<'a>> {
+fn derived<'a>(impact: &Impact, column: &'a JudgedPhases, flight: &'a Flight) -> Vec<Block<'a>> {
     let solution = &flight.solution;
     let mut blocks = vec![Block::Reading {
         reading: column.reading,
@@ -252,7 +252,7 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
     blocks
 }
 
-/// What is to be said of a contact that is not the exact one.
+/// Remarks on a contact that is not the exact one.
 fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a>> {
     let lines = match contact {
         DerivedContact::Elastic(contact) if contact.law == ContactLaw::Exact => vec![],
@@ -350,7 +350,7 @@ fn attempted(attempt: &Attempt) -> String {
 }
 
 fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
-    let columns: Vec<Reading> = impact.columns.iter().map(|column| column.reading).collect();
+    let columns: Vec<PhaseReading> = impact.columns.iter().map(|column| column.reading).collect();
     let amplitude = impact.amplitude();
     // The power of ten above it; below 1e-15 nothing is known.
     let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());
@@ -413,7 +413,7 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2){damped} H({inside}) = 0"
     ))];
     blocks.extend(formulas(impact, si));
-    let mut rows: Vec<(Quantity, &str)> =
+    let mut rows: Vec<(ImpactQuantity, &str)> =
         si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
     let over_the_printed = paper::over_contact_time(si);
     rows.push((over_the_printed.clone(), ""));
@@ -509,8 +509,8 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
     blocks
 }
 
-/// How the contact time that the paper prints stands beside every reading.
-fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> String {
+/// The contact time that the paper prints, compared with every version.
+fn printed(impact: &Impact, over_the_printed: &ImpactQuantity, tolerance: f64) -> String {
     let readings = impact.columns.iter().map(|column| column.reading.name());
     let each: Vec<(&str, f64)> = std::iter::once(("Runge-Kutta", over_the_printed.runge_kutta))
         .chain(readings.zip(over_the_printed.closed_forms.iter().copied()))

@@ -1,11 +1,11 @@
-//! What is proved of an impact, and with it of its closed forms.
+//! The proved enclosures of an impact, and with them the errors of its closed forms.
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
-use crate::certificate::{ImpactEnclosure, Range};
+use crate::certificate::{ImpactEnclosure, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
-use crate::impact::{Impact, Reading};
+use crate::impact::{Impact, PhaseReading};
 use crate::verify::Verdict;
 
 /// An impact and what is proved of it.
@@ -13,7 +13,7 @@ use crate::verify::Verdict;
 pub struct ImpactCertificateReport<'a> {
     /// The impact with its closed forms.
     pub impact: &'a Impact,
-    /// What is proved.
+    /// The enclosures.
     pub enclosure: &'a ImpactEnclosure,
     /// A, xc and gamma as they were taken.
     pub exact: [&'a Rational; 3],
@@ -24,7 +24,7 @@ pub struct ImpactCertificateReport<'a> {
 impl ImpactCertificateReport<'_> {
     /// The names of the numbers, and the relative errors of Runge-Kutta and of each closed form
     /// from both sides.
-    fn errors(&self) -> Vec<(&'static str, Vec<Range>)> {
+    fn errors(&self) -> Vec<(&'static str, Vec<SizeBounds>)> {
         let proved = self.enclosure.in_order();
         let quantities = self.impact.quantities().into_iter().zip(proved);
         let errors = quantities.map(|(quantity, (name, truth))| {
@@ -34,15 +34,18 @@ impl ImpactCertificateReport<'_> {
         errors.collect()
     }
 
-    /// Of every closed form whether each of its numbers is proved to be within the tolerance.
-    pub fn verdicts(&self) -> Vec<(Reading, Verdict)> {
+    /// The verdict on every closed form: whether each of its numbers is proved to be within the
+    /// tolerance.
+    pub fn verdicts(&self) -> Vec<(PhaseReading, Verdict)> {
         let errors = self.errors();
         let within = |column: usize| {
             let mut ranges = errors.iter().filter_map(|(_, ranges)| ranges.get(column + 1));
             ranges.all(|range| range.upper <= not_above_typed(self.tolerance))
         };
         let columns = self.impact.columns.iter().enumerate();
-        columns.map(|(index, column)| (column.reading, Verdict::of(within(index)))).collect()
+        columns
+            .map(|(index, column)| (column.reading, Verdict::from_passed(within(index))))
+            .collect()
     }
 }
 
@@ -60,7 +63,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure)));
     let within = percent(report.tolerance);
     let errors = report.errors();
-    let verdict = |(index, (reading, verdict)): (usize, &(Reading, Verdict))| {
+    let verdict = |(index, (reading, verdict)): (usize, &(PhaseReading, Verdict))| {
         let column = || {
             let column = errors
                 .iter()
@@ -82,7 +85,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     let head = ["", "Runge-Kutta"]
         .into_iter()
         .chain(report.impact.columns.iter().map(|column| column.reading.name()));
-    let row = |(name, ranges): &(&'static str, Vec<Range>)| {
+    let row = |(name, ranges): &(&'static str, Vec<SizeBounds>)| {
         let cells = ranges.iter().copied().map(rounded_percent);
         std::iter::once((*name).to_owned()).chain(cells).collect()
     };

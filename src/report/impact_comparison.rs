@@ -1,6 +1,6 @@
 //! Every method on one impact: the equation, a row each, and why the others have none.
 
-use super::impact::asked;
+use super::impact::problem_blocks;
 use super::{Block, Document};
 use crate::impact::ImpactComparison;
 
@@ -17,7 +17,12 @@ use crate::impact::ImpactComparison;
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&table.equation)],
-        asked(&table.setup, table.letters, [table.equilibrium, table.turning_point], table.damping),
+        problem_blocks(
+            &table.setup,
+            table.letters,
+            [table.equilibrium, table.turning_point],
+            table.damping,
+        ),
         vec![Block::ImpactMethods {
             rows: &table.rows,
             truth: table.truth.quantities(),

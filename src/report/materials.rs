@@ -8,8 +8,8 @@ use crate::impact::{
     Parameter, REST_FRACTION, YieldCheck,
 };
 
-/// Below this part of the rest time materials rest at the same time, for what an engineer decides
-/// by it.
+/// Part of the rest time below which materials rest at the same time, for the decision of an
+/// engineer.
 const SAME: f64 = 0.01;
 
 /// Energies that are listed of one material; JSON and tables of comma-separated values have all.
@@ -26,7 +26,7 @@ const LISTED: usize = 10;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn materials(study: &MaterialStudy) -> Document<'_> {
-    let mut sections = vec![asked(study)];
+    let mut sections = vec![problem_blocks(study)];
     if study.rows.iter().any(|row| row.first.is_some()) {
         sections.push(first_contacts(study));
         sections.push(vec![Block::Entries {
@@ -42,7 +42,7 @@ pub fn materials(study: &MaterialStudy) -> Document<'_> {
     Document { sections }
 }
 
-fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
+fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
     let Model { zeta, alpha, ref left, ref right, .. } = study.model;
     let is_default = |parameter| study.question.defaults.contains(&parameter);
     let count = study.rows.len();
@@ -136,7 +136,7 @@ pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2
     }
 }
 
-/// ` at the speed 1 m/s, 1.22347 rad*omega`; empty where no speed is stated.
+/// ` at the speed 1 m/s, 1.22347 rad*omega`; empty if no speed is stated.
 fn at_speed(dissipation: &Dissipation) -> String {
     let speed = dissipation.at_speed_in_words();
     speed.map_or(String::new(), |speed| format!(" at the speed {speed}"))
@@ -321,7 +321,7 @@ pub(super) fn percent(part: f64) -> String {
     }
 }
 
-/// What the numbers of a study say, in sentences.
+/// The results of a study of materials, in sentences.
 pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     let mut sentences = Vec::new();
     let groups: [(&[Parameter], bool); 2] = [
@@ -338,7 +338,7 @@ pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     sentences
 }
 
-/// What holding one of these forms fixed does to the rest times.
+/// The effect of holding one of these forms fixed on the rest times.
 fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool) -> Option<String> {
     let names: Vec<&str> = held.iter().map(|held| held.damping.form().name()).collect();
     let names = match names.split_last()? {
@@ -391,7 +391,7 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
     })
 }
 
-/// By which factors the first contact differs from the softest to the hardest.
+/// The factors by which the first contact differs from the softest to the hardest material.
 fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     let [softest, hardest] = study.softest_and_hardest();
     let (soft, hard) = (study.rows[softest].first?, study.rows[hardest].first?);
@@ -417,7 +417,7 @@ fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     ))
 }
 
-/// What a barrier is good for at all.
+/// The benefit of a barrier at all.
 fn baseline(study: &MaterialStudy) -> Option<String> {
     if study.rows.iter().all(|row| row.course.impacts.is_empty()) {
         return None;

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::{Block, Document};
 use crate::audit::paper::Finding;
 use crate::decimal::decimal;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::{Expr, Function};
 use crate::mechanics::{Drive, Groups, MechanicsError, MechanismStudy, Mode, Place, RestStudy};
 use crate::symbol::Symbol;
@@ -34,7 +34,7 @@ pub fn mechanism(study: &MechanismStudy) -> Document<'_> {
 }
 
 fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
-    Block::Line(Cow::Owned(Line::equation(left, right)))
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
 }
 
 fn energies(study: &MechanismStudy) -> Vec<Block<'_>> {
@@ -82,8 +82,8 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         study.equations.rest.iter().any(|rest| rest.contains_function(function))
     };
     let driven = study.equations.rest.iter().any(|rest| rest.contains(Symbol::new("t")));
-    let vanishes =
-        !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
+    let vanishes = !study.rests.is_empty()
+        && study.rests.iter().all(|rest| rest.drive == DriveAtRest::Vanishes);
     let changes = study.rests.iter().any(|rest| rest.modes.changing.is_some());
     if vanishes && changes && !has(Function::Step) {
         blocks.push(Block::Note("at rest there with the terms in t, too".to_owned()));
@@ -99,8 +99,8 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     }
     let is_whole = !driven && !has(Function::Step) && !has(Function::Sign);
     for rest in &study.rests {
-        blocks.push(Block::Note(place(rest, coordinates)));
-        let anywhere = rest.rest.places.contains(&Place::Anywhere);
+        blocks.push(Block::Note(rest_in_words(rest, coordinates)));
+        let anywhere = rest.rest.places.contains(&RestPosition::Anywhere);
         let unpulled = match (anywhere, is_whole) {
             (true, true) => "moves freely",
             (true, false) => "moves freely where nothing that is left out acts",
@@ -155,10 +155,10 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     blocks
 }
 
-fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
-    let place = |(name, place): (&Symbol, &Place)| match place {
-        Place::At(value) => format!("{name} = {value}"),
-        Place::Anywhere => format!("any {name}"),
+fn rest_in_words(rest: &RestStudy, coordinates: &[Symbol]) -> String {
+    let place = |(name, place): (&Symbol, &RestPosition)| match place {
+        RestPosition::At(value) => format!("{name} = {value}"),
+        RestPosition::Anywhere => format!("any {name}"),
     };
     let places: Vec<String> = coordinates.iter().zip(&rest.rest.places).map(place).collect();
     let condition = rest.rest.condition.as_ref();
@@ -234,7 +234,7 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
         )),
     ];
     for combination in &groups.combinations {
-        let line = Line::equation(combination.name, combination.meaning.clone());
+        let line = DerivationLine::equation(combination.name, combination.meaning.clone());
         blocks.push(Block::Line(Cow::Owned(line.because("counts as one parameter"))));
     }
     if let Ok(square) =
@@ -262,10 +262,9 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
     }
     for group in &groups.groups {
         let line = match group.definition.as_symbol() == Some(group.name) {
-            true => Line::words(format!("{}, a number as it is given", group.name)),
-            false => {
-                Line::equation(group.name, group.definition.clone()).because(group.meaning.clone())
-            }
+            true => DerivationLine::words(format!("{}, a number as it is given", group.name)),
+            false => DerivationLine::equation(group.name, group.definition.clone())
+                .because(group.meaning.clone()),
         };
         blocks.push(Block::Line(Cow::Owned(line)));
     }

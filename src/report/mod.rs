@@ -1,5 +1,5 @@
-//! What a report says, before any format says how: one file for each kind of result, which makes a
-//! [`Document`] of it.
+//! The content of a report, before any format lays it out: one file for each kind of result, which
+//! makes a [`Document`] of it.
 //!
 //! In come results: a [`Solution`] with its [`Verification`], a
 //! [`Comparison`](crate::verify::comparison::Comparison), an [`Impact`](crate::impact::Impact), a
@@ -50,15 +50,17 @@ pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep
 use std::borrow::Cow;
 
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
-use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
-use crate::solution::law::Shown;
+use crate::impact::{
+    FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+};
+use crate::solution::law::DisplayedLaw;
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::comparison::{Refused, Row};
+use crate::verify::comparison::{ComparisonRow, Refused};
 use crate::verify::{Verdict, Verification};
 
 /// Sections of blocks, in the order in which they are read.
@@ -74,9 +76,9 @@ pub struct Document<'a> {
 pub enum Block<'a> {
     /// The equation of motion that the report is about.
     Question(&'a Equation),
-    /// The same in its own words, where it has no normal form.
+    /// The equation as it was typed, if it has no normal form.
     QuestionAsTyped(&'a str),
-    /// Who derived the answer, and what its amplitude measures.
+    /// The method of the answer, and the definition of its amplitude.
     Title {
         /// The method and its order.
         words: String,
@@ -85,13 +87,13 @@ pub enum Block<'a> {
     },
     /// The beginning of a section, or a sentence of its own.
     Heading(String),
-    /// What a reader should know of the result.
+    /// A note on the result.
     Note(String),
     /// A note of second rank, such as a list of the other limit cycles.
     Remark(String),
     /// A sentence that follows from the numbers; it is broken where a line ends.
     Sentence(String),
-    /// What only the longest format has room for.
+    /// A detail for the longest format only.
     Detail(String),
     /// A law: omega^2 or omega, or zero of a relation between omega and the amplitude.
     Law {
@@ -100,7 +102,7 @@ pub enum Block<'a> {
         /// The right side.
         right: Sum,
     },
-    /// An equation that is no polynomial.
+    /// An equation that is not a polynomial.
     Equality {
         /// The left side.
         left: Expr,
@@ -108,7 +110,7 @@ pub enum Block<'a> {
         right: &'a Expr,
     },
     /// A line of a derivation.
-    Line(Cow<'a, Line>),
+    Line(Cow<'a, DerivationLine>),
     /// The amplitude of a limit cycle.
     CycleAmplitude {
         /// Its symbol.
@@ -126,16 +128,16 @@ pub enum Block<'a> {
         name: Symbol,
         /// Its number.
         value: f64,
-        /// Where that comes from.
+        /// The source of the value.
         source: Option<&'a str>,
     },
     /// A formula judged at given values.
     Judged {
-        /// What the judge found.
+        /// The verification.
         verification: &'a Verification,
         /// The error of the series of omega, where it stands beside omega^2 and differs.
         series_of_omega: Option<f64>,
-        /// Where hbar was chosen by the least squared residual, its name.
+        /// The name of hbar, if it was chosen by the least squared residual.
         hbar: Symbol,
         /// The error up to which it passes.
         tolerance: f64,
@@ -160,7 +162,7 @@ pub enum Block<'a> {
     },
     /// Names with what is said of each.
     Entries {
-        /// What they have in common.
+        /// The common heading.
         heading: &'static str,
         /// The names and the words.
         entries: Vec<(String, String)>,
@@ -169,22 +171,22 @@ pub enum Block<'a> {
     Facts(Vec<(&'static str, String)>),
     /// A table of numbers as they are to be written, and words; an empty cell says nothing.
     Table {
-        /// What stands above each column.
+        /// The heading of each column.
         head: Vec<Heading>,
         /// A cell for each column.
         rows: Vec<Vec<String>>,
     },
     /// The methods that do not apply.
     Refused(&'a [Refused]),
-    /// Where the true motion is periodic.
+    /// The ranges in which the true motion is periodic.
     TrueMotion(&'a [String]),
-    /// What closes a report.
+    /// The last line of a report.
     Closing(String),
     /// The phases that follow.
     Reading {
-        /// How they are read.
-        reading: Reading,
-        /// What that means, in a line.
+        /// The version of the phases.
+        reading: PhaseReading,
+        /// Its meaning, in a line.
         words: String,
     },
     /// The line that replaces the force of the barrier.
@@ -193,28 +195,28 @@ pub enum Block<'a> {
         fitted: FittedLine,
         /// The place of the barrier.
         barrier: f64,
-        /// How it was fitted.
+        /// The rule of the fit.
         rule: Rule,
         /// The letters of the equation.
-        letters: Letters,
+        letters: ImpactSymbols,
         /// Whether the line is multiplied by the stiffness.
         per_stiffness: bool,
     },
     /// A phase of an impact.
     Phase {
         /// The phase.
-        phase: &'a Phase,
+        phase: &'a MotionPhase,
         /// The letters of the equation.
-        letters: Letters,
+        letters: ImpactSymbols,
         /// The release, in words.
         release: String,
     },
     /// The numbers of an impact beside those of Runge-Kutta.
     Quantities {
         /// The columns.
-        columns: Vec<Reading>,
+        columns: Vec<PhaseReading>,
         /// A row each.
-        rows: Vec<Quantity>,
+        rows: Vec<ImpactQuantity>,
         /// The largest deviation of each column over the amplitude, in real time.
         deviations: Vec<f64>,
         /// The largest deviation of each column in approach, contact and return, each on its own
@@ -238,7 +240,7 @@ pub enum Block<'a> {
     /// The verdicts on an impact.
     Verdicts {
         /// On each column.
-        verdicts: Vec<(Reading, Verdict)>,
+        verdicts: Vec<(PhaseReading, Verdict)>,
         /// The error up to which they pass.
         tolerance: f64,
     },
@@ -252,15 +254,15 @@ pub enum Block<'a> {
         value: f64,
         /// The unit, as it is typed.
         unit: &'static str,
-        /// What it is, in words.
+        /// Its description in words.
         words: &'static str,
     },
     /// The numbers of an impact in SI units, with what of the paper's stands beside them.
     SiQuantities {
         /// The columns.
-        columns: Vec<Reading>,
+        columns: Vec<PhaseReading>,
         /// A row each, with its unit as it is typed.
-        rows: Vec<(Quantity, &'static str)>,
+        rows: Vec<(ImpactQuantity, &'static str)>,
     },
 }
 
@@ -277,7 +279,7 @@ impl Block<'_> {
     }
 }
 
-/// What stands above a column.
+/// The heading of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heading {
     /// In plain letters.
@@ -334,11 +336,11 @@ pub(crate) fn are_names(rows: &[Vec<String>]) -> bool {
 #[derive(Clone, Debug)]
 pub struct MethodRow<'a> {
     /// The method, its answer and its numbers.
-    pub row: &'a Row,
+    pub row: &'a ComparisonRow,
     /// The method and its order.
     pub title: String,
     /// Its law.
-    pub law: Shown<'a>,
+    pub law: DisplayedLaw<'a>,
     /// The definitions that the law needs.
     pub definitions: Vec<&'a Definition>,
     /// The hbar with which it was evaluated.

@@ -9,9 +9,12 @@ pub use sentences::optimization_sentences;
 use super::materials::{chosen, in_words, percent};
 use super::{Block, Document, Heading, cell};
 use crate::decimal::{decimal, significant};
-use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
+use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{Model, Parameter, REST_FRACTION};
-use crate::optimize::{Design, Finalist, Objective, Question, Sensitivity, Spread, Study};
+use crate::optimize::{
+    EvaluatedDesign, Finalist, FiveNumberSummary, Objective, OptimizationProblem, Sensitivity,
+    Study,
+};
 
 /// Rows of a front that are listed; JSON and tables of comma-separated values have all.
 const LISTED: usize = 24;
@@ -22,15 +25,15 @@ const GENERATIONS: [usize; 9] = [0, 1, 2, 5, 10, 20, 50, 100, 200];
 /// The document of a search.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 1, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 1, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// let document = lindstedt::report::optimization(&study);
 /// assert!(lindstedt::export::text::document(&document, 120).contains("What decides"));
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
 /// ```
 pub fn optimization(study: &Study) -> Document<'_> {
-    let mut sections = vec![asked(study)];
+    let mut sections = vec![problem_blocks(study)];
     match study.question.objectives.len() {
         1 => {
             sections.push(best_design(study));
@@ -68,20 +71,20 @@ fn name_of(study: &Study, index: usize) -> &'static str {
     variable.map_or("material", |variable| variable.parameter.name())
 }
 
-/// What a design has for a variable.
-fn value_of(study: &Study, design: &Design, index: usize) -> String {
+/// The value of a variable in a design.
+fn value_of(study: &Study, design: &EvaluatedDesign, index: usize) -> String {
     match study.question.variables.get(index) {
         Some(variable) => cell(design.case.get(variable.parameter)),
         None => material_of(study, design),
     }
 }
 
-fn material_of(study: &Study, design: &Design) -> String {
+fn material_of(study: &Study, design: &EvaluatedDesign) -> String {
     let material = design.material.and_then(|number| study.question.materials.get(number));
     material.map_or("-".to_owned(), |material| material.name.clone())
 }
 
-fn asked(study: &Study) -> Vec<Block<'_>> {
+fn problem_blocks(study: &Study) -> Vec<Block<'_>> {
     let question = &study.question;
     let wishes: Vec<&str> =
         question.objectives.iter().map(|objective| objective.meaning()).collect();
@@ -148,7 +151,7 @@ fn closed_forms_off(study: &Study) -> f64 {
 }
 
 /// The equation of the best design, and its numbers.
-fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
+fn equation<'a>(question: &OptimizationProblem, best: &Finalist) -> Vec<Block<'a>> {
     let Model { zeta, alpha, ref left, ref right, .. } = best.design.model;
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let dry = if alpha == 0.0 { "" } else { " + alpha*sgn(x')" };
@@ -182,7 +185,7 @@ fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
 }
 
 /// The parameters that the search leaves alone.
-fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
+fn held_fixed<'a>(question: &OptimizationProblem) -> Vec<Block<'a>> {
     let mut blocks = vec![];
     let default = ", by default: the paper prints none";
     let said = |parameter| {
@@ -238,10 +241,10 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
     blocks
 }
 
-/// How it was searched.
+/// The options of the search.
 fn options(study: &Study) -> Vec<String> {
     let question = &study.question;
-    let Options {
+    let GeneticOptions {
         population,
         elite,
         crossover_fraction,
@@ -331,7 +334,7 @@ fn options(study: &Study) -> Vec<String> {
 }
 
 /// The numbers of a design beside each other.
-fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
+fn quantities(study: &Study, design: &EvaluatedDesign) -> Vec<(Heading, String)> {
     let mut rows: Vec<(Heading, String)> = [
         Objective::RestTime,
         Objective::DimensionlessRestTime,
@@ -426,8 +429,8 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
 }
 
 fn agreement(study: &Study) -> Vec<Block<'_>> {
-    let row = |name: &str, evaluations: usize, spread: Option<Spread>| {
-        let of = |number: fn(Spread) -> f64| cell(spread.map(number));
+    let row = |name: &str, evaluations: usize, spread: Option<FiveNumberSummary>| {
+        let of = |number: fn(FiveNumberSummary) -> f64| cell(spread.map(number));
         vec![
             name.to_owned(),
             evaluations.to_string(),
@@ -552,7 +555,7 @@ fn front(study: &Study) -> Vec<Block<'_>> {
     names.extend(variables);
     let materials = !question.materials.is_empty();
     names.extend(materials.then_some(Heading::from("material")));
-    let row = |values: Vec<String>, design: &Design| {
+    let row = |values: Vec<String>, design: &EvaluatedDesign| {
         let numbers =
             question.variables.iter().map(|variable| cell(design.case.get(variable.parameter)));
         let material = materials.then(|| material_of(study, design));

@@ -17,7 +17,7 @@ const MOST_IMPACTS: usize = 12;
 pub struct PrimaryReport<'a> {
     /// The motion.
     pub motion: &'a PrimaryMotion,
-    /// What a number is in SI units.
+    /// The units of the numbers.
     pub units: &'a Units,
     /// The times at which states are asked for, in units of 1/omega.
     pub samples: &'a [f64],
@@ -177,7 +177,7 @@ fn energy<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 
 fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let motion = report.motion;
-    let others = motion.case.primary.others();
+    let others = motion.case.primary.undamped_and_locked();
     let seconds = |time: f64| decimal(time * report.units.time());
     let driven = motion.case.primary.force != 0.0;
     let alone = |name: &str, alone: &Alone| {
@@ -238,7 +238,7 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 
 fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let row = |time: &f64| {
-        let state = report.motion.at(*time)?;
+        let state = report.motion.state_at(*time)?;
         Some([*time, state.x, state.velocity, state.y, state.speed].map(decimal).into())
     };
     vec![Block::table(["t", "x", "x'", "y", "y'"], report.samples.iter().filter_map(row))]

@@ -5,12 +5,12 @@ use std::borrow::Cow;
 
 use super::{Block, Document};
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::SlowResponse;
-use crate::response::{Branch, MOST_HARMONICS, Point, Response};
+use crate::response::{Branch, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -23,15 +23,15 @@ const MOST_BIFURCATIONS: usize = 40;
 /// The document of a response.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let document = lindstedt::report::response(&respond(&question)?);
 /// let text = lindstedt::export::text::document(&document, 120);
 /// assert!(text.contains("verdict") && text.contains("branch 1"), "{text}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn response(response: &Response) -> Document<'static> {
+pub fn response(response: &ResponseDiagram) -> Document<'static> {
     let mut sections = vec![question(response)];
     for (index, branch) in response.branches.iter().enumerate() {
         sections.push(self::branch(response, index, branch));
@@ -43,10 +43,11 @@ pub fn response(response: &Response) -> Document<'static> {
     Document { sections }
 }
 
-fn question(response: &Response) -> Vec<Block<'static>> {
+fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let asked = &response.question;
     let equation = asked.oscillator.equation();
-    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(equation.left, equation.right)))];
+    let mut blocks =
+        vec![Block::Line(Cow::Owned(DerivationLine::equation(equation.left, equation.right)))];
     blocks.extend(numbers(&asked.values).map(|(name, value)| Block::Value {
         name,
         value,
@@ -79,16 +80,16 @@ fn question(response: &Response) -> Vec<Block<'static>> {
     blocks
 }
 
-/// How branches are found.
-fn method(response: &Response) -> &'static str {
+/// The method that finds the branches.
+fn method(response: &ResponseDiagram) -> &'static str {
     match response.by_map {
         true => "the map of a period from jump to jump of the force",
         false => "harmonic balance",
     }
 }
 
-/// What is computed and listed of motions without drive.
-fn self_excited(response: &Response) -> [Block<'static>; 2] {
+/// The quantities that are computed and listed of motions without drive.
+fn self_excited(response: &ResponseDiagram) -> [Block<'static>; 2] {
     let (name, [low, high]) = (response.question.parameter, response.question.range);
     let frequency = &response.frequency;
     [
@@ -110,7 +111,7 @@ fn self_excited(response: &Response) -> [Block<'static>; 2] {
 
 /// The frequency of the motion, as a factor of time.
 #[cfg(feature = "json")]
-pub(crate) fn motion_frequency(response: &Response) -> String {
+pub(crate) fn motion_frequency(response: &ResponseDiagram) -> String {
     let frequency = &response.frequency;
     let text = match frequency.terms().len() > 1 {
         true => format!("({frequency})"),
@@ -123,7 +124,7 @@ pub(crate) fn motion_frequency(response: &Response) -> String {
 }
 
 /// theta in time.
-fn phase(response: &Response) -> String {
+fn phase(response: &ResponseDiagram) -> String {
     let time = Expr::product([response.frequency.clone(), Expr::symbol("t")]);
     match (time.terms().len(), response.question.periods) {
         (_, 1) => time.to_string(),
@@ -138,7 +139,7 @@ fn numbers(values: &Values) -> impl Iterator<Item = (Symbol, f64)> {
 
 /// The indices of the rows: the ends, equal steps between, and the points beside every change of
 /// stability.
-fn rows(points: &[Point]) -> Vec<usize> {
+fn rows(points: &[SteadyMotion]) -> Vec<usize> {
     let count = points.len();
     let steps = ROWS.min(count).max(2) - 1;
     let mut rows: Vec<usize> = (0..=steps).map(|step| step * (count.max(1) - 1) / steps).collect();
@@ -146,7 +147,7 @@ fn rows(points: &[Point]) -> Vec<usize> {
     rows
 }
 
-fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'static>> {
+fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let stable = |state: Option<bool>| match state {
         Some(true) => "yes",
@@ -198,8 +199,12 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
     blocks
 }
 
-/// Why a branch ends at a point, where that is worth saying.
-fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<String> {
+/// The reason why a branch ends at a point, where that is worth saying.
+fn end_in_words(
+    response: &ResponseDiagram,
+    end: BranchEnd,
+    point: &SteadyMotion,
+) -> Option<String> {
     let place = format!("{} = {}", response.question.parameter, significant(point.parameter, 4));
     Some(match end {
         BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
@@ -231,12 +236,12 @@ fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<St
     })
 }
 
-/// Where dry friction holds the motion on its way.
-fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
+/// The parts of a branch on which dry friction holds the motion for a time.
+fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
     /// Stretches that are listed.
     const MOST: usize = 4;
     let name = response.question.parameter;
-    let sticks = |point: &Point| point.stuck > 0.0;
+    let sticks = |point: &SteadyMotion| point.stuck > 0.0;
     let stretches = branch.points.chunk_by(|one, other| sticks(one) == sticks(other));
     let stretches: Vec<String> = stretches
         .filter(|stretch| stretch.first().is_some_and(sticks))
@@ -263,8 +268,8 @@ fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
     )))
 }
 
-/// From where to where, how many points, how many of them stable.
-fn extent_in_words(response: &Response, branch: &Branch) -> String {
+/// The range of a branch, its number of points, and the number of stable ones, in words.
+fn extent_in_words(response: &ResponseDiagram, branch: &Branch) -> String {
     let points = &branch.points;
     let name = response.question.parameter;
     let stable = points.iter().filter(|point| point.stable == Some(true)).count();
@@ -279,7 +284,7 @@ fn extent_in_words(response: &Response, branch: &Branch) -> String {
     )
 }
 
-/// What a kind of bifurcation means, in words.
+/// The name of a kind of bifurcation.
 pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
     match kind {
         BifurcationKind::Fold => "fold",
@@ -291,7 +296,7 @@ pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
     }
 }
 
-fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
+fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
     let all = &response.bifurcations;
     if all.is_empty() && response.ripple.is_none() {
         return None;
@@ -344,7 +349,7 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
 }
 
 /// Folds that were left out.
-fn ripple(response: &Response) -> Option<Block<'static>> {
+fn ripple(response: &ResponseDiagram) -> Option<Block<'static>> {
     let ripple = response.ripple?;
     let name = response.question.parameter.name();
     let [low, high] = ripple.range.map(decimal);
@@ -360,7 +365,7 @@ fn ripple(response: &Response) -> Option<Block<'static>> {
     )))
 }
 
-fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
+fn backbone(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
     const FEW: usize = 6;
     if response.backbone.is_empty() {
         return None;
@@ -379,11 +384,12 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
 }
 
 /// The slow equations, their steady motions, and how far these are from the branches.
-fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'static>> {
+fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let solution = &slow.solution;
     let mut blocks = vec![Block::Heading(format!("by slow equations: {}", solution.title()))];
-    let line = |left: Expr, right: Expr| Block::Line(Cow::Owned(Line::equation(left, right)));
+    let line =
+        |left: Expr, right: Expr| Block::Line(Cow::Owned(DerivationLine::equation(left, right)));
     if let Some(modulation) = &solution.modulation {
         let rate = |name: Symbol| Expr::from(name.derivative());
         blocks.push(line(rate(modulation.amplitude), modulation.amplitude_rate.clone()));
@@ -454,7 +460,7 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
     blocks
 }
 
-fn judgement(response: &Response) -> Vec<Block<'static>> {
+fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
     let mut facts = vec![(

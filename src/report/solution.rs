@@ -9,7 +9,7 @@ use crate::decimal::decimal;
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::homotopy_analysis::convergence_control;
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::solution::modulation::Release;
 use crate::solution::{LeadingCycle, LimitCycle, Modulation, Solution, Sum, constant_in_words};
 use crate::symbol::{Symbol, fresh};
@@ -39,13 +39,13 @@ pub fn solution<'a>(
         words: solution.title(),
         amplitude: solution.amplitude.in_words(solution.coordinate()),
     };
-    let shown = solution.law.shown();
+    let shown = solution.law.display_forms();
     let laws = match solution.slow() {
         Some(slow) => slow_equations(solution, slow),
         None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
-    // Where the motion is left out, so is its amplitude.
+    // If the motion is left out, so is its amplitude.
     let cycle = solution.limit_cycle.as_ref();
     if let Some(cycle) = cycle.filter(|_| !solution.displacement.is_zero()) {
         let amplitude = Block::CycleAmplitude {
@@ -73,24 +73,24 @@ pub fn solution<'a>(
 }
 
 /// A law as blocks.
-pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Block<'a>> {
+pub(super) fn law_blocks<'a>(solution: &'a Solution, law: DisplayedLaw<'a>) -> Vec<Block<'a>> {
     let omega = Expr::symbol("omega");
     let explicit = |left: Expr, right| Block::Law { left, right: solution.ordered(right) };
     match law {
-        Shown::Squared(squared) => vec![explicit(&omega * &omega, squared)],
-        Shown::Frequency(frequency) => vec![explicit(omega, frequency)],
-        Shown::Relation(relation) => {
+        DisplayedLaw::Squared(squared) => vec![explicit(&omega * &omega, squared)],
+        DisplayedLaw::Frequency(frequency) => vec![explicit(omega, frequency)],
+        DisplayedLaw::Relation(relation) => {
             vec![Block::Law { left: Expr::zero(), right: solution.by_falling_frequency(relation) }]
         }
-        Shown::Closed(form) => {
+        DisplayedLaw::Closed(form) => {
             let left = if form.squared { &omega * &omega } else { omega };
             in_decimals(solution, &form.value, &left)
                 .unwrap_or_else(|| vec![Block::Equality { left, right: &form.value }])
         }
-        Shown::Quadrature(lines) => {
+        DisplayedLaw::Quadrature(lines) => {
             lines.iter().map(|line| Block::Line(Cow::Borrowed(line))).collect()
         }
-        Shown::System(system) => {
+        DisplayedLaw::System(system) => {
             let equations = system.equations.iter();
             let equations = equations.map(|right| Block::Equality { left: Expr::zero(), right });
             let names: Vec<&str> = system.unknowns.iter().map(|name| name.written()).collect();
@@ -266,7 +266,7 @@ fn judged<'a>(solution: &Solution, verification: &'a Verification, tolerance: f6
     }
 }
 
-/// Where an equation has several limit cycles: all of them, to leading order.
+/// The limit cycles of an equation that has several of them, to leading order.
 fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
     if cycle.cycles.len() < 2 {
         return vec![];

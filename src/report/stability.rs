@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{Block, Document, percent};
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::hill::{JudgedCurve, TransitionCurve, TransitionCurves};
 use crate::values::Values;
@@ -15,14 +15,14 @@ use crate::values::Values;
 pub struct StabilityReport<'a> {
     /// The curves.
     pub curves: &'a TransitionCurves,
-    /// Where they are judged, and what came of it, a curve each; nothing without values.
+    /// The given values and the verdict on each curve; `None` without values.
     pub judged: Option<(&'a Values, &'a [JudgedCurve])>,
     /// The error up to which a curve passes.
     pub tolerance: f64,
 }
 
 impl StabilityReport<'_> {
-    /// Whether every curve passes; nothing without values.
+    /// Whether every curve passes; `None` without values.
     pub fn passes(&self) -> Option<bool> {
         let (_, judged) = self.judged?;
         Some(judged.iter().all(|curve| curve.passes))
@@ -33,11 +33,11 @@ impl StabilityReport<'_> {
 ///
 /// ```
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 /// use lindstedt::report::{StabilityReport, stability};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let report = StabilityReport { curves: &curves, judged: None, tolerance: 0.01 };
 /// let text = lindstedt::export::text::document(&stability(&report), 100);
 /// assert!(text.contains("delta   = 1 + eps/2 - eps^2/32"));
@@ -68,7 +68,7 @@ pub fn stability<'a>(report: &StabilityReport<'a>) -> Document<'a> {
     Document { sections }
 }
 
-/// Which curves a number has, and the motion that exists on them.
+/// The curves of a number, and the motion that exists on them.
 fn of_number(curves: &TransitionCurves, tongue: usize) -> String {
     let names = curves.curves.iter().filter(|curve| curve.tongue == tongue);
     let names: Vec<&str> = names.map(|curve| curve.name.as_str()).collect();
@@ -85,7 +85,7 @@ fn of_number(curves: &TransitionCurves, tongue: usize) -> String {
 fn equation<'a>(curves: &TransitionCurves, curve: &TransitionCurve) -> Block<'a> {
     let left = Expr::from(&curves.unknown.given());
     match (&curve.under_root, curve.expression()) {
-        (Some(_), Ok(right)) => Block::Line(Cow::Owned(Line::equation(left, right))),
+        (Some(_), Ok(right)) => Block::Line(Cow::Owned(DerivationLine::equation(left, right))),
         _ => Block::Law { left, right: curves.ordered(&curve.middle) },
     }
 }

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
-use crate::system::{End, Integrator};
+use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Course, Crossing, DISPLACEMENT, Section, SweptMotion, Trajectory, in_words,
+    Crossing, DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest, in_words,
 };
 
 /// The most times of rest that are listed.
@@ -30,11 +30,12 @@ pub const TRUSTED: f64 = 1e-6;
 pub struct TrajectoryReport<'a> {
     /// The motion.
     pub motion: &'a Trajectory,
-    /// The same by the other integrator, where it is judged.
+    /// The motion by the other integrator, if it is judged.
     pub judge: Option<&'a Trajectory>,
     /// The times at which states are asked for.
     pub samples: &'a [f64],
-    /// Until when it is known to six digits, if not to the end ([`Trajectory::known_until`]).
+    /// The time until which the motion is known to six digits, if that is not its end
+    /// ([`Trajectory::known_until`]).
     pub known_until: Option<f64>,
 }
 
@@ -97,9 +98,9 @@ impl TrajectoryReport<'_> {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0], known_until: None };
@@ -111,7 +112,7 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     let motion = report.motion;
     let course = &motion.course;
     let equation =
-        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut sections = vec![course.equations.iter().map(equation).collect::<Vec<_>>()];
     let values = course.values.iter().map(|(name, value)| Block::Value {
         name: *name,
@@ -135,14 +136,14 @@ fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     let times = std::iter::once(Heading::from(("t", "$t$")));
     let names = motion.course.rates.states.iter().map(|name| name.name().into());
     let row = |time: f64| {
-        let state = motion.at(time)?;
+        let state = motion.states_at(time)?;
         Some(std::iter::once(time).chain(state).map(decimal).collect())
     };
     vec![Block::table(times.chain(names), report.times().into_iter().filter_map(row))]
 }
 
 /// The first states on the section.
-fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
+fn on_section<'a>(motion: &Trajectory, section: &PoincareSection) -> Vec<Block<'a>> {
     let crossings = motion.crossings();
     let count = crossings.len();
     let mut words = format!(
@@ -178,11 +179,13 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
     blocks
 }
 
-/// Where a motion is looked at, in words.
-pub(crate) fn section_in_words(section: &Section) -> String {
+/// The section in words.
+pub(crate) fn section_in_words(section: &PoincareSection) -> String {
     match section {
-        Section::Every(period) => format!("Section every {period}"),
-        Section::Rising(expression) => format!("Section where {expression} grows through zero"),
+        PoincareSection::Every(period) => format!("Section every {period}"),
+        PoincareSection::Rising(expression) => {
+            format!("Section where {expression} grows through zero")
+        }
     }
 }
 
@@ -191,7 +194,7 @@ pub(crate) fn section_in_words(section: &Section) -> String {
 pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
     let equation =
-        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut head: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
     let extremes = course
         .coordinates
@@ -215,7 +218,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     }
     let mut last = vec![Block::Note(words)];
     last.extend(course.section.as_ref().map(|section| Block::Note(section_in_words(section))));
-    let ended = sweep.motions.iter().filter(|motion| motion.reason != End::Reached).count();
+    let ended = sweep.motions.iter().filter(|motion| motion.reason != PathEnd::Reached).count();
     if ended > 0 {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
@@ -231,9 +234,9 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
 /// Many motions to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionSweep<'a> {
-    /// What they have in common.
-    pub course: &'a Course,
-    /// What is varied.
+    /// The common initial value problem.
+    pub course: &'a TrajectoryRequest,
+    /// The names of the varied parameters.
     pub names: &'a [Symbol],
     /// The motions, the last name varying fastest.
     pub motions: &'a [SweptMotion],
@@ -250,11 +253,11 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     )];
     facts.push(("until", format!("t = {}, {}", decimal(motion.end()), in_words(motion.reason()))));
     let held: Vec<String> = motion
-        .held()
+        .sticking_intervals()
         .take(MOST_HELD)
         .map(|[from, until]| format!("{} to {}", decimal(from), decimal(until)))
         .collect();
-    let more = motion.held().count().saturating_sub(MOST_HELD);
+    let more = motion.sticking_intervals().count().saturating_sub(MOST_HELD);
     if !held.is_empty() {
         let more = if more == 0 { String::new() } else { format!(", and {more} times more") };
         facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));

@@ -2,7 +2,7 @@
 //! whole numbers of another crate.
 
 use lindstedt::certificate::{
-    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, Range, certify,
+    Certificate, CheckError, JudgedFormula, NotCertified, NotProved, RangeEnd, SizeBounds, certify,
     certify_motion, check, validity,
 };
 use lindstedt::exact::{Bound, Integer, Rational, from_f64, ratio, to_f64};
@@ -133,7 +133,7 @@ fn the_error_of_a_formula_is_enclosed() {
         let apart = samples
             .truth
             .iter()
-            .map(|(t, x, _)| (x - formula.at(t * truth / formula.frequency())).abs());
+            .map(|(t, x, _)| (x - formula.displacement_at(t * truth / formula.frequency())).abs());
         let largest = apart.fold(0.0, f64::max);
         assert!(
             errors.deviation.lower * 0.999 <= largest + 1e-9
@@ -148,7 +148,7 @@ fn the_error_of_a_formula_is_enclosed() {
         {
             let t = f64::from(turn) * period + instant;
             let bound = errors.deviation.upper + errors.drift.upper * t;
-            assert!((x - formula.at(t)).abs() <= bound + 1e-8, "t = {t}");
+            assert!((x - formula.displacement_at(t)).abs() <= bound + 1e-8, "t = {t}");
         }
     }
 }
@@ -422,7 +422,7 @@ fn proved_range(
     at: &str,
     [from, to]: [Rational; 2],
     tolerance: f64,
-) -> (Rational, Beyond, Solution) {
+) -> (Rational, RangeEnd, Solution) {
     let oscillator = Oscillator::parse(equation).expect("an equation");
     let options = Options { method: Some(method), order: Some(order), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
@@ -466,7 +466,7 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
             let amplitude = &ends[0] + (&to - &ends[0]) * ratio(k, 50);
             assert!(error(&amplitude) <= tolerance, "order {order}, A = {}", to_f64(&amplitude));
         }
-        let Beyond::Further(outside) = beyond else {
+        let RangeEnd::Further(outside) = beyond else {
             panic!("order {order}: {beyond:?}");
         };
         assert!(
@@ -498,7 +498,7 @@ fn a_proved_range_reaches_its_end_where_the_error_is_flat() {
         }
         let to = to_f64(&to);
         assert!(to <= high && to > 0.99 * low, "{tolerance}: {to}, {low}");
-        let Beyond::Further(outside) = beyond else {
+        let RangeEnd::Further(outside) = beyond else {
             panic!("{tolerance}: {beyond:?}");
         };
         assert!(error(to_f64(&outside)) > tolerance && to_f64(&outside) < 1.02 * low, "{outside}");
@@ -516,7 +516,7 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
         [ratio(1, 100), ratio(2, 1)],
         0.01,
     );
-    assert_eq!((to, beyond), (ratio(2, 1), Beyond::Asked));
+    assert_eq!((to, beyond), (ratio(2, 1), RangeEnd::Asked));
     // The edge of the well of x - x^2 is x = 1, beyond which nothing returns.
     let quadratic = "x'' + x - x^2 = 0";
     let (to, beyond, _) = proved_range(
@@ -529,7 +529,7 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
     );
     assert!(
         to < ratio(1, 1)
-            && matches!(beyond, Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)),
+            && matches!(beyond, RangeEnd::Open(_) | RangeEnd::Unproved(..) | RangeEnd::Further(_)),
         "{to}, {beyond:?}"
     );
     // A law without an expression.
@@ -621,7 +621,7 @@ fn every_printed_bound_is_rounded_outwards() {
         let range = |mantissa: f64| {
             let lower = mantissa * size;
             let upper = lower * (1.0 + 10.0_f64.powi(width));
-            Range { lower, upper }
+            SizeBounds { lower, upper }
         };
         proved.frequency.middle = from_f64(mantissas[0] * size).expect("finite");
         proved.frequency.radius = Bound::exactly(mantissas[1] * size * 10.0_f64.powi(width));

@@ -7,19 +7,19 @@ use lindstedt::Oscillator;
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::Rule;
 use lindstedt::impact::contact::ContactLaw;
-use lindstedt::impact::hertz::{self, Design, elastic_force};
-use lindstedt::impact::{self, Reading, Setup, Side};
+use lindstedt::impact::hertz::{self, StiffnessDesign, elastic_force};
+use lindstedt::impact::{self, PhaseReading, Setup, Side};
 use lindstedt::impact::{ContactLoss, DerivedContact, Integrator, Model, Settings, Start};
-use lindstedt::impact::{ContactSpeed, Form, Swing, ThreePhases, three_phases};
+use lindstedt::impact::{ContactSpeed, Form, ImpactProblem, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
-use lindstedt::numeric::ode::Options;
+use lindstedt::numeric::ode::IntegrationOptions;
 use lindstedt::verify::Verdict;
 use proptest::prelude::*;
 
 const SINE: fn(f64) -> f64 = f64::sin;
 
-fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> Swing<'static> {
-    Swing {
+fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> ImpactProblem<'static> {
+    ImpactProblem {
         amplitude,
         barrier,
         stiffness,
@@ -36,12 +36,16 @@ fn paper(stiffness: f64, column: ContactSpeed) -> ThreePhases {
 }
 
 fn truth(stiffness: f64) -> TrueImpact {
-    true_impact(&swing(1.5, 0.323, stiffness).collision(), &Options::with_tolerance(1e-12)).unwrap()
+    true_impact(
+        &swing(1.5, 0.323, stiffness).collision(),
+        &IntegrationOptions::with_tolerance(1e-12),
+    )
+    .unwrap()
 }
 
 #[test]
 fn table_5_leads_to_the_depth_and_duration_of_a_hertz_contact() {
-    let stiffness = Design::default().stiffness().unwrap();
+    let stiffness = StiffnessDesign::default().stiffness().unwrap();
     assert!((stiffness / 3.0407e7 - 1.0).abs() < 2e-5);
     for (column, depth, duration) in [
         (ContactSpeed::Paper, 1.32079e-3, 3.13035e-3),
@@ -106,7 +110,7 @@ fn the_printed_contact_duration_needs_an_absurd_stiffness() {
 
 #[test]
 fn the_errors_of_the_paper_have_the_sizes_known() {
-    let stiffness = Design::default().stiffness().unwrap();
+    let stiffness = StiffnessDesign::default().stiffness().unwrap();
     let (closed, truth) = (paper(stiffness, ContactSpeed::Paper), truth(stiffness));
     let percent = |value: f64, reference: f64| 100.0 * (value / reference - 1.0);
     assert!((percent(closed.speed, truth.touch.v) + 6.26).abs() < 0.005);
@@ -119,8 +123,10 @@ fn the_errors_of_the_paper_have_the_sizes_known() {
 fn an_exact_frequency_does_not_make_the_cosine_exact() {
     // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict
     // sees it.
-    let exact =
-        Swing { frequency_squared: 0.860_608_346_679_613_f64.powi(2), ..swing(1.5, 0.323, 1e6) };
+    let exact = ImpactProblem {
+        frequency_squared: 0.860_608_346_679_613_f64.powi(2),
+        ..swing(1.5, 0.323, 1e6)
+    };
     let truth = truth(1e6);
     let found = deviation(&three_phases(&exact, ContactSpeed::Energy).unwrap(), &truth);
     let of_law = deviation(&paper(1e6, ContactSpeed::Energy), &truth);
@@ -133,8 +139,10 @@ fn small_swings_are_described_well() {
     // A^2, until only the straight line in the contact is left.
     let relative = |amplitude: f64| {
         let barrier = 0.2 * amplitude;
-        let options =
-            Options { absolute_tolerance: 1e-13 * amplitude, ..Options::with_tolerance(1e-12) };
+        let options = IntegrationOptions {
+            absolute_tolerance: 1e-13 * amplitude,
+            ..IntegrationOptions::with_tolerance(1e-12)
+        };
         let truth = true_impact(&swing(amplitude, barrier, 1e10).collision(), &options).unwrap();
         deviation(
             &three_phases(&swing(amplitude, barrier, 1e10), ContactSpeed::Energy).unwrap(),
@@ -261,15 +269,15 @@ proptest! {
     fn the_contact_ends_where_it_began(
         amplitude in 0.2..2.7_f64, part in -0.95..0.95_f64, power in 2.0..12.0_f64, rule in 0..6_usize
     ) {
-        let case = Swing { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
+        let case = ImpactProblem { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
         let motion = three_phases(&case, ContactSpeed::Energy).unwrap();
         let contact = &motion.phases[1];
-        let (x, v) = contact.form.at(contact.end - contact.start);
+        let (x, v) = contact.form.phase_point_at(contact.end - contact.start);
         prop_assert!((x - case.barrier).abs() < 1e-9 * motion.penetration.max(1e-6));
         prop_assert!((v + motion.speed).abs() < 1e-9 * motion.speed);
         let Form::Oscillation { frequency, .. } = contact.form else { panic!("the contact oscillates") };
         // It turns in the middle, and the middle is the deepest point.
-        let (deepest, at_rest) = contact.form.at(0.5 * (contact.end - contact.start));
+        let (deepest, at_rest) = contact.form.phase_point_at(0.5 * (contact.end - contact.start));
         prop_assert!(at_rest.abs() < 1e-9 * motion.speed && frequency > 0.0);
         prop_assert!((deepest - case.barrier - motion.penetration).abs() < 1e-9 * motion.penetration.max(1e-6));
     }
@@ -294,7 +302,7 @@ fn the_derived_phases_pass_their_judge_everywhere() {
                 .unwrap();
                 let at = format!("A = {amplitude}, xc = {barrier}, gamma = {stiffness}");
                 let index =
-                    found.columns.iter().position(|column| column.reading == Reading::Derived);
+                    found.columns.iter().position(|column| column.reading == PhaseReading::Derived);
                 let index = index.unwrap_or_else(|| panic!("{at}: {:?}", found.tried));
                 assert_eq!(found.shortcomings(index, 1e-3), vec![], "{at}: {:?}", found.tried);
                 // The energy knows the speed, elliptic functions the time: neither is asked by the
@@ -329,12 +337,19 @@ fn the_derived_phases_join() {
         [(-1.5, 0.323, Side::Right), (1.5, -0.323, Side::Left), (-0.8, -0.5, Side::Right)]
     {
         let found = impact::solve(Setup { release, barrier, side, ..Setup::default() }).unwrap();
-        let derived = &found.column(Reading::Derived).unwrap().phases;
+        let derived = &found.column(PhaseReading::Derived).unwrap().phases;
         let [approach, contact, back] = &derived.phases;
-        assert!((approach.at(0.0).0 - release).abs() < 1e-12 && approach.at(0.0).1.abs() < 1e-12);
-        assert!((back.at(back.end).0 - release).abs() < 1e-12 && back.at(back.end).1.abs() < 1e-12);
+        assert!(
+            (approach.phase_point_at(0.0).0 - release).abs() < 1e-12
+                && approach.phase_point_at(0.0).1.abs() < 1e-12
+        );
+        assert!(
+            (back.phase_point_at(back.end).0 - release).abs() < 1e-12
+                && back.phase_point_at(back.end).1.abs() < 1e-12
+        );
         for (before, after) in [(approach, contact), (contact, back)] {
-            let (left, right) = (before.at(before.end), after.at(after.start));
+            let (left, right) =
+                (before.phase_point_at(before.end), after.phase_point_at(after.start));
             assert!((left.0 - right.0).abs() < 1e-12, "{left:?} {right:?}");
             assert!((left.1 - right.1).abs() < 2e-4 * derived.speed, "{left:?} {right:?}");
         }
@@ -396,7 +411,7 @@ fn a_swing_and_a_barrier_of_the_users_own() {
     let energy = |x: f64| 0.25 * x.powi(4);
     let left = 0.5 * speed * speed + energy(0.3) - energy(0.3 + depth) - 1e4 * depth.powi(3) / 3.0;
     assert!(left.abs() < 1e-9, "{left}");
-    let derived = found.column(Reading::Derived).unwrap();
+    let derived = found.column(PhaseReading::Derived).unwrap();
     assert!((derived.phases.penetration / depth - 1.0).abs() < 1e-4);
     // Mass counts as it is written: 2 x'' + ... with twice every force is the same motion.
     let doubled = impact::solve(Setup {
@@ -463,7 +478,7 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
             };
             let left = taken_up(depth) / energy - 1.0;
             assert!(left.abs() < 1e-8, "{text}, k = {stiffness}: {left:e}");
-            let derived = found.column(Reading::Derived).unwrap();
+            let derived = found.column(PhaseReading::Derived).unwrap();
             let phases = [
                 taken_up(derived.phases.penetration) / energy - 1.0,
                 derived.phases.duration / found.truth.duration - 1.0,
@@ -509,7 +524,7 @@ fn a_release_inside_the_barrier_is_the_deepest_point_of_its_cycle() {
     let turning_point = -(release.cos() - 0.4 * stiffness * (release - barrier).powf(2.5)).acos();
     assert!((found.turning_point - turning_point).abs() < 1e-10, "{}", found.turning_point);
     assert!((found.truth.deepest.x - release).abs() < 1e-8);
-    let derived = found.column(Reading::Derived).unwrap();
+    let derived = found.column(PhaseReading::Derived).unwrap();
     let deepest = derived.phases.position_at(0.5 * derived.phases.period);
     assert!((deepest - release).abs() < 1e-3 * (release - barrier) + 1e-6, "{deepest}");
     // Too much of a push throws it over the top, and a tiny one against gravity does not free it.
@@ -534,12 +549,13 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
         for stiffness in [1e3, 1e6] {
             let setup = Setup { contact_law: law, ..pendulum(stiffness) };
             let impact = impact::solve(setup).unwrap_or_else(|error| panic!("{law}: {error}"));
-            let phases = &impact.column(Reading::Derived).expect("derived phases").phases;
+            let phases = &impact.column(PhaseReading::Derived).expect("derived phases").phases;
             let [approach, contact, back] = &phases.phases;
             // Of the corrected law the depth is exact at touch, the speed nearly.
             let speed_kept = if law == ContactLaw::CorrectedPowerLaw { 1e-2 } else { 1e-4 };
             for (left, right) in [(approach, contact), (contact, back)] {
-                let (before, after) = (left.at(left.end), right.at(right.start));
+                let (before, after) =
+                    (left.phase_point_at(left.end), right.phase_point_at(right.start));
                 assert!((before.0 - after.0).abs() < 1e-12, "{law}: {before:?} and {after:?}");
                 let jump = (before.1 - after.1).abs() / phases.speed;
                 assert!(jump < speed_kept, "{law}: the speed jumps by {jump} of itself");
@@ -548,7 +564,7 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
                 panic!("{law}: {:?}", contact.form)
             };
             assert!(depth.deviation <= 1e-6, "{law}: {}", depth.deviation);
-            let deepest = depth.at(0.5 * phases.duration).0;
+            let deepest = depth.phase_point_at(0.5 * phases.duration).0;
             assert!((deepest / phases.penetration - 1.0).abs() < 3e-6, "{law}: {deepest}");
             // The swing is the same by every law: none makes up for the error of another.
             assert!(
@@ -642,7 +658,7 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         };
         let found = impact::solve(setup).unwrap_or_else(|error| panic!("{wanted}: {error}"));
         assert!(found.no_paper.is_some());
-        let phases = &found.column(Reading::Derived).expect("derived phases").phases;
+        let phases = &found.column(PhaseReading::Derived).expect("derived phases").phases;
         // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7)
         // with its mu.
         let allowed = 3e-3 * wanted;
@@ -664,10 +680,17 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         assert!((simulated - found.truth.restitution()).abs() < 1e-6, "{wanted}: {simulated}");
         // The joins, and where it turns.
         let [approach, contact, back] = &phases.phases;
-        assert!((contact.at(contact.end).1 - back.at(back.start).1).abs() < 1e-3);
-        assert!((approach.at(approach.end).0 - contact.at(contact.start).0).abs() < 1e-12);
-        assert!(back.at(back.end).1.abs() < 1e-12);
-        let turn = back.at(back.end).0;
+        assert!(
+            (contact.phase_point_at(contact.end).1 - back.phase_point_at(back.start).1).abs()
+                < 1e-3
+        );
+        assert!(
+            (approach.phase_point_at(approach.end).0 - contact.phase_point_at(contact.start).0)
+                .abs()
+                < 1e-12
+        );
+        assert!(back.phase_point_at(back.end).1.abs() < 1e-12);
+        let turn = back.phase_point_at(back.end).0;
         assert!((turn - found.place_of_turn()).abs() < 2e-3, "{wanted}: turns at {turn}");
         let verdict = found.verdicts(0.01);
         assert_eq!(verdict, [Verdict::Pass], "{wanted}: {:?}", found.shortcomings(0, 0.01));

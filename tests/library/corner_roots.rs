@@ -6,17 +6,18 @@ use std::collections::BTreeMap;
 
 use lindstedt::mechanics::Mechanism;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
-fn follow(equation: &str, start: f64, until: f64) -> Course {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+fn follow(equation: &str, start: f64, until: f64) -> TrajectoryRequest {
+    let mut course =
+        TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
     course.begin("x".into(), start).expect("a state");
     course.duration = until;
     course
 }
 
-fn by_both_routes(course: &Course) -> [Trajectory; 2] {
+fn by_both_routes(course: &TrajectoryRequest) -> [Trajectory; 2] {
     [course.clone().follow(), course.clone().follow_by(Integrator::RungeKutta)].map(|motion| {
         let motion = motion.expect("a motion");
         assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
@@ -47,7 +48,7 @@ fn a_contact_without_a_step_keeps_its_energy() {
         for motion in by_both_routes(&course) {
             let mut deepest = 0.0_f64;
             for index in 0..=4000 {
-                let state = motion.at(20.0 * f64::from(index) / 4000.0).expect("a state");
+                let state = motion.states_at(20.0 * f64::from(index) / 4000.0).expect("a state");
                 let depth = (state[0] - 0.5).max(0.0);
                 deepest = deepest.max(depth);
                 let energy =
@@ -72,7 +73,7 @@ fn a_power_of_the_absolute_value_has_its_period() {
     for (force, period) in periods {
         for motion in by_both_routes(&follow(&format!("x'' + {force} = 0"), 1.0, 3.0 * period)) {
             for (time, expected) in [(0.5, -1.0), (1.0, 1.0), (2.5, -1.0), (3.0, 1.0)] {
-                let state = motion.at(time * period).expect("a state");
+                let state = motion.states_at(time * period).expect("a state");
                 let astray = (state[0] - expected).abs().max(state[1].abs());
                 assert!(astray < 1e-8, "{force}: {state:?} after {time} periods");
             }
@@ -87,7 +88,8 @@ fn a_potential_without_a_step_is_followed() {
         let potential = format!("q^2/2 + 2/5*k*{contact}");
         let mechanism = Mechanism::parse(&["q"], "q'^2/2", &potential).expect("a mechanism");
         let equations = mechanism.equations().expect("equations");
-        let mut course = Course::of_mechanism(&mechanism, &equations).expect("accelerations");
+        let mut course =
+            TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("accelerations");
         course.begin("q".into(), -1.0).expect("a state");
         course.duration = 20.0;
         course.values = BTreeMap::from([(Symbol::new("k"), 1e4), (Symbol::new("d"), 0.5)]);
@@ -110,7 +112,7 @@ fn a_root_that_leaves_its_range_still_ends_the_motion() {
     for (force, edge) in edges {
         let motion = follow(&format!("x'' + {force} = 0"), 1.0, 20.0).follow().expect("a motion");
         assert!(!motion.is_complete(), "{force}");
-        let end = motion.at(motion.end()).expect("a state")[0];
+        let end = motion.states_at(motion.end()).expect("a state")[0];
         assert!((end - edge).abs() < 1e-3, "{force}: {end}");
     }
 }
@@ -122,7 +124,7 @@ fn bodies(
     forces: &[(&str, &str)],
     start: &[(&str, f64)],
     until: f64,
-) -> Course {
+) -> TrajectoryRequest {
     let mut mechanism = Mechanism::parse(coordinates, kinetic, potential).expect("a mechanism");
     mechanism.dissipation = dissipation.parse().expect("a dissipation");
     for (coordinate, force) in forces {
@@ -130,7 +132,8 @@ fn bodies(
         mechanism.forces.insert(Symbol::new(coordinate), force);
     }
     let equations = mechanism.equations().expect("equations");
-    let mut course = Course::of_mechanism(&mechanism, &equations).expect("accelerations");
+    let mut course =
+        TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("accelerations");
     for (name, value) in start {
         course.begin(Symbol::new(name), *value).expect("a state");
     }
@@ -167,12 +170,12 @@ fn in_fixed_steps<const N: usize>(
     state
 }
 
-fn end_of(course: Course) -> Vec<f64> {
+fn end_of(course: TrajectoryRequest) -> Vec<f64> {
     let motion = course.follow().expect("a motion");
     assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
     let balance = motion.balance.as_ref().expect("an energy");
     assert!(balance.residual < 1e-10, "{}", balance.residual);
-    motion.at(motion.end()).expect("a state")
+    motion.states_at(motion.end()).expect("a state")
 }
 
 /// Equal masses exchange their velocities, whatever the law of the contact. One of Hertz lasts
@@ -299,7 +302,7 @@ fn a_driven_damper_strikes_its_stops() {
         12.0,
     );
     for motion in by_both_routes(&course) {
-        let end = motion.at(12.0).expect("a state");
+        let end = motion.states_at(12.0).expect("a state");
         let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
         assert!(astray.fold(0.0, f64::max) < 1e-6, "{end:?} {expected:?}");
     }
@@ -350,7 +353,7 @@ fn a_damping_that_begins_with_the_depth_is_followed() {
             course.values = values.map(|(name, value)| (Symbol::new(name), value)).into();
             let motion = course.follow().expect("a motion");
             assert!(motion.is_complete(), "{damping}: {:?}", motion.reason());
-            let end = motion.at(1.05).expect("a state");
+            let end = motion.states_at(1.05).expect("a state");
             let astray = (end[0] - expected[0]).abs().max((end[1] - expected[1]).abs());
             assert!(astray < 1e-6, "{damping} from {height}, {speed}: {end:?} {expected:?}");
             assert_eq!(motion.known_until(), None, "{damping} from {height}, {speed}");

@@ -97,7 +97,7 @@ fn the_error_of_a_formula_is_enclosed() {
     let phase = wave(f64::sin).atan2(wave(f64::cos)) / truth;
     let apart = samples[..count].iter().map(|(t, x, _)| {
         let t = (t - phase).rem_euclid(period);
-        ((x - formula.at(t * truth / formula.frequency())).abs(), t, *x)
+        ((x - formula.displacement_at(t * truth / formula.frequency())).abs(), t, *x)
     });
     let largest = apart.clone().fold(0.0, |most: f64, (apart, ..)| most.max(apart));
     assert!(
@@ -111,7 +111,7 @@ fn the_error_of_a_formula_is_enclosed() {
         for (_, t, x) in apart.clone().step_by(16) {
             let t = f64::from(turn) * period + t;
             let bound = errors.deviation.upper + errors.drift.upper * t;
-            assert!((x - formula.at(t)).abs() <= bound + 1e-7, "t = {t}");
+            assert!((x - formula.displacement_at(t)).abs() <= bound + 1e-7, "t = {t}");
         }
     }
     // A formula from a turning point is turned first: the same motion.

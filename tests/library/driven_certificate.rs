@@ -97,7 +97,7 @@ fn shooting_finds_what_is_proved() {
         let period = std::f64::consts::TAU * periods as f64 / omega;
         let begin = start(&certificate, omega / periods as f64);
         let found = periodic_motion(&acceleration, period, begin, 1.0, &[]).expect(equation);
-        let (x, v) = found.at(0.0);
+        let (x, v) = found.phase_point_at(0.0);
         assert!(
             (x - begin[0]).abs() < 1e-8 && (v - begin[1]).abs() < 1e-8,
             "{equation}: {x} {v} {begin:?}"

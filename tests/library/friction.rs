@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use lindstedt::audit::paper::{SPEEDS, Table};
+use lindstedt::audit::paper::{FrictionTable, SPEEDS};
 use lindstedt::export::{friction, text};
 use lindstedt::impact::friction::{DEFAULT_ALPHA, FrictionSetup, FrictionStudy, study, work_share};
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
@@ -28,7 +28,7 @@ fn the_page_says_what_is_computed() {
 
 #[test]
 fn one_pi_makes_every_printed_digit() {
-    let table = Table::of(&with(DEFAULT_ALPHA));
+    let table = FrictionTable::from_study(&with(DEFAULT_ALPHA));
     let best = table.best();
     let found = (best.name, best.rounded, best.either, table.entries());
     assert_eq!(found, ("3.14", 21, 22, 22));
@@ -111,7 +111,7 @@ fn a_strong_creep_is_its_formula() {
         let settings = Settings { duration: creep.motion.end_time, ..Settings::default() };
         let judged = simulate(&model, start, Integrator::RungeKutta, &settings).expect("a motion");
         for sample in &creep.samples {
-            let (x, _) = judged.path.at(sample.t).expect("a state");
+            let (x, _) = judged.path.phase_point_at(sample.t).expect("a state");
             let formula = sample.formula.expect("a creep");
             // The rate of the linear equation is 1/c^2 above that without inertia, eight times 3e-4
             // at the end.

@@ -2,17 +2,17 @@
 //! and differences of its map.
 
 use lindstedt::response::continuation::BranchEnd;
-use lindstedt::response::{Point, Question, Response, respond};
-use lindstedt::trajectory::Course;
+use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::Verdict;
 use lindstedt::{Oscillator, Symbol};
 
-fn response(equation: &str, range: [f64; 2], values: &str, harmonics: usize) -> Response {
-    let question = Question::new(equation, "Omega", range, values).expect(equation);
-    respond(&Question { harmonics: Some(harmonics), ..question }).expect(equation)
+fn response(equation: &str, range: [f64; 2], values: &str, harmonics: usize) -> ResponseDiagram {
+    let question = ResponseRequest::new(equation, "Omega", range, values).expect(equation);
+    respond(&ResponseRequest { harmonics: Some(harmonics), ..question }).expect(equation)
 }
 
-fn points(response: &Response) -> impl Iterator<Item = &Point> {
+fn points(response: &ResponseDiagram) -> impl Iterator<Item = &SteadyMotion> {
     response.branches.iter().flat_map(|branch| &branch.points)
 }
 
@@ -24,12 +24,12 @@ fn after_a_period(
     start: [f64; 2],
     period: f64,
 ) -> [f64; 2] {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
     course.values = numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
     course.begin("x".into(), start[0]).expect("a state");
     course.begin("x'".into(), start[1]).expect("a state");
     (course.duration, course.tolerance) = (period, 1e-12);
-    let state = course.follow().expect("a motion").at(period).expect("a state");
+    let state = course.follow().expect("a motion").states_at(period).expect("a state");
     [state[0], state[1]]
 }
 
@@ -101,18 +101,23 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
 /// after a stop.
 #[test]
 fn a_motion_that_sticks_has_a_multiplier_of_zero() {
-    use lindstedt::numeric::ode::Options;
+    use lindstedt::numeric::ode::IntegrationOptions;
     use lindstedt::response::driven::Driven;
-    use lindstedt::response::jump::{Until, follow};
+    use lindstedt::response::jump::{StopCondition, follow};
     let equation = "x'' + x + 3/5*sgn(x') = cos(k*t)";
     let oscillator = Oscillator::parse(equation).expect(equation);
     let driven = Driven::new(&oscillator, "k".into(), 1).expect(equation);
     let (k, period) = (0.5, 4.0 * std::f64::consts::PI);
     let mut start = [0.5, 0.0];
     for _ in 0..6 {
-        let course =
-            follow(&driven, start, k, Until::Time(period), &Options::with_tolerance(1e-11))
-                .expect("a motion");
+        let course = follow(
+            &driven,
+            start,
+            k,
+            StopCondition::Time(period),
+            &IntegrationOptions::with_tolerance(1e-11),
+        )
+        .expect("a motion");
         let [x, v, a, c, b, d] = course.end;
         assert!((a * d - b * c).abs() < 1e-12);
         let expected = after_a_period("x'' + x + 3/5*sgn(x') = cos(t/2)", &[], start, period);
@@ -180,13 +185,13 @@ fn a_branch_goes_on_where_the_motion_begins_to_stick() {
 /// Less force than friction bears moves nothing: the branch ends there, at rest.
 #[test]
 fn a_branch_ends_where_friction_bears_the_drive() {
-    let question = Question::new(
+    let question = ResponseRequest::new(
         "x'' + x'/20 + x + alpha*sgn(x') = F*cos(7/10*t)",
         "F",
         [0.2, 2.0],
         "alpha = 1/2",
     );
-    let question = Question { harmonics: Some(12), ..question.expect("a question") };
+    let question = ResponseRequest { harmonics: Some(12), ..question.expect("a question") };
     let found = respond(&question).expect("a response");
     let [branch] = &found.branches[..] else { panic!("one branch: {:?}", found.branches) };
     let ends = [(branch.ends[0], branch.points.first()), (branch.ends[1], branch.points.last())];
@@ -200,8 +205,8 @@ fn a_branch_ends_where_friction_bears_the_drive() {
 /// turn to the next, `X = c (q + 1)/(q - 1)` with `q = e^(pi/sqrt 3)` and the multiplier q^2.
 #[test]
 fn a_cycle_across_a_jump_is_that_of_its_half_swings() {
-    let question =
-        Question::new("x'' + c*sgn(x') - x' + x = 0", "c", [0.1, 1.0], "").expect("a question");
+    let question = ResponseRequest::new("x'' + c*sgn(x') - x' + x = 0", "c", [0.1, 1.0], "")
+        .expect("a question");
     let found = respond(&question).expect("a response");
     assert!(found.by_map && found.branches.len() == 1 && found.unjudged == 0);
     let growth = (std::f64::consts::PI / 3.0_f64.sqrt()).exp();
@@ -223,7 +228,7 @@ fn a_cycle_across_a_jump_is_that_of_its_half_swings() {
 fn a_mass_on_a_belt_sticks_and_slips() {
     let friction = "3/10*sgn(x' - v)*(1 + exp(-10*abs(x' - v))/2)";
     let equation = format!("x'' + x'/50 + x + {friction} = 0");
-    let found = respond(&Question::new(&equation, "v", [0.1, 1.0], "").expect("a question"))
+    let found = respond(&ResponseRequest::new(&equation, "v", [0.1, 1.0], "").expect("a question"))
         .expect("a response");
     assert_eq!((found.branches.len(), found.verdict), (2, Verdict::Pass), "{:?}", found.error);
     for (index, branch) in found.branches.iter().enumerate() {

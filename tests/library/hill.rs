@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::Expr;
-use lindstedt::hill::{HillError, Options, TransitionCurves, judge, transition_curves};
+use lindstedt::hill::{HillError, HillOptions, TransitionCurves, judge, transition_curves};
 use lindstedt::{Oscillator, Symbol, Values};
 
 fn curves(equation: &str, order: u32, tongues: usize) -> TransitionCurves {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    let options = Options { order, tongues, ..Options::default() };
+    let options = HillOptions { order, tongues, ..HillOptions::default() };
     transition_curves(&oscillator, &options).unwrap_or_else(|error| panic!("{equation}: {error}"))
 }
 
@@ -218,7 +218,7 @@ fn damping_draws_the_first_tongue_back() {
 fn what_has_no_transition_curves_is_refused_with_its_term() {
     let refusal = |equation: &str| {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
-        transition_curves(&oscillator, &Options::default()).expect_err(equation)
+        transition_curves(&oscillator, &HillOptions::default()).expect_err(equation)
     };
     let term = |error: &HillError| error.term().map(str::to_owned);
     assert_eq!(term(&refusal("x'' + (delta + eps*cos(t))*x + x^3 = 0")).as_deref(), Some("x^3"));
@@ -338,7 +338,7 @@ fn a_frequency_that_scales_the_time_is_solved_for() {
 fn a_frequency_in_several_terms_is_no_unknown() {
     let oscillator =
         Oscillator::parse("x'' + c*x' + (-g/l + amp*W^2/l*cos(W*t))*x = 0").expect("an oscillator");
-    let options = Options { solve_for: Some("W".to_owned()), ..Options::default() };
+    let options = HillOptions { solve_for: Some("W".to_owned()), ..HillOptions::default() };
     let error = transition_curves(&oscillator, &options).expect_err("a refusal");
     assert!(matches!(error, HillError::InSeveralTerms(..)), "{error}");
 }

@@ -12,7 +12,7 @@ use lindstedt::numeric::period::{PeriodError, swing};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::solution::{Method, Note, Solution};
 use lindstedt::verify::comparison::{backbones, compare};
-use lindstedt::verify::{Reach, Verdict, VerificationError, judge};
+use lindstedt::verify::{AmplitudeReach, Verdict, VerificationError, judge};
 use lindstedt::{Oscillator, Symbol, Values};
 
 fn about_zero(equation: &str) -> Oscillator {
@@ -296,7 +296,9 @@ fn ranges_begin_and_end_where_the_error_crosses_the_tolerance() {
             };
             let passes = row.verdict == Some(Verdict::Pass);
             match row.reach.expect("a range") {
-                Reach::Between { from, to, open } if row.solution.method != Method::Exact => {
+                AmplitudeReach::Between { from, to, open }
+                    if row.solution.method != Method::Exact =>
+                {
                     assert!(
                         passes == (from..=to).contains(&amplitude),
                         "{equation}: {}",
@@ -317,10 +319,10 @@ fn ranges_begin_and_end_where_the_error_crosses_the_tolerance() {
                         seen[1] += 1;
                     }
                 }
-                Reach::Between { from, to, open } => {
+                AmplitudeReach::Between { from, to, open } => {
                     assert!(open && passes && from < amplitude && to < last)
                 }
-                Reach::Nowhere => assert!(!passes),
+                AmplitudeReach::Nowhere => assert!(!passes),
                 other => panic!("{equation}: {other:?}"),
             }
         }

@@ -6,7 +6,7 @@ use lindstedt::method::{Options, solve};
 use lindstedt::numeric::ode::{self, State, quadrature, root};
 use lindstedt::numeric::{period, periodic, return_map};
 use lindstedt::system::{Event, Integrator, System};
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::{
     Method, Oscillator, Symbol, Values, expr::parse_expression, hill, impact, judge, response,
 };
@@ -26,12 +26,12 @@ fn numerics() {
         let _ = quadrature::integrate_smooth(|x| 1.0 / x, a, b, 1e-9);
         let _ = quadrature::integrate_piecewise(|x| 1.0 / x, &[a, b, a], 1e-9);
         let start = State { t: 0.0, x: a, v: 1.0 };
-        let options = ode::Options::default();
+        let options = ode::IntegrationOptions::default();
         if let Ok(path) = ode::integrate(|_, x, v| -x - v, start, b.min(100.0), &[], &options) {
-            let _ = HOSTILE.map(|t| (path.at(t), path.phase_at(t)));
+            let _ = HOSTILE.map(|t| (path.phase_point_at(t), path.phase_at(t)));
             let _ = [0, 1, 2].map(|count| path.samples(count).count());
         }
-        let options = ode::Options {
+        let options = ode::IntegrationOptions {
             relative_tolerance: a,
             absolute_tolerance: b,
             maximum_steps: 20_000,
@@ -40,14 +40,14 @@ fn numerics() {
         let _ = ode::integrate(|_, x, _| -x, State { t: 0.0, x: 1.0, v: 1.0 }, 10.0, &[], &options);
         let _ = period::swing(&|_, x, _| -x, a, b, 100.0);
         let force = |x: f64| x + x * x * x;
-        let _ = period::conservative_period(&period::Force::smooth(&force), a, b);
+        let _ = period::conservative_period(&period::PiecewiseForce::smooth(&force), a, b);
         let acceleration = |t: f64, x: f64, v: f64| t.cos() - x - v;
         if let Some(motion) = periodic::periodic_motion(&acceleration, a, [b, 0.0], 1.0, &[]) {
             let _ = [0, u32::MAX].map(|number| motion.harmonic(number));
         }
         let acceleration = |x: f64, v: f64| (1.0 - x * x) * v - x;
         for [equilibrium, amplitude, frequency] in [[a, b, 1.0], [0.0, a, b]] {
-            let equation = return_map::Equation {
+            let equation = return_map::AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium,
                 amplitude,
@@ -69,7 +69,7 @@ fn systems_and_courses() {
         Event::stop(parse_expression("1/v").expect("an event")),
     ];
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-        let limited = |tolerance: f64, step_limit: usize| lindstedt::system::Options {
+        let limited = |tolerance: f64, step_limit: usize| lindstedt::system::SystemOptions {
             integrator,
             tolerance,
             step_limit,
@@ -79,7 +79,7 @@ fn systems_and_courses() {
             let options = limited(1e-9, 2000);
             for (from, start, to) in [(a, [1.0, b], 3.0), (0.0, [a, b], b)] {
                 if let Ok(path) = system.solve(from, &start, to, &events, &options) {
-                    let _ = HOSTILE.map(|t| path.at(t));
+                    let _ = HOSTILE.map(|t| path.states_at(t));
                 }
             }
             let _ = system.solve(0.0, &[1.0, 0.0], b, &[], &limited(a, 2000));
@@ -94,7 +94,7 @@ fn systems_and_courses() {
     let _ = System::new(&[names[0], names[0]], "t".into(), &right, &numbers);
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     for (a, b) in pairs() {
-        let mut course = Course::of_equation(&duffing);
+        let mut course = TrajectoryRequest::of_equation(&duffing);
         (course.duration, course.step_limit) = (10.0, 2000);
         course.values.insert("eps".into(), a);
         course.start = vec![b, 0.0];
@@ -160,7 +160,8 @@ fn choices_of_a_method() {
                 let _ = HOSTILE
                     .map(|tolerance| judge(&oscillator, solution, &values, tolerance).is_ok());
                 let motion = solution.motion_at(&values);
-                let _ = motion.map(|motion| HOSTILE.map(|t| (motion.at(t), motion.velocity(t))));
+                let _ = motion
+                    .map(|motion| HOSTILE.map(|t| (motion.displacement_at(t), motion.velocity(t))));
             }
         }
     }
@@ -170,7 +171,7 @@ fn choices_of_a_method() {
 fn curves_and_responses() {
     let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0").expect("an equation");
     for (order, tongues) in [(0, 0), (u32::MAX, 1), (1, usize::MAX), (1, 0)] {
-        let options = hill::Options { order, tongues, ..hill::Options::default() };
+        let options = hill::HillOptions { order, tongues, ..hill::HillOptions::default() };
         let Ok(curves) = hill::transition_curves(&mathieu, &options) else {
             continue;
         };
@@ -183,7 +184,7 @@ fn curves_and_responses() {
     }
     for (a, b) in pairs() {
         let question =
-            response::Question::new("x'' + x'/5 + x + x^3/10 = cos(w*t)", "w", [a, b], "");
+            response::ResponseRequest::new("x'' + x'/5 + x + x^3/10 = cos(w*t)", "w", [a, b], "");
         let mut question = question.expect("a question");
         question.harmonics = Some(3);
         let _ = response::respond(&question);
@@ -294,13 +295,13 @@ fn searches() {
     for population in [0, 1, 2, 5] {
         for (generations, elite) in [(0, 0), (1, 2), (3, 1), (3, usize::MAX)] {
             for crossover_fraction in HOSTILE {
-                let options = genetic::Options {
+                let options = genetic::GeneticOptions {
                     population,
                     generations,
                     elite,
                     crossover_fraction,
                     stall_generations: elite,
-                    ..genetic::Options::default()
+                    ..genetic::GeneticOptions::default()
                 };
                 options.most_evaluations();
                 for values in lists {

@@ -9,7 +9,7 @@ use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
 use lindstedt::numeric::period::PeriodError;
 use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::Reach;
+use lindstedt::verify::AmplitudeReach;
 use lindstedt::verify::comparison::{Comparison, backbones, compare};
 use lindstedt::verify::{Verdict, Verification, VerificationError, judge};
 use lindstedt::{Oscillator, Symbol};
@@ -122,7 +122,7 @@ fn a_barrier_is_judged_by_quadrature_between_its_corners() {
     let frequency = hertz.true_frequency.expect("a true frequency");
     assert!((frequency - 1.52).abs() < 2e-3, "{frequency}");
     for row in &hertz.rows {
-        let everywhere = matches!(row.reach, Some(Reach::Everywhere(_)));
+        let everywhere = matches!(row.reach, Some(AmplitudeReach::Everywhere(_)));
         assert!(row.frequency.is_some() || !everywhere, "{}", row.solution.title());
     }
 }
@@ -274,7 +274,7 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
                 row.verdict == Some(Verdict::Pass),
                 "{equation} {title}"
             );
-            let Reach::UpTo(end) = reach else { continue };
+            let AmplitudeReach::UpTo(end) = reach else { continue };
             let (inside, outside) = (0.99 * end, 1.01 * end);
             let error = |size: f64| {
                 let exact = Expr::number(lindstedt::exact::from_f64(size).unwrap());
@@ -298,7 +298,7 @@ fn exact_frequency(
 ) -> Result<f64, lindstedt::numeric::period::PeriodError> {
     let force = lindstedt::expr::CompiledFunction::new(&oscillator.force, &["x".into()]).unwrap();
     let force = |x: f64| force.call(&[x]);
-    let force = lindstedt::numeric::period::Force::smooth(&force);
+    let force = lindstedt::numeric::period::PiecewiseForce::smooth(&force);
     Ok(std::f64::consts::TAU
         / lindstedt::numeric::period::conservative_period(&force, 0.0, amplitude)?)
 }

@@ -505,7 +505,7 @@ fn a_hole_in_the_wall_is_seen() {
         ),
         (
             "verify/backbone.rs",
-            "use super::orbit::{Meant, Physics};\nuse crate::conservative::well::Well;",
+            "use super::orbit::{NumericOscillator, OrbitTarget};\nuse crate::conservative::well::Well;",
         ),
         (
             "method/exact.rs",

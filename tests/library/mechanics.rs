@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use lindstedt::audit::paper;
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
 use lindstedt::mechanics::{
-    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place,
-    equilibria, study,
+    Dimension, DriveAtRest, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes,
+    RestPosition, equilibria, study,
 };
 use lindstedt::problem::Problem;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::{Oscillator, Symbol};
 
 fn expression(text: &str) -> Expr {
@@ -133,7 +133,7 @@ fn modes_are_those_of_the_textbooks() {
         let equations = example(name).mechanism().unwrap().mechanism.equations().unwrap();
         let rest = &equilibria(&equations).unwrap()[0];
         let values = values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
-        Modes::at(&equations, rest).unwrap().numbers(&values).unwrap()
+        Modes::about_rest(&equations, rest).unwrap().numbers(&values).unwrap()
     };
     let links = modes(
         "double-pendulum",
@@ -198,7 +198,7 @@ fn places_of_rest_are_exact() {
     assert_eq!(places("double-pendulum").len(), 4);
     assert_eq!(places("spring-pendulum").len(), 2);
     assert_eq!(places("rotating-pendulum").len(), 4);
-    assert_eq!(places("cart-pendulum")[0].places[0], Place::Anywhere);
+    assert_eq!(places("cart-pendulum")[0].places[0], RestPosition::Anywhere);
     assert!(places("bead-on-a-hoop").is_empty());
     assert_eq!(places("driven-masses").len(), 1);
 }
@@ -218,7 +218,7 @@ fn groups_leave_the_motion_as_it_is() {
         let units = question.units.expect("units");
         let mechanism = question.mechanism;
         let equations = mechanism.equations().unwrap();
-        let groups = Groups::of(&mechanism, &equations, &units).unwrap();
+        let groups = Groups::from_mechanism(&mechanism, &equations, &units).unwrap();
         let mut random = Random(11);
         let parameters: BTreeMap<Symbol, f64> =
             equations.parameters().into_iter().map(|name| (name, random.next())).collect();
@@ -317,9 +317,10 @@ fn parameters_that_enter_in_one_sum_count_as_one() {
         let equations = mechanism.equations().unwrap();
         assert_eq!(equations.to_string(), equation);
         let rests = equilibria(&equations).unwrap();
-        let found = Modes::at(&equations, &rests[0]).unwrap().square().unwrap().expect("omega^2");
+        let found =
+            Modes::about_rest(&equations, &rests[0]).unwrap().square().unwrap().expect("omega^2");
         assert_eq!(found.to_string(), square);
-        let groups = Groups::of(&mechanism, &equations, &units(list)).unwrap();
+        let groups = Groups::from_mechanism(&mechanism, &equations, &units(list)).unwrap();
         let found: Vec<String> =
             groups.combinations.iter().map(|sum| sum.meaning.to_string()).collect();
         assert_eq!(found, sums);
@@ -351,7 +352,7 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
     let quartic = ("x", "m*x'^2/2", "k3*x^4/4");
     for values in [&[][..], &[("m", 1.0), ("k3", 2.0)]] {
         let (drive, text) = printed(quartic.0, quartic.1, quartic.2, values);
-        assert_eq!(drive, [Drive::Absent]);
+        assert_eq!(drive, [DriveAtRest::Absent]);
         assert!(!text.contains("freely") && text.contains("no linear force"), "{text}");
     }
     let (_, text) = printed("x", "m*x'^2/2", "0", &[("m", 1.0)]);
@@ -359,19 +360,19 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
     // Held by what swings in time alone.
     let (drive, text) =
         printed("x", "m*x'^2/2", "k*cos(W*t)*x^2/2", &[("m", 1.0), ("k", 1.0), ("W", 2.0)]);
-    assert_eq!(drive, [Drive::Acts]);
+    assert_eq!(drive, [DriveAtRest::Acts]);
     assert!(text.contains("freely where nothing that is left out acts"), "{text}");
     // Kapitza's pendulum rests upright and hanging; pushed sideways it does not.
     let upwards = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*sin(phi)*phi'";
     let (drive, text) = printed("phi", upwards, "-m*g*L*cos(phi)", &[]);
-    assert_eq!(drive, [Drive::Vanishes; 2]);
+    assert_eq!(drive, [DriveAtRest::Vanishes; 2]);
     assert!(
         text.contains("at rest there with the terms in t, too") && !text.contains("no such rest"),
         "{text}"
     );
     let sideways = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*cos(phi)*phi'";
     let (drive, text) = printed("phi", sideways, "-m*g*L*cos(phi)", &[]);
-    assert_eq!(drive, [Drive::Acts; 2]);
+    assert_eq!(drive, [DriveAtRest::Acts; 2]);
     assert!(text.contains("no such rest"), "{text}");
 }
 
@@ -466,7 +467,7 @@ fn a_derived_equation_is_handed_on() {
         Oscillator::parse(&equation).expect("an oscillator").force.to_string(),
         "g*sin(x)/L"
     );
-    let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
+    let course = TrajectoryRequest::of_equation(&Oscillator::parse(&equation).unwrap());
     assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
 }
 
@@ -483,7 +484,8 @@ fn a_driven_motion_sticks_and_lets_go() {
         let settings = Settings { duration: 80.0, ..Settings::default() };
         let truth = simulate(&model, Start { x: 0.6, velocity: 0.0 }, Route::Taylor, &settings)
             .expect("a motion");
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.values = [("alpha", alpha), ("beta", beta), ("eta", eta)]
             .map(|(name, value)| (Symbol::new(name), value))
             .into();
@@ -493,14 +495,14 @@ fn a_driven_motion_sticks_and_lets_go() {
         assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
         for index in 0..=800 {
             let t = 0.1 * f64::from(index);
-            let (x, _) = truth.path.at(t).expect("a state");
-            let own = motion.at(t).expect("a state")[0];
+            let (x, _) = truth.path.phase_point_at(t).expect("a state");
+            let own = motion.states_at(t).expect("a state")[0];
             assert!((own - x).abs() < 1e-8, "{alpha} {beta} {eta} at {t}: {own} {x}");
         }
         assert!(
-            motion.held().count() > 2 || beta < alpha,
+            motion.sticking_intervals().count() > 2 || beta < alpha,
             "{:?}",
-            motion.held().collect::<Vec<_>>()
+            motion.sticking_intervals().collect::<Vec<_>>()
         );
     }
 }
@@ -510,13 +512,13 @@ fn mechanism(
     forces: &[(&str, &str)],
     start: &[(&str, f64)],
     duration: f64,
-) -> Course {
+) -> TrajectoryRequest {
     let mut mechanism = Mechanism::parse(&["x", "y"], kinetic, potential).expect("a mechanism");
     mechanism.dissipation = expression(dissipation);
     mechanism.forces =
         forces.iter().map(|(name, force)| (Symbol::new(name), expression(force))).collect();
     let equations = mechanism.equations().expect("equations");
-    let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+    let mut course = TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("a course");
     for (name, value) in start {
         course.begin(Symbol::new(name), *value).expect("a state");
     }
@@ -524,7 +526,7 @@ fn mechanism(
     course
 }
 
-fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
+fn followed(course: TrajectoryRequest) -> lindstedt::trajectory::Trajectory {
     let motion = course.follow().expect("a motion");
     assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
     let residual = motion.balance.as_ref().expect("a balance").residual;
@@ -539,10 +541,10 @@ fn friction_holds_one_of_several_coordinates() {
     // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
     let blocks = ["(x'^2 + y'^2)/2", "(x^2 + y^2)/2 + (x - y)^2/4", "2/5*abs(x')"];
     let motion = followed(mechanism(blocks, &[], &[("y", 0.79)], 40.0));
-    assert_eq!(motion.held().collect::<Vec<_>>(), [[0.0, 40.0]]);
+    assert_eq!(motion.sticking_intervals().collect::<Vec<_>>(), [[0.0, 40.0]]);
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
-        let state = motion.at(t).expect("a state");
+        let state = motion.states_at(t).expect("a state");
         assert_eq!((state[0], state[2]), (0.0, 0.0));
         assert!((state[1] - 0.79 * (1.5_f64.sqrt() * t).cos()).abs() < 1e-12, "{t}: {state:?}");
     }
@@ -551,15 +553,15 @@ fn friction_holds_one_of_several_coordinates() {
     let size = (0.49 + 0.49 / 1.5_f64).sqrt();
     let phase = (0.7 / 1.5_f64.sqrt()).atan2(0.7);
     let let_go = (phase - (0.8 / size).acos()) / 1.5_f64.sqrt();
-    let [from, until] = motion.held().next().expect("a hold");
+    let [from, until] = motion.sticking_intervals().next().expect("a hold");
     assert!(from == 0.0 && (until - let_go).abs() < 1e-12, "{until} {let_go}");
-    assert!(motion.at(until + 0.3).expect("a state")[0] > 1e-4);
+    assert!(motion.states_at(until + 0.3).expect("a state")[0] > 1e-4);
     // Three quarters of the mass ride on the rest: 4 x'' + x = 0 while 3 |x''| <= 1/2.
     let riding = ["x'^2/2 + 3*y'^2/2", "x^2/2", "abs(x' - y')/2"];
     let motion = followed(mechanism(riding, &[], &[("x", 0.6), ("y", 0.1)], 30.0));
     for index in 0..=300 {
         let t = 0.1 * f64::from(index);
-        let (state, wave) = (motion.at(t).expect("a state"), (0.5 * t).cos());
+        let (state, wave) = (motion.states_at(t).expect("a state"), (0.5 * t).cos());
         assert!(
             (state[0] - 0.6 * wave).abs() < 1e-12 && (state[1] - 0.6 * wave + 0.5).abs() < 1e-12,
             "{t}"
@@ -569,11 +571,12 @@ fn friction_holds_one_of_several_coordinates() {
     // equally fast.
     let motion = followed(mechanism(riding, &[], &[("x", 1.2)], 30.0));
     assert!(
-        motion.held().all(|[from, until]| from > 0.0 && until > from) && motion.held().count() > 0
+        motion.sticking_intervals().all(|[from, until]| from > 0.0 && until > from)
+            && motion.sticking_intervals().count() > 0
     );
     // On a belt it is carried until the spring is too strong, and then swings about where friction
     // alone would hold it: it comes back to the speed of the belt once a period, and touches it.
-    let mut course = Course::of_equation(
+    let mut course = TrajectoryRequest::of_equation(
         &Oscillator::parse("x'' + x + alpha*sgn(x' - 1/2) = 0").expect("an equation"),
     );
     course.begin("x'".into(), 0.5).expect("a state");
@@ -583,7 +586,7 @@ fn friction_holds_one_of_several_coordinates() {
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
         let carried = if t < 0.6 { 0.5 * t } else { 0.3 + 0.5 * (t - 0.6).sin() };
-        let x = motion.at(t).expect("a state")[0];
+        let x = motion.states_at(t).expect("a state")[0];
         assert!((x - carried).abs() < 1e-7, "{t}: {x} {carried}");
     }
 }
@@ -676,11 +679,11 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
         let truth = time_stepping(mass, bounds, belt, force, ([0.4, -0.3], [0.0; 2]), 25.0);
         for (index, [x, y]) in truth.iter().enumerate() {
             let t = 0.01 * index as f64;
-            let state = motion.at(t.min(25.0)).expect("a state");
+            let state = motion.states_at(t.min(25.0)).expect("a state");
             let apart = (state[0] - x).abs().max((state[1] - y).abs());
             assert!(apart < 5e-4, "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}");
         }
-        held += motion.held().count();
+        held += motion.sticking_intervals().count();
         // The other integrator finds the same.
         course.duration = 6.0;
         let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
@@ -697,19 +700,19 @@ fn more_frictions_at_rest_than_velocities() {
     let dissipation = "abs(x') + abs(y')/10 + abs(x' - y')/2";
     let bodies = ["x'^2/2 + y'^2/2", "0", dissipation];
     let motion = followed(mechanism(bodies, &[("x", "t/10")], &[], 25.0));
-    let held: Vec<[f64; 2]> = motion.held().collect();
+    let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
     assert!(matches!(held.as_slice(), [[0.0, apart]] if (apart - 19.0).abs() < 1e-6), "{held:?}");
     for index in 0..=190 {
         let t = 0.1 * f64::from(index);
         let place = (t - 11.0).max(0.0).powi(3) / 120.0;
-        let state = motion.at(t).expect("a state");
+        let state = motion.states_at(t).expect("a state");
         assert!(
             (state[0] - place).abs() < 1e-9 && (state[1] - place).abs() < 1e-9,
             "{t}: {state:?} {place}"
         );
     }
     // From there on y'' = 2/5 and x'' = t/10 - 3/2.
-    let [x, y] = [0, 1].map(|place| motion.at(25.0).expect("a state")[place]);
+    let [x, y] = [0, 1].map(|place| motion.states_at(25.0).expect("a state")[place]);
     let (at, speed) = (8.0_f64.powi(3) / 120.0, 64.0 / 40.0);
     let own = |t: f64| t * t * t / 60.0 - 3.0 * t * t / 4.0;
     let from = 19.0 * 19.0 / 20.0 - 1.5 * 19.0;
@@ -727,7 +730,7 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
         let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts)
             .expect("a mechanism");
         let equations = mechanism.equations().expect("equations");
-        let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+        let mut course = TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("a course");
         for (name, value) in ["x", "y", "z"].into_iter().zip(start) {
             course.begin(Symbol::new(name), value).expect("a state");
         }
@@ -735,7 +738,7 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
         course.step_limit = 500;
         let motion = course.follow().expect("a motion");
         assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
-        motion.at(until).expect("a state")
+        motion.states_at(until).expect("a state")
     };
     let still = row([0.1, 0.4, 0.7], 2.0);
     assert!(
@@ -758,15 +761,16 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
 #[test]
 fn corners_of_mechanisms() {
     let follow = |equation: &str, start: f64, until: f64| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.begin("x".into(), start).expect("a state");
         course.duration = until;
         course.follow().expect("a motion")
     };
     let gated = follow("x'' + x^(1/3)*H(1 - x) = 0", 0.5, 10.0);
     let plain = follow("x'' + x^(1/3) = 0", 0.5, 10.0);
-    let [gated, plain] =
-        [&gated, &plain].map(|motion| motion.at(motion.end().min(10.0)).expect("a state")[0]);
+    let [gated, plain] = [&gated, &plain]
+        .map(|motion| motion.states_at(motion.end().min(10.0)).expect("a state")[0]);
     assert!((gated - plain).abs() < 1e-6, "{gated} {plain}");
     // Without a gate of its own a root has no value, and the motion ends there.
     assert!(!follow("x'' + 1 + sqrt(x)*H(1 - x) = 0", 0.5, 10.0).is_complete());
@@ -785,7 +789,7 @@ fn corners_of_mechanisms() {
     chain.dissipation = expression("750*(x' - y')^2 + 100*(y' - z')^2");
     let equations = chain.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    let modes = Modes::at(&equations, rest).unwrap().numbers(&BTreeMap::new()).unwrap();
+    let modes = Modes::about_rest(&equations, rest).unwrap().numbers(&BTreeMap::new()).unwrap();
     assert!(modes.iter().all(|mode| mode.growth <= 0.0), "{modes:?}");
     assert_eq!((modes[0].frequency, modes[0].growth), (0.0, 0.0));
     // Anywhere along a rod: the swing depends on where, and says so.
@@ -793,11 +797,11 @@ fn corners_of_mechanisms() {
         Mechanism::parse(&["s", "x"], "m*s'^2/2 + (I + m*s^2)*x'^2/2", "-M*g*L*cos(x)").unwrap();
     let equations = rod.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    assert_eq!(Modes::at(&equations, rest).unwrap().taken_at_zero, [Symbol::new("s")]);
+    assert_eq!(Modes::about_rest(&equations, rest).unwrap().taken_at_zero, [Symbol::new("s")]);
     // Duffing's spring rests at zero.
     let duffing =
         Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4").unwrap().equations().unwrap();
-    assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
+    assert_eq!(equilibria(&duffing).unwrap()[0].places, [RestPosition::At(Expr::zero())]);
 }
 
 /// A mechanism that changes with the time other than by sines and cosines has no modes; what a
@@ -807,7 +811,7 @@ fn a_mechanism_that_changes_with_the_time_has_no_modes() {
     let hanging = |kinetic: &str, potential: &str| {
         let equations = Mechanism::parse(&["x"], kinetic, potential).unwrap().equations().unwrap();
         let rest = equilibria(&equations).unwrap().swap_remove(0);
-        Modes::at(&equations, &rest).unwrap()
+        Modes::about_rest(&equations, &rest).unwrap()
     };
     let numbers: BTreeMap<Symbol, f64> =
         ["m", "L", "g", "v", "a", "k", "c", "W"].map(|name| (Symbol::new(name), 1.5)).into();
@@ -851,7 +855,7 @@ fn groups_need_no_length_among_the_parameters() {
             .map(|(name, unit)| (Symbol::new(name), unit.parse().expect("a unit")))
             .collect();
         mechanism.check_units(&units).unwrap();
-        Groups::of(&mechanism, &mechanism.equations().unwrap(), &units).unwrap()
+        Groups::from_mechanism(&mechanism, &mechanism.equations().unwrap(), &units).unwrap()
     };
     let linear =
         [("x", "m"), ("m", "kg"), ("k", "N/m"), ("c", "N*s/m"), ("b", "N/m^3"), ("F", "N")];
@@ -927,7 +931,7 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     };
     let [heavy, light, none] = ["m = 3\n", "m = 1\n", ""].map(follow);
     for motion in [&light, &none] {
-        assert_eq!(motion.at(2.0), heavy.at(2.0));
+        assert_eq!(motion.states_at(2.0), heavy.states_at(2.0));
     }
     let [three, one] =
         [&heavy, &light].map(|motion| motion.balance.as_ref().expect("a balance").start);

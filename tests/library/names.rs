@@ -478,7 +478,7 @@ fn letters_stand_in_every_format() {
         .map(|(name, value)| (name.into(), value.parse().unwrap()));
     let mut values = lindstedt::Values::default();
     for (name, value) in at {
-        values.insert(apart.meant(name), value).expect("a value");
+        values.insert(apart.resolve_symbol(name), value).expect("a value");
     }
     let judged = lindstedt::judge(&apart, &solution, &values, 0.01).expect("a verdict");
     let report = text::solution(&solution, Some(&judged), 0.01);
@@ -494,7 +494,7 @@ fn meant(oscillator: &Oscillator, at: &str) -> lindstedt::Values {
     let typed: lindstedt::Values = at.parse().expect("values");
     let mut values = lindstedt::Values::default();
     for (name, value) in typed.iter() {
-        values.insert(oscillator.meant(name), value.clone()).expect("a value");
+        values.insert(oscillator.resolve_symbol(name), value.clone()).expect("a value");
     }
     values
 }

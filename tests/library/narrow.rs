@@ -3,15 +3,16 @@
 
 use std::f64::consts::PI;
 
-use lindstedt::system::{End, Integrator};
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::system::{Integrator, PathEnd};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
 /// By power series, and by Runge-Kutta where two are wanted.
 fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec<Trajectory> {
     let integrators = [Integrator::Taylor, Integrator::RungeKutta].into_iter().take(count);
     let motion = |integrator: Integrator| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start[0]).expect("a state");
         course.begin(Symbol::new("x'"), start[1]).expect("a state");
         course.duration = duration;
@@ -21,7 +22,7 @@ fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec
             course.tolerance = 1e-12;
         }
         let motion = course.follow_by(integrator).expect(equation);
-        assert_eq!(motion.reason(), End::Reached, "{equation} {integrator:?}");
+        assert_eq!(motion.reason(), PathEnd::Reached, "{equation} {integrator:?}");
         motion
     };
     integrators.map(motion).collect()
@@ -85,7 +86,7 @@ fn a_steep_switch_is_taken_where_it_is() {
     // Beyond the speed 1/2 the force is less by 1/2: w = x' obeys w' = 1 - H(w - 1/2)/2.
     for motion in followed("x'' = 3/4 - tanh(1e6*(x' - 1/2))/4", [0.0, 0.0], 2.0, 2) {
         let expected = 0.125 + 1.5 * 0.5 + 0.25 * 1.5 * 1.5;
-        let found = motion.at(2.0).expect("a state")[0];
+        let found = motion.states_at(2.0).expect("a state")[0];
         assert!((found - expected).abs() < 1e-6, "{:?}: {found} {expected}", motion.integrator);
     }
 }
@@ -99,7 +100,7 @@ fn a_pulse_that_meets_the_motion_on_its_way_counts() {
         let work = 0.1 * PI.sqrt();
         for motion in followed(&equation, [0.0, -0.7], 10.0, 2) {
             let expected = 0.3 - (1.0 - 2.0 * work).sqrt();
-            let found = motion.at(10.0).expect("a state")[1];
+            let found = motion.states_at(10.0).expect("a state")[1];
             assert!((found - expected).abs() < 1e-9, "{equation}: {found} {expected}");
         }
     }

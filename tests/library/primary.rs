@@ -11,7 +11,7 @@ use lindstedt::impact::primary::{
 };
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
 use lindstedt::problem::Problem;
-use lindstedt::system::{Event, Integrator as Route, Options, Path, System};
+use lindstedt::system::{Event, Integrator as Route, Path, System, SystemOptions};
 
 fn settings(duration: f64) -> PrimarySettings {
     PrimarySettings { duration, ..PrimarySettings::default() }
@@ -71,8 +71,8 @@ fn a_heavy_main_mass_leaves_the_pendulum_alone() {
         }
         for index in 0..=400 {
             let t = 0.1 * f64::from(index);
-            let (x, _) = truth.path.at(t).expect("a state");
-            let own = motion.at(t).expect("a state").x;
+            let (x, _) = truth.path.phase_point_at(t).expect("a state");
+            let own = motion.state_at(t).expect("a state").x;
             assert!((own - x).abs() < 1e-6, "{model:?} at {t}: {own} {x}");
         }
     }
@@ -98,7 +98,7 @@ fn without_contact_it_is_the_linear_system_of_two_modes() {
         let waves = squares.map(|s| (s.sqrt() * t).cos());
         let x = part * (waves[0] - waves[1]);
         let y = part * (shapes[0] * waves[0] - shapes[1] * waves[1]);
-        let state = motion.at(t).expect("a state");
+        let state = motion.state_at(t).expect("a state");
         assert!((state.x - x).abs() < 1e-9 * size.max(1e-3 * size) + 1e-15, "{t}: {} {x}", state.x);
         assert!((state.y - y).abs() < 1e-9 * size, "{t}: {} {y}", state.y);
     }
@@ -109,14 +109,14 @@ fn without_contact_it_is_the_linear_system_of_two_modes() {
         follow(PrimaryCase { primary: damped, model: held, start: [0.0, 0.0, 0.5, 0.2] }, 60.0);
     for index in 0..=300 {
         let t = 0.2 * f64::from(index);
-        let state = motion.at(t).expect("a state");
+        let state = motion.state_at(t).expect("a state");
         assert!((state.y - damped.alone_at(damped.mass + 1.0, [0.5, 0.2], t)).abs() < 1e-11, "{t}");
         assert_eq!(state.x, 0.0);
     }
     let rest =
         follow(PrimaryCase { primary: damped, model: held, start: [0.0, 0.0, 0.5, 0.0] }, 200.0)
             .rest_time();
-    let locked = damped.others().locked.rest_time.expect("a rest time");
+    let locked = damped.undamped_and_locked().locked.rest_time.expect("a rest time");
     assert!((rest.expect("a rest time") / locked - 1.0).abs() < 1e-9);
 }
 
@@ -132,7 +132,7 @@ fn momentum_and_energy_balance_over_every_impact() {
     assert!(motion.impacts.len() > 20);
     for impact in &motion.impacts {
         let Some(exit) = impact.exit_time else { continue };
-        let at = |t: f64| motion.at(t).expect("a state");
+        let at = |t: f64| motion.state_at(t).expect("a state");
         let momentum = |t: f64| {
             let state = at(t);
             (primary.mass + 1.0) * state.speed + state.velocity * state.x.cos()
@@ -171,7 +171,7 @@ fn no_impact_is_missed() {
         let mut inside = 0;
         for index in 0..=80_000 {
             let t = 1e-3 * f64::from(index);
-            let state = motion.at(t).expect("a state");
+            let state = motion.state_at(t).expect("a state");
             let deep = model.depth(state.x).is_some_and(|(_, depth)| depth > 1e-12);
             let within = motion
                 .impacts
@@ -207,7 +207,11 @@ fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f
     .into();
     let states = ["x", "v", "y", "u"].map(Symbol::new);
     let system = System::new(&states, "t".into(), &right, &numbers).expect("a system");
-    let options = Options { integrator: Route::RungeKutta, tolerance: 1e-12, ..Options::default() };
+    let options = SystemOptions {
+        integrator: Route::RungeKutta,
+        tolerance: 1e-12,
+        ..SystemOptions::default()
+    };
     let passages = [Event::record(read("x - c"))];
     system.solve(0.0, &start, until, &passages, &options).expect("a path")
 }
@@ -225,7 +229,8 @@ fn equations_written_by_hand_agree() {
     assert_eq!(path.occurrences().len(), 2 * motion.impacts.len());
     for index in 0..=250 {
         let t = 0.1 * f64::from(index);
-        let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
+        let (own, other) =
+            (motion.state_at(t).expect("a state"), path.states_at(t).expect("a state"));
         for (own, other) in [own.x, own.velocity, own.y, own.speed].iter().zip(other) {
             assert!((own - other).abs() < 1e-7, "{t}: {own} {other}");
         }
@@ -267,7 +272,7 @@ fn what_the_damper_is_worth() {
     let with = follow(PrimaryCase { primary, model: caged, start }, 400.0)
         .rest_time()
         .expect("a rest time");
-    let others = primary.others();
+    let others = primary.undamped_and_locked();
     assert!(
         with < others.locked.rest_time.expect("a rest time")
             && with < others.without.rest_time.expect("a rest time")
@@ -277,7 +282,7 @@ fn what_the_damper_is_worth() {
         100.0,
     );
     assert!(lossless.rest_time().is_err());
-    assert_eq!(MASS.others().without.rest_time, None);
+    assert_eq!(MASS.undamped_and_locked().without.rest_time, None);
     assert!((lossless.energy.end / lossless.energy.start - 1.0).abs() < 1e-9);
 }
 
@@ -322,7 +327,8 @@ fn a_start_on_a_barrier_is_a_start_in_contact() {
         let path = by_hand(primary, model, place, start, 10.0);
         for index in 0..=100 {
             let t = 0.1 * f64::from(index);
-            let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
+            let (own, other) =
+                (motion.state_at(t).expect("a state"), path.states_at(t).expect("a state"));
             assert!(
                 (own.x - other[0]).abs() < 1e-6,
                 "{place} {start:?} at {t}: {} {}",
@@ -397,7 +403,7 @@ fn held_moments(motion: &PrimaryMotion, moments: u32) -> usize {
     let mut before = f64::NAN;
     for index in 0..=moments {
         let t = motion.end * f64::from(index) / f64::from(moments);
-        let state = motion.at(t).expect("a state");
+        let state = motion.state_at(t).expect("a state");
         // At a turning point alone nothing is held.
         let stays = state.velocity == 0.0 && state.x == before;
         before = state.x;
@@ -466,7 +472,7 @@ fn a_shaken_pendulum_slips_exactly_where_the_acceleration_exceeds_the_friction()
             held_moments(&motion, 4000);
             // |y''| = peak |sin(eta t)| reaches alpha at eta t = asin(1/part).
             let onset = (1.0 / part).min(1.0).asin() / frequency;
-            let still = |t: f64| motion.at(t).expect("a state").x == 0.0;
+            let still = |t: f64| motion.state_at(t).expect("a state").x == 0.0;
             assert!(still(onset - 1e-3), "{force} {part}");
             assert_eq!(still(onset + 0.5), part < 1.0, "{force} {part}");
         }
@@ -486,7 +492,8 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
         let path = by_hand(primary, model, 0.1, start, 10.0);
         for index in 0..=100 {
             let t = 0.1 * f64::from(index);
-            let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
+            let (own, other) =
+                (motion.state_at(t).expect("a state"), path.states_at(t).expect("a state"));
             for (own, other) in [own.x, own.velocity, own.y, own.speed].iter().zip(other) {
                 assert!((own - other).abs() < 1e-6, "{velocity} at {t}: {own} {other}");
             }
@@ -502,7 +509,7 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
     let free = Model { right: None, ..model };
     let without = follow(PrimaryCase { primary, model: free, start }, 1.0);
     let out = motion.impacts[0].exit_time.expect("an exit");
-    for state in [0.5 * out, out].map(|t| [motion.at(t), without.at(t)]) {
+    for state in [0.5 * out, out].map(|t| [motion.state_at(t), without.state_at(t)]) {
         let [own, other] = state.map(|state| state.expect("a state"));
         assert!((own.x - other.x).abs() < 1e-13 && (own.velocity - other.velocity).abs() < 1e-12);
     }
@@ -516,7 +523,7 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
     let mirrored = Model { left: Some(-0.1), right: None, ..model };
     let [right, left] = [(model, [0.15, 0.3, 0.1, 0.0]), (mirrored, [-0.15, -0.3, -0.1, 0.0])].map(
         |(model, start)| {
-            follow(PrimaryCase { primary, model, start }, 10.0).at(10.0).expect("a state")
+            follow(PrimaryCase { primary, model, start }, 10.0).state_at(10.0).expect("a state")
         },
     );
     assert!((right.x + left.x).abs() < 1e-12 && (right.y + left.y).abs() < 1e-12);

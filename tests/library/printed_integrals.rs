@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
-use lindstedt::solution::{Formula, Line};
+use lindstedt::solution::{DerivationFormula, DerivationLine};
 use lindstedt::{Oscillator, Solution, Symbol};
 
 type Numbers = BTreeMap<Symbol, f64>;
@@ -16,13 +16,13 @@ type Numbers = BTreeMap<Symbol, f64>;
 type Context<'a> = dyn Fn(&mut Numbers, Symbol, f64) + 'a;
 
 /// The value of a formula; `None` for what is no number.
-fn value(formula: &Formula, numbers: &Numbers, context: &Context) -> Option<f64> {
+fn value(formula: &DerivationFormula, numbers: &Numbers, context: &Context) -> Option<f64> {
     match formula {
-        Formula::Expression(expression) => expression.evaluate(numbers).ok(),
-        Formula::OverRoot(numerator, inside) => {
+        DerivationFormula::Expression(expression) => expression.evaluate(numbers).ok(),
+        DerivationFormula::OverRoot(numerator, inside) => {
             Some(numerator.evaluate(numbers).ok()? / value(inside, numbers, context)?.sqrt())
         }
-        Formula::Integral { factor, from, to, integrand, variable } => {
+        DerivationFormula::Integral { factor, from, to, integrand, variable } => {
             // The double exponential rule (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), for
             // roots below the line at the ends.
             const STEP: f64 = 0.06;
@@ -46,7 +46,12 @@ fn value(formula: &Formula, numbers: &Numbers, context: &Context) -> Option<f64>
 }
 
 /// How many equations of an answer could be evaluated; each of them holds.
-fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name: &str) -> usize {
+fn equations_hold(
+    lines: &[DerivationLine],
+    numbers: &mut Numbers,
+    context: &Context,
+    name: &str,
+) -> usize {
     let mut count = 0;
     for line in lines.iter().filter(|line| line.equal.len() > 1) {
         // The other turning point is where the printed equation for it is true.
@@ -82,7 +87,7 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
             let values: Vec<f64> =
                 line.equal.iter().filter_map(|part| value(part, numbers, context)).collect();
             if values.len() < 2
-                || !line.equal.iter().any(|part| matches!(part, Formula::Integral { .. }))
+                || !line.equal.iter().any(|part| matches!(part, DerivationFormula::Integral { .. }))
             {
                 continue;
             }
@@ -173,7 +178,7 @@ fn every_printed_integral_is_the_number_given_with_it() {
             let held = equations_hold(lines, &mut numbers, &context, &name);
             assert!(held > 0, "{name}: nothing could be evaluated in {lines:?}");
             // The derivation may show more.
-            let more: Vec<Line> =
+            let more: Vec<DerivationLine> =
                 solution.derivation.iter().filter(|line| !lines.contains(line)).cloned().collect();
             equations_hold(&more, &mut numbers, &context, &name);
         }

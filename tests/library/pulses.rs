@@ -2,13 +2,14 @@
 
 use std::f64::consts::PI;
 
-use lindstedt::system::{End, Integrator};
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::system::{Integrator, PathEnd};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
 fn followed(equation: &str, start: f64, duration: f64) -> [Trajectory; 2] {
     [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start).expect("a state");
         course.duration = duration;
         // Runge-Kutta sees the rounding of a steep argument.
@@ -17,13 +18,13 @@ fn followed(equation: &str, start: f64, duration: f64) -> [Trajectory; 2] {
         }
         course.energy = None;
         let motion = course.follow_by(integrator).expect(equation);
-        assert_eq!(motion.reason(), End::Reached, "{equation}");
+        assert_eq!(motion.reason(), PathEnd::Reached, "{equation}");
         motion
     })
 }
 
 fn place(motion: &Trajectory, time: f64) -> f64 {
-    motion.at(time).expect("a state")[0]
+    motion.states_at(time).expect("a state")[0]
 }
 
 /// `x'' + 2 z x' + x = a exp(-((t - s)/w)^2)` rings behind it as
@@ -60,7 +61,8 @@ fn the_work_of_a_steep_pulse_closes_the_account() {
         "x'' + x*(1 + 1e3*exp(-((t - 5)*1e4)^2)) = 0",
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+            let mut course =
+                TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
             course.begin(Symbol::new("x"), 0.3).expect("a state");
             course.duration = 30.0;
             if integrator == Integrator::RungeKutta {
@@ -127,7 +129,7 @@ fn a_stiffness_for_a_moment_kicks() {
 #[test]
 fn a_short_pulse_frees_what_friction_holds() {
     for motion in followed("x'' + x + 0.5*sgn(x') = 50*exp(-((t-20)*100)^2)", 0.1, 40.0) {
-        let held: Vec<[f64; 2]> = motion.held().collect();
+        let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
         assert!(
             held.first().is_some_and(|[from, until]| *from < 1.0 && (until - 20.0).abs() < 0.05),
             "{held:?}"
@@ -146,14 +148,14 @@ fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
         let start = 0.3 + 0.6 * f64::from(half_periods);
         let rests_at = if half_periods % 2 == 0 { 0.3 } else { -0.3 };
         for with_energy in [true, false] {
-            let mut course = Course::of_equation(&equation);
+            let mut course = TrajectoryRequest::of_equation(&equation);
             course.begin(Symbol::new("x"), start).expect("a state");
             course.duration = 60.0;
             if !with_energy {
                 course.energy = None;
             }
             let motion = course.follow().expect("a motion");
-            let held: Vec<[f64; 2]> = motion.held().collect();
+            let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
             let [[from, until]] = held.as_slice() else {
                 panic!("{start}: {held:?}");
             };

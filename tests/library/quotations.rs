@@ -71,7 +71,7 @@ fn terms_inside_scaled_brackets_are_quoted_as_typed() {
         let refused = refusal(equation, Method::Hamiltonian, None).expect(equation);
         assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let [line, carets] = oscillator.typed.place(expected).expect(equation);
+        let [line, carets] = oscillator.typed.locate(expected).expect(equation);
         assert_eq!((line.as_str(), carets.find('^')), (equation, Some(column)));
         assert_eq!(carets.matches('^').count(), expected.trim_start_matches('-').len());
     }
@@ -163,7 +163,7 @@ fn polynomial_terms_are_not_blamed() {
             let options = Options { method: Some(method), order: Some(2), ..Options::default() };
             let refused = solve(&oscillator, &options).expect_err(equation);
             assert_eq!(refused.term(), Some(expected), "{equation}: {refused}");
-            let [_, carets] = oscillator.typed.place(expected).expect(equation);
+            let [_, carets] = oscillator.typed.locate(expected).expect(equation);
             assert_eq!(carets.find('^'), Some(column), "{equation}");
         }
     }

@@ -8,7 +8,7 @@ use lindstedt::Values;
 use lindstedt::expr::parse_expression;
 use lindstedt::method::numbers::frequency_squared_of;
 use lindstedt::method::{Options, solve};
-use lindstedt::numeric::period::{Force, conservative_period};
+use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 use lindstedt::solution::{Degrees, Method, Note};
 use lindstedt::verify::{Range, Verification, judge};
 use lindstedt::{Oscillator, Symbol};
@@ -43,8 +43,9 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
         let waves = |from: f64, to: f64| {
             (-400..400).map(f64::from).filter(|place| from < *place && *place < to).collect()
         };
-        let truth =
-            TAU / conservative_period(&Force::with_cuts(&force, &waves), 0.0, amplitude).unwrap();
+        let truth = TAU
+            / conservative_period(&PiecewiseForce::with_cuts(&force, &waves), 0.0, amplitude)
+                .unwrap();
         // What the harmonics left out change: less than the second power of the wave over the
         // amplitude.
         assert!(

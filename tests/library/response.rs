@@ -3,41 +3,41 @@
 
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
-use lindstedt::response::{Bifurcation, Point, Question, Response, respond};
+use lindstedt::response::{Bifurcation, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::solution::AmplitudeConvention;
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::Verdict;
 use lindstedt::{Oscillator, Symbol, solve};
 
-fn question(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> Question {
-    Question::new(equation, parameter, range, values).expect(equation)
+fn question(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> ResponseRequest {
+    ResponseRequest::new(equation, parameter, range, values).expect(equation)
 }
 
-fn response(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> Response {
+fn response(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> ResponseDiagram {
     respond(&question(equation, parameter, range, values)).expect(equation)
 }
 
 const DUFFING: &str = "x'' + c*x' + x + x^3 - F*cos(Omega*t) = 0";
 
-fn duffing() -> Response {
+fn duffing() -> ResponseDiagram {
     response(DUFFING, "Omega", [0.5, 2.5], "c = 1/10, F = 3/10")
 }
 
-fn places(response: &Response, kind: BifurcationKind) -> Vec<Bifurcation> {
+fn places(response: &ResponseDiagram, kind: BifurcationKind) -> Vec<Bifurcation> {
     let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
     of_kind.copied().collect()
 }
 
 /// The points of all branches nearest to a value of the parameter, one for each time that a branch
 /// passes it.
-fn passing(response: &Response, parameter: f64) -> Vec<Point> {
+fn passing(response: &ResponseDiagram, parameter: f64) -> Vec<SteadyMotion> {
     let mut found = Vec::new();
     for branch in &response.branches {
         for pair in branch.points.windows(2) {
             let between = (pair[0].parameter - parameter) * (pair[1].parameter - parameter);
             if between <= 0.0 && pair[0].parameter != pair[1].parameter {
                 let nearer = pair.iter().min_by(|one, other| {
-                    let distance = |point: &Point| (point.parameter - parameter).abs();
+                    let distance = |point: &SteadyMotion| (point.parameter - parameter).abs();
                     distance(one).total_cmp(&distance(other))
                 });
                 found.extend(nearer.cloned());
@@ -57,7 +57,7 @@ fn simulated(
     period: f64,
     periods: u32,
 ) -> ([f64; 2], f64, f64) {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
     let end = f64::from(periods) * period;
     course.values = numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
     course.begin("x".into(), start[0]).expect("a state");
@@ -68,7 +68,7 @@ fn simulated(
     const SAMPLES: u32 = 512;
     let sample = |index: u32| end - period + period * f64::from(index) / f64::from(SAMPLES);
     let positions: Vec<f64> =
-        (0..SAMPLES).map(|index| path.at(sample(index)).expect("a state")[0]).collect();
+        (0..SAMPLES).map(|index| path.states_at(sample(index)).expect("a state")[0]).collect();
     let sum = |wave: fn(f64) -> f64| {
         let phase = |index: usize| std::f64::consts::TAU * index as f64 / f64::from(SAMPLES);
         let terms = positions.iter().enumerate().map(|(index, x)| x * wave(phase(index)));
@@ -76,7 +76,7 @@ fn simulated(
     };
     let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = positions.iter().copied().fold(f64::INFINITY, f64::min);
-    let state = path.at(end).expect("a state");
+    let state = path.states_at(end).expect("a state");
     ([state[0], state[1]], sum(f64::cos).hypot(sum(f64::sin)), 0.5 * (highest - lowest))
 }
 
@@ -110,7 +110,7 @@ fn a_linear_oscillator_is_exact() {
 /// amplitude, and at a fold its derivative by s is zero.
 #[test]
 fn folds_of_one_harmonic_are_those_of_the_closed_form() {
-    let found = respond(&Question {
+    let found = respond(&ResponseRequest {
         harmonics: Some(1),
         ..question(DUFFING, "Omega", [0.5, 2.5], "c = 1/10, F = 3/10")
     })
@@ -165,7 +165,7 @@ fn a_narrow_range_has_every_motion_of_its_inside() {
         ([1.19, 1.3], vec![1.195, 1.21, 1.22]),
         ([1.19, 1.2], vec![1.195]),
     ] {
-        let found = respond(&Question {
+        let found = respond(&ResponseRequest {
             harmonics: Some(1),
             ..question(equation, "Omega", range, "c = 1/10, k = 1/10, F = 3/10")
         })
@@ -215,8 +215,9 @@ fn a_simulation_jumps_at_the_folds() {
     };
     let points = &found.branches[0].points;
     let near = |fold: &Bifurcation, high: bool| {
-        let beside = |point: &&Point| point.stable == Some(true) && (point.amplitude > 1.0) == high;
-        let distance = |point: &Point| (point.parameter - fold.parameter).abs();
+        let beside =
+            |point: &&SteadyMotion| point.stable == Some(true) && (point.amplitude > 1.0) == high;
+        let distance = |point: &SteadyMotion| (point.parameter - fold.parameter).abs();
         let of_part = points.iter().filter(beside);
         of_part
             .min_by(|one, other| distance(one).total_cmp(&distance(other)))
@@ -264,7 +265,7 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     let [doubling] = &doublings[..] else { panic!("{doublings:?}") };
     let beside = |offset: f64| {
         let distance =
-            |point: &Point| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
+            |point: &SteadyMotion| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
         let on = found.branches[doubling.branch].points.iter();
         let upper = on.filter(|point| point.amplitude > 0.5);
         upper
@@ -291,7 +292,7 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     assert!(beyond.0 > 1e-2 && beyond.1 < 1e-4, "{beyond:?}");
     // The doubled motions are a branch of their own, born there.
     let doubled =
-        respond(&Question { periods: 2, ..question(wells, "F", [0.15, 0.2], "Omega = 1") })
+        respond(&ResponseRequest { periods: 2, ..question(wells, "F", [0.15, 0.2], "Omega = 1") })
             .expect("a response");
     let born =
         doubled.bifurcations.iter().filter(|found| found.kind == BifurcationKind::BranchPoint);
@@ -300,7 +301,7 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
         "{:?}",
         doubled.bifurcations
     );
-    let lasting = |point: &&Point| point.stable == Some(true) && point.amplitude > 0.02;
+    let lasting = |point: &&SteadyMotion| point.stable == Some(true) && point.amplitude > 0.02;
     assert!(doubled.branches.iter().flat_map(|branch| &branch.points).any(|point| lasting(&point)));
 }
 
@@ -321,11 +322,11 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
             again.len() == 1 && (again[0].parameter - place.parameter).abs() < 1e-6,
             "{again:?}"
         );
-        let passes = |pair: &&[Point]| {
+        let passes = |pair: &&[SteadyMotion]| {
             (pair[0].parameter - place.parameter) * (pair[1].parameter - place.parameter) <= 0.0
         };
         let pair = closely.branches[0].points.windows(2).find(passes).expect("two points");
-        let mean_damping = |point: &Point| {
+        let mean_damping = |point: &SteadyMotion| {
             let squares = point.harmonics.iter().skip(1).flatten().map(|value| 0.5 * value * value);
             point.harmonics[0][0].powi(2) + squares.sum::<f64>() - 1.0
         };
@@ -366,10 +367,12 @@ fn a_contact_bends_the_resonance() {
 #[test]
 fn subharmonic_motions_are_found_apart() {
     let cubic = "x'' + x'/20 + x + x^3/10 - F*cos(Omega*t) = 0";
-    let found = respond(&Question { periods: 3, ..question(cubic, "Omega", [3.0, 6.0], "F = 30") })
-        .expect("a response");
-    let third = |point: &&Point| point.amplitude > 0.2 * point.peak && point.stable == Some(true);
-    let lasting: Vec<&Point> =
+    let found =
+        respond(&ResponseRequest { periods: 3, ..question(cubic, "Omega", [3.0, 6.0], "F = 30") })
+            .expect("a response");
+    let third =
+        |point: &&SteadyMotion| point.amplitude > 0.2 * point.peak && point.stable == Some(true);
+    let lasting: Vec<&SteadyMotion> =
         found.branches.iter().flat_map(|branch| &branch.points).filter(third).collect();
     assert!(lasting.len() > 10, "{}", lasting.len());
     let point = lasting[lasting.len() / 2];
@@ -474,7 +477,7 @@ fn what_cannot_be_answered_is_refused_by_name() {
         assert!(message.contains(words), "{equation}: {message}");
     }
     for (harmonics, periods) in [(Some(0), 1), (Some(65), 1), (None, 0), (None, 13)] {
-        let refused = respond(&Question {
+        let refused = respond(&ResponseRequest {
             harmonics,
             periods,
             ..question(DUFFING, "Omega", [0.5, 1.5], "c = 1/10, F = 1")
@@ -494,7 +497,7 @@ fn the_page_says_how_many_harmonics_are_enough() {
         let [harmonics, down, up, error] = cells[..] else {
             continue;
         };
-        let found = respond(&Question {
+        let found = respond(&ResponseRequest {
             harmonics: Some(harmonics as usize),
             ..question(DUFFING, "Omega", [0.5, 2.0], "c = 1/10, F = 3/10")
         })
@@ -519,7 +522,7 @@ fn slow_equations_come_nearer_with_their_order() {
         let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
         let values = format!("zeta = 1/{d}, eps = 1/{d}, F = 1/{d}");
         let width = 3.0 / f64::from(d);
-        let question = Question::new(equation, "Omega", [1.0 - width, 1.0 + width], &values)
+        let question = ResponseRequest::new(equation, "Omega", [1.0 - width, 1.0 + width], &values)
             .expect("a question");
         let options = lindstedt::Options {
             method: Some(lindstedt::Method::MultipleScales),
@@ -528,7 +531,11 @@ fn slow_equations_come_nearer_with_their_order() {
             ..lindstedt::Options::default()
         };
         let solution = lindstedt::solve(&question.oscillator, &options).expect("slow equations");
-        let slow = respond(&question).expect("a response").beside(solution).slow.expect("states");
+        let slow = respond(&question)
+            .expect("a response")
+            .with_slow_equations(solution)
+            .slow
+            .expect("states");
         assert_eq!(slow.missing, 0);
         assert!(slow.points > 20 && slow.states.len() > 240);
         slow.error.expect("an error")

@@ -1,11 +1,11 @@
 //! The same series and the same elimination of secular terms over rings that this crate does not
 //! have: residues modulo a prime chosen at run time, and intervals.
 
-use lindstedt::exact::Indivisible;
 use lindstedt::exact::Monomial;
+use lindstedt::exact::NotInvertible;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring, from_f64};
 use lindstedt::method::secular::{
-    Amplitude, Detuning, Expansion, ForceTerm, Scheme, SecularError, expand,
+    AmplitudeKind, Detuning, ForceTerm, Scheme, SecularError, SecularExpansion, expand,
 };
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::AmplitudeConvention;
@@ -107,8 +107,8 @@ impl Ring for Residues {
         &self,
         elements: impl IntoIterator<Item = &'a mut u64>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
-        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| Indivisible {
+    ) -> Result<(), NotInvertible> {
+        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| NotInvertible {
             divisor: divisor.clone(),
             ring: format!("the residues modulo {}", self.prime),
         })?;
@@ -137,13 +137,17 @@ fn term<R: Ring>(
     }
 }
 
-fn scheme(normalisation: AmplitudeConvention, amplitude: Amplitude, detuning: Detuning) -> Scheme {
+fn scheme(
+    normalisation: AmplitudeConvention,
+    amplitude: AmplitudeKind,
+    detuning: Detuning,
+) -> Scheme {
     Scheme { normalisation, amplitude, detuning }
 }
 
 const LINDSTEDT_POINCARE: Scheme = Scheme {
     normalisation: AmplitudeConvention::Initial,
-    amplitude: Amplitude::Free,
+    amplitude: AmplitudeKind::Free,
     detuning: Detuning::Acceleration,
 };
 
@@ -158,7 +162,7 @@ fn van_der_pol<R: Ring>(ring: &R) -> Vec<ForceTerm<R>> {
 }
 
 /// Every series of an expansion, with its name and order.
-fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, FourierSeries<R>)> {
+fn parts<R: Ring>(expansion: &SecularExpansion<R>) -> Vec<(String, FourierSeries<R>)> {
     let driven = |motion: &FourierSeries<R>| motion.derivative().derivative().sum(motion);
     let right_sides: Vec<FourierSeries<R>> = expansion.displacement.iter().map(driven).collect();
     let lists = [
@@ -184,8 +188,8 @@ fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, FourierSeries<R>)> {
 /// Every coefficient of an exact expansion beside the one in another ring, and how many of the
 /// exact ones are not zero.
 fn compare<R: Ring, S: Ring>(
-    exact: &Expansion<R>,
-    other: &Expansion<S>,
+    exact: &SecularExpansion<R>,
+    other: &SecularExpansion<S>,
     agree: impl Fn(&R::Element, &Integer, &S::Element) -> bool,
 ) -> usize {
     let (exact, other) = (parts(exact), parts(other));
@@ -241,13 +245,13 @@ fn limit_cycles_and_homotopies_modulo_primes() {
     for prime in primes() {
         let ring = Residues { prime };
         for normalisation in normalisations {
-            let cycle = scheme(normalisation, Amplitude::Determined, Detuning::Acceleration);
+            let cycle = scheme(normalisation, AmplitudeKind::Determined, Detuning::Acceleration);
             let exact =
                 expand(&Integers, &van_der_pol(&Integers), 10, &cycle).expect("a limit cycle");
             let found = expand(&ring, &van_der_pol(&ring), 10, &cycle).expect("a good prime");
             assert!(compare(&exact, &found, agrees(ring)) > 100);
 
-            let homotopy = scheme(normalisation, Amplitude::Free, Detuning::Displacement);
+            let homotopy = scheme(normalisation, AmplitudeKind::Free, Detuning::Displacement);
             let both = |terms: fn(&Integers) -> ForceTerm<Integers>,
                         modulo: fn(&Residues) -> ForceTerm<Residues>| {
                 (vec![terms(&Integers)], vec![modulo(&ring)])
@@ -414,7 +418,7 @@ impl Ring for Intervals {
         &self,
         elements: impl IntoIterator<Item = &'a mut Interval>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         let divisor = enclosing(divisor);
         for element in elements {
             if *element != ZERO {
@@ -441,8 +445,11 @@ fn intervals_enclose_the_exact_coefficients() {
     let exact = expand(&Integers, &duffing(&Integers), 6, &LINDSTEDT_POINCARE).expect("periodic");
     let found = expand(&Intervals, &duffing(&Intervals), 6, &LINDSTEDT_POINCARE).expect("periodic");
     assert!(compare(&exact, &found, enclosed) > 50);
-    let cycle =
-        scheme(AmplitudeConvention::FirstHarmonic, Amplitude::Determined, Detuning::Acceleration);
+    let cycle = scheme(
+        AmplitudeConvention::FirstHarmonic,
+        AmplitudeKind::Determined,
+        Detuning::Acceleration,
+    );
     let exact = expand(&Integers, &van_der_pol(&Integers), 6, &cycle).expect("a limit cycle");
     let found = expand(&Intervals, &van_der_pol(&Intervals), 6, &cycle).expect("a limit cycle");
     assert!(compare(&exact, &found, enclosed) > 50);
@@ -473,8 +480,11 @@ fn an_interval_around_zero_is_not_zero() {
     assert!(damped([-0.1, 0.2]).is_ok());
     assert_eq!(damped([0.1, 0.2]).err(), Some(SecularError::Growth { order: 1 }));
     // An amplitude is determined only where its slope is.
-    let cycle =
-        scheme(AmplitudeConvention::FirstHarmonic, Amplitude::Determined, Detuning::Acceleration);
+    let cycle = scheme(
+        AmplitudeConvention::FirstHarmonic,
+        AmplitudeKind::Determined,
+        Detuning::Acceleration,
+    );
     let flat = [uncertain(1, [2, 1], [-4.0, 4.0]), uncertain(1, [0, 1], [-1.0, 1.0])];
     let error = expand(&Intervals, &flat, 3, &cycle).err();
     assert!(matches!(error, Some(SecularError::Degenerate { .. })), "{error:?}");

@@ -5,13 +5,13 @@ use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use lindstedt::expr::parse_expression;
-use lindstedt::system::{End, Integrator, LANES};
-use lindstedt::trajectory::{Course, Section, TrajectoryError, sweep};
+use lindstedt::system::{Integrator, LANES, PathEnd};
+use lindstedt::trajectory::{PoincareSection, TrajectoryError, TrajectoryRequest, sweep};
 use lindstedt::{Interrupt, Oscillator, Symbol};
 
-fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> Course {
+fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> TrajectoryRequest {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    let mut course = Course::of_equation(&oscillator);
+    let mut course = TrajectoryRequest::of_equation(&oscillator);
     for (name, value) in start {
         course.begin(Symbol::new(name), *value).expect("a state");
     }
@@ -19,8 +19,8 @@ fn course(equation: &str, start: &[(&str, f64)], duration: f64) -> Course {
     course
 }
 
-fn every(period: &str) -> Option<Section> {
-    Some(Section::Every(parse_expression(period).expect("a period")))
+fn every(period: &str) -> Option<PoincareSection> {
+    Some(PoincareSection::Every(parse_expression(period).expect("a period")))
 }
 
 /// `x'' + 2 zeta x' + x = cos(Omega t)` settles on a circle of the section: one point, known in
@@ -51,7 +51,7 @@ fn a_linear_motion_settles_on_one_point() {
 #[test]
 fn a_section_meets_every_zero_from_below() {
     let mut free = course("x'' + 4*x = 0", &[("x", 1.5)], 20.0);
-    free.section = Some(Section::Rising(parse_expression("x'").expect("a velocity")));
+    free.section = Some(PoincareSection::Rising(parse_expression("x'").expect("a velocity")));
     let motion = free.follow().expect("a motion");
     let times: Vec<f64> = motion.crossings().iter().map(|crossing| crossing.time).collect();
     let expected: Vec<f64> =
@@ -78,7 +78,8 @@ fn a_section_at_a_turning_point_is_touched_not_crossed() {
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let mut free = course("x'' + x = 0", &[("x", 1.0)], 40.0);
-            free.section = Some(Section::Rising(parse_expression(section).expect("a section")));
+            free.section =
+                Some(PoincareSection::Rising(parse_expression(section).expect("a section")));
             let motion = free.follow_by(integrator).expect("a motion");
             let found = (motion.crossings().len(), motion.touches().len());
             assert_eq!(
@@ -105,7 +106,7 @@ fn a_section_at_a_turning_point_is_touched_not_crossed() {
 #[test]
 fn small_swings_are_no_touches() {
     let mut damped = course("x'' + x'/2 + x = 0", &[("x", 1.0)], 120.0);
-    damped.section = Some(Section::Rising(parse_expression("x").expect("a section")));
+    damped.section = Some(PoincareSection::Rising(parse_expression("x").expect("a section")));
     let motion = damped.follow().expect("a motion");
     let turns = (120.0 * (1.0 - 1.0 / 16.0_f64).sqrt() / TAU).floor() as usize;
     assert!(motion.touches().is_empty() && motion.crossings().len().abs_diff(turns) <= 1);
@@ -147,7 +148,7 @@ fn a_sweep_is_its_motions_one_by_one() {
         alone.begin(names[1], values[1]).expect("a state");
         let alone = alone.follow().expect("a motion");
         assert_eq!(swept.crossings, alone.crossings());
-        assert_eq!(swept.state, alone.at(30.0).expect("a state"));
+        assert_eq!(swept.state, alone.states_at(30.0).expect("a state"));
         assert_eq!(swept.crossings.len(), (30.0 * 2.0 / TAU) as usize);
     }
     assert_ne!(motions[0].state, motions[1].state);
@@ -220,7 +221,7 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     const MOTIONS: usize = 2000;
     const ENOUGH: usize = 5;
     let mut course = course("x'' + k*x = 0", &[("x'", 1.0)], 10.0);
-    course.interrupt = Interrupt::by(&STOP);
+    course.interrupt = Interrupt::from_flag(&STOP);
     let grid: Vec<Vec<f64>> = (0..MOTIONS).map(|index| vec![1.0 + index as f64 / 100.0]).collect();
     let count = || {
         if DONE.fetch_add(1, Ordering::Relaxed) + 1 >= ENOUGH {
@@ -231,7 +232,7 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     // Each thread may be at eight, side by side, when it is asked for.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     assert!((ENOUGH..=ENOUGH + threads * LANES).contains(&motions.len()), "{}", motions.len());
-    for motion in motions.iter().filter(|motion| motion.reason == End::Reached) {
+    for motion in motions.iter().filter(|motion| motion.reason == PathEnd::Reached) {
         let frequency = motion.values[0].sqrt();
         assert!((motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10, "{motion:?}");
         assert!(
@@ -250,7 +251,7 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
 #[test]
 fn a_motion_of_a_sweep_is_that_followed_alone() {
     let rising = |expression: &str| {
-        Some(Section::Rising(parse_expression(expression).expect("an expression")))
+        Some(PoincareSection::Rising(parse_expression(expression).expect("an expression")))
     };
     let cases = [
         ("x'' + 2*p*x' + sin(x) = 0", "p", None),
@@ -277,7 +278,7 @@ fn a_motion_of_a_sweep_is_that_followed_alone() {
             }
             let alone = alone.follow().expect("a motion");
             assert_eq!(swept.reason, alone.reason(), "{equation}");
-            assert_eq!(swept.state, alone.at(alone.end()).expect("a state"), "{equation}");
+            assert_eq!(swept.state, alone.states_at(alone.end()).expect("a state"), "{equation}");
             assert_eq!(swept.extremes, alone.extremes(), "{equation}");
             assert_eq!(swept.crossings, alone.crossings(), "{equation}");
             assert_eq!(swept.touches, alone.touches(), "{equation}");

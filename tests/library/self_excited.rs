@@ -1,25 +1,27 @@
 //! Branches of limit cycles against what is known of them otherwise: closed forms, printed numbers,
 //! the return map.
 
-use lindstedt::numeric::return_map::{Equation, LimitCycle, nearest_limit_cycle};
+use lindstedt::numeric::return_map::{
+    AutonomousEquation, NumericalLimitCycle, nearest_limit_cycle,
+};
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
-use lindstedt::response::{Point, Question, Response, respond};
+use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::verify::Verdict;
 
-fn question(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> Question {
-    Question::new(equation, parameter, range, values).expect(equation)
+fn question(equation: &str, parameter: &str, range: [f64; 2], values: &str) -> ResponseRequest {
+    ResponseRequest::new(equation, parameter, range, values).expect(equation)
 }
 
-fn response(equation: &str, parameter: &str, range: [f64; 2]) -> Response {
+fn response(equation: &str, parameter: &str, range: [f64; 2]) -> ResponseDiagram {
     respond(&question(equation, parameter, range, "")).expect(equation)
 }
 
-fn points(response: &Response) -> impl Iterator<Item = &Point> {
+fn points(response: &ResponseDiagram) -> impl Iterator<Item = &SteadyMotion> {
     response.branches.iter().flat_map(|branch| &branch.points)
 }
 
-fn kinds(response: &Response, kind: BifurcationKind) -> Vec<f64> {
+fn kinds(response: &ResponseDiagram, kind: BifurcationKind) -> Vec<f64> {
     let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
     of_kind.map(|found| found.parameter).collect()
 }
@@ -29,10 +31,10 @@ fn returned(
     acceleration: &dyn Fn(f64, f64) -> f64,
     amplitude: f64,
     attracts: bool,
-) -> Option<LimitCycle> {
-    let equation = Equation { acceleration, equilibrium: 0.0, amplitude, frequency: 1.0 };
+) -> Option<NumericalLimitCycle> {
+    let equation = AutonomousEquation { acceleration, equilibrium: 0.0, amplitude, frequency: 1.0 };
     let found = nearest_limit_cycle(&equation, Some(attracts)).ok()?;
-    (found.attracts() == attracts && (found.at(0.0).0 / amplitude - 1.0).abs() < 0.05)
+    (found.attracts() == attracts && (found.phase_point_at(0.0).0 / amplitude - 1.0).abs() < 0.05)
         .then_some(found)
 }
 
@@ -65,7 +67,7 @@ fn a_circle_is_exact() {
 /// Theory* 7 (1960) 382.
 #[test]
 fn van_der_pol_has_its_printed_amplitude_and_period() {
-    let found = respond(&Question {
+    let found = respond(&ResponseRequest {
         harmonics: Some(64),
         ..question("x'' - mu*(1 - x^2)*x' + x = 0", "mu", [1.0, 5.0], "")
     })
@@ -80,7 +82,7 @@ fn van_der_pol_has_its_printed_amplitude_and_period() {
 
 #[test]
 fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
-    let found = respond(&Question {
+    let found = respond(&ResponseRequest {
         harmonics: Some(20),
         ..question("x'' + (mu - x^2 + x^4)*x' + x = 0", "mu", [-0.1, 0.2], "")
     })
@@ -96,7 +98,7 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
     let damped = |mu: f64| move |x: f64, v: f64| -x - (mu - x * x + x.powi(4)) * v;
     let mut seen = [0, 0];
     // Near the fold, and near rest, the return map is hardly more than what it is given.
-    let clear = |point: &&Point| {
+    let clear = |point: &&SteadyMotion| {
         let decides = point.multipliers.expect("multipliers")[0].re;
         point.amplitude > 0.3 && (decides - 1.0).abs() > 0.2
     };
@@ -104,7 +106,7 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
         let attracts = point.stable == Some(true);
         let acceleration = damped(point.parameter);
         let cycle = returned(&acceleration, point.peak, attracts).expect("a cycle");
-        assert!((cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
+        assert!((cycle.phase_point_at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
         let period = std::f64::consts::TAU / point.frequency;
         assert!((cycle.period() / period - 1.0).abs() < 1e-5, "{point:?}");
         seen[usize::from(attracts)] += 1;
@@ -119,13 +121,13 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
 /// The multiplier is the slope of the return map at its fixed point.
 #[test]
 fn the_multiplier_is_the_slope_of_the_return_map() {
-    use lindstedt::numeric::ode::{Event, Options, State, integrate};
+    use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
     let found = response("x'' - mu*(x' - x'^3/3) + x + x^3/4 = 0", "mu", [0.1, 0.4]);
     for point in points(&found).step_by(7) {
         let mu = point.parameter;
         let acceleration =
             |_: f64, x: f64, v: f64| mu * (v - v.powi(3) / 3.0) - x - 0.25 * x.powi(3);
-        let options = Options::with_tolerance(1e-12);
+        let options = IntegrationOptions::with_tolerance(1e-12);
         let next = |x: f64| {
             let turning = Event::stop(|_, _, v| v).falling();
             let start = State { t: 0.0, x, v: 0.0 };
@@ -157,7 +159,7 @@ fn without_damping_there_is_a_centre_and_no_branch_of_it() {
 /// judged is not shown.
 #[test]
 fn a_branch_ends_where_its_period_grows_without_bound() {
-    let found = respond(&Question {
+    let found = respond(&ResponseRequest {
         harmonics: Some(64),
         ..question("x'' - mu*x' + x*x' + x - x^2 = 0", "mu", [-0.5, 0.5], "")
     })
@@ -190,7 +192,7 @@ fn what_does_not_swing_by_itself_is_refused() {
         let refused = respond(&question(equation, "k", [0.5, 2.0], "")).expect_err(equation);
         assert!(refused.to_string().contains(words), "{equation}: {refused}");
     }
-    let refused = respond(&Question {
+    let refused = respond(&ResponseRequest {
         periods: 2,
         ..question("x'' - mu*(1 - x^2)*x' + x = 0", "mu", [0.5, 1.0], "")
     });

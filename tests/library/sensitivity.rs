@@ -3,10 +3,10 @@
 
 use lindstedt::Oscillator;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 
-fn course(equation: &str, start: f64, duration: f64) -> Course {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+fn course(equation: &str, start: f64, duration: f64) -> TrajectoryRequest {
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
     course.begin("x".into(), start).expect("a state");
     course.duration = duration;
     course
@@ -14,10 +14,11 @@ fn course(equation: &str, start: f64, duration: f64) -> Course {
 
 /// How far two motions are from each other around a time, over the size of the first one.
 fn apart(motions: &[Trajectory; 2], around: f64) -> f64 {
-    let size = (0..1000).filter_map(|k| motions[0].at(0.1 * f64::from(k)));
+    let size = (0..1000).filter_map(|k| motions[0].states_at(0.1 * f64::from(k)));
     let size = size.fold(0.0_f64, |size, state| size.max(state[0].abs()));
     let times = (0..50).map(|k| around - 5.0 + 0.1 * f64::from(k));
-    let difference = |time: f64| Some((motions[0].at(time)?[0] - motions[1].at(time)?[0]).abs());
+    let difference =
+        |time: f64| Some((motions[0].states_at(time)?[0] - motions[1].states_at(time)?[0]).abs());
     times.filter_map(difference).fold(0.0, f64::max) / size
 }
 

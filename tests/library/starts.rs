@@ -3,7 +3,7 @@
 //! nothing with the library.
 
 use lindstedt::impact::{
-    Friction, Integrator, Model, Settings, Side, Simulation, Start, Stop, simulate,
+    Friction, Integrator, Model, Settings, Side, Simulation, SimulationStop, Start, simulate,
 };
 
 /// A contact: from when to when.
@@ -133,7 +133,12 @@ fn agrees(name: &str, model: &Model, start: Start, duration: f64, allowed: f64) 
     let truth = truth(model, start, duration, 2e-5);
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = followed(model, start, duration, integrator);
-        assert_eq!(motion.stop, Stop::Duration, "{name}, {integrator:?}: {}", motion.stop);
+        assert_eq!(
+            motion.stop,
+            SimulationStop::Duration,
+            "{name}, {integrator:?}: {}",
+            motion.stop
+        );
         let found: Vec<Span> =
             motion.impacts.iter().map(|impact| (impact.entry_time, impact.exit_time)).collect();
         assert_eq!(
@@ -211,7 +216,7 @@ fn pressed_into_an_elastic_barrier_at_rest_it_never_leaves() {
         let start = Start { x: barrier, velocity: 0.0 };
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let motion = followed(&model, start, 3.0, integrator);
-            assert_eq!(motion.stop, Stop::Duration, "{gamma}, {integrator:?}");
+            assert_eq!(motion.stop, SimulationStop::Duration, "{gamma}, {integrator:?}");
             assert_eq!(motion.impacts.len(), 1, "{gamma}, {integrator:?}");
             let impact = motion.impacts[0];
             assert!(
@@ -274,7 +279,12 @@ fn at_a_barrier_near_plumb_a_dying_motion_goes_on_to_the_end() {
         let start = Start { x: -1.0, velocity: 0.0 };
         for duration in [500.0, 2e4] {
             let motion = followed(&model, start, duration, Integrator::Taylor);
-            assert_eq!(motion.stop, Stop::Duration, "{barrier}, {duration}: {}", motion.stop);
+            assert_eq!(
+                motion.stop,
+                SimulationStop::Duration,
+                "{barrier}, {duration}: {}",
+                motion.stop
+            );
             assert!(motion.steps < 20_000, "{barrier}, {duration}: {} steps", motion.steps);
             assert!(motion.end_x.abs() < 1e-11 && motion.end_velocity.abs() < 1e-11);
         }

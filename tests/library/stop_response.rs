@@ -2,11 +2,12 @@
 //! spring in pieces, and shooting with it.
 
 use lindstedt::response::bifurcation::BifurcationKind;
-use lindstedt::response::{Point, Question, Response, respond};
+use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::verify::Verdict;
 
-fn response(equation: &str, range: [f64; 2], values: &str) -> Response {
-    respond(&Question::new(equation, "Omega", range, values).expect(equation)).expect(equation)
+fn response(equation: &str, range: [f64; 2], values: &str) -> ResponseDiagram {
+    respond(&ResponseRequest::new(equation, "Omega", range, values).expect(equation))
+        .expect(equation)
 }
 
 /// `x'' + c x' + k x + sum of stiffness (x - at) beyond the stops = F cos(Omega t)`; a stop at a
@@ -90,7 +91,7 @@ impl Pieces<'_> {
     }
 
     /// The point is a motion that comes back, and as large as it says.
-    fn holds(&self, point: &Point) {
+    fn holds(&self, point: &SteadyMotion) {
         let (end, peak) = self.period(point.start);
         let missed = (end[0] - point.start[0]).hypot(end[1] - point.start[1]);
         let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
@@ -163,8 +164,9 @@ fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
 /// balance waves about it.
 #[test]
 fn ripple_of_the_balance_is_no_fold() {
-    let question = Question::new(CONTACT, "Omega", [1.4, 1.7], "F = 3/10").expect("a question");
-    let found = respond(&Question { harmonics: Some(32), ..question }).expect("a response");
+    let question =
+        ResponseRequest::new(CONTACT, "Omega", [1.4, 1.7], "F = 3/10").expect("a question");
+    let found = respond(&ResponseRequest { harmonics: Some(32), ..question }).expect("a response");
     let folds = found.bifurcations.iter().filter(|found| found.kind == BifurcationKind::Fold);
     let folds: Vec<f64> = folds.map(|fold| fold.parameter).collect();
     // A simulation that is led up the branch stays on it at the first of these, and falls from it
@@ -188,12 +190,13 @@ fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     let found = response(CONTACT, [1.3, 1.5], "F = 3/10");
     let (_, peak) = in_contact(1.3, [-0.6, 0.8], 150);
     assert!(peak > 0.6, "{peak}");
-    let is_it = |point: &Point| point.parameter == 1.3 && (point.peak / peak - 1.0).abs() < 5e-3;
+    let is_it =
+        |point: &SteadyMotion| point.parameter == 1.3 && (point.peak / peak - 1.0).abs() < 5e-3;
     let points = || found.branches.iter().flat_map(|branch| &branch.points);
     assert!(points().any(|point| is_it(point) && point.stable == Some(true)));
     assert!(found.elsewhere.is_empty() && found.verdict == Verdict::Pass, "{:?}", found.elsewhere);
-    let by_few =
-        respond(&Question { harmonics: Some(8), ..found.question.clone() }).expect("a response");
+    let by_few = respond(&ResponseRequest { harmonics: Some(8), ..found.question.clone() })
+        .expect("a response");
     assert!(by_few.branches.iter().flat_map(|branch| &branch.points).all(|point| !is_it(point)));
     assert!(
         by_few

@@ -9,7 +9,8 @@ use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::numeric::ode::{self, Point, integrate_first_order};
 use lindstedt::series::RecurrenceError;
 use lindstedt::system::{
-    End, Event, Integrator, LANES, Options, Path, Solver, System, SystemError, solve_together,
+    Event, Integrator, LANES, Path, PathEnd, Solver, System, SystemError, SystemOptions,
+    solve_together,
 };
 
 fn expression(text: &str) -> Expr {
@@ -25,16 +26,16 @@ fn system(states: &[&str], right: &[&str], numbers: &[(&str, f64)]) -> Result<Sy
 }
 
 fn follow(system: &System, start: &[f64], end: f64, events: &[Event]) -> Path {
-    system.solve(0.0, start, end, events, &Options::default()).expect("a path")
+    system.solve(0.0, start, end, events, &SystemOptions::default()).expect("a path")
 }
 
-fn runge_kutta() -> Options {
-    Options { integrator: Integrator::RungeKutta, ..Options::default() }
+fn runge_kutta() -> SystemOptions {
+    SystemOptions { integrator: Integrator::RungeKutta, ..SystemOptions::default() }
 }
 
 /// By Taylor series and by Runge-Kutta.
 fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path; 2] {
-    [Options::default(), runge_kutta()]
+    [SystemOptions::default(), runge_kutta()]
         .map(|options| system.solve(0.0, start, end, events, &options).expect("a path"))
 }
 
@@ -42,16 +43,20 @@ fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path;
 fn the_pendulum_is_its_elliptic_function_at_every_time() {
     let pendulum = system(&["x", "v"], &["v", "-sin(x)"], &[]).unwrap();
     let path = follow(&pendulum, &[1.5, 0.0], 100.0, &[]);
-    assert_eq!((path.end(), path.reason()), (100.0, End::Reached));
+    assert_eq!((path.end(), path.reason()), (100.0, PathEnd::Reached));
     let k = 0.75_f64.sin();
     for i in 0..=1000 {
         let t = 0.1 * f64::from(i);
         let (_, cn, dn, _) = spec_math::cephes64::ellpj(t, k * k);
         let x = 2.0 * (k * cn / dn).asin();
-        let found = path.at(t).expect("a state")[0];
+        let found = path.states_at(t).expect("a state")[0];
         assert!((found - x).abs() < 2e-12, "{t}: {found} {x}");
     }
-    assert!(path.at(-0.1).is_none() && path.at(100.1).is_none() && path.at(f64::NAN).is_none());
+    assert!(
+        path.states_at(-0.1).is_none()
+            && path.states_at(100.1).is_none()
+            && path.states_at(f64::NAN).is_none()
+    );
 }
 
 /// Two equal links of length and mass one: angles from the vertical, `c = cos(a - b)`,
@@ -72,12 +77,12 @@ fn two_links_keep_their_energy() {
     // Small, large, and one that tumbles over.
     for start in [[0.1, 0.1, 0.0, 0.0], [1.5, -0.5, 0.0, 0.0], [2.5, 2.0, 0.5, -1.0]] {
         let [path, other] = by_both(&links, &start, 50.0, &vertical);
-        assert_eq!((path.reason(), other.reason()), (End::Reached, End::Reached));
+        assert_eq!((path.reason(), other.reason()), (PathEnd::Reached, PathEnd::Reached));
         assert!(other.step_count() > path.step_count());
         let before = energy(&start);
         for i in 0..=500 {
             let [state, judged] =
-                [&path, &other].map(|path| path.at(0.1 * f64::from(i)).expect("a state"));
+                [&path, &other].map(|path| path.states_at(0.1 * f64::from(i)).expect("a state"));
             for (state, kept) in [(&state, 1e-12), (&judged, 1e-11)] {
                 let drift = energy(state) - before;
                 assert!(drift.abs() < kept, "{start:?} at {i}: {drift:e}");
@@ -110,7 +115,7 @@ fn two_links_keep_their_energy() {
         let size = 1e-6;
         let period = TAU / (2.0 - sign * 2.0_f64.sqrt()).sqrt();
         let path = follow(&links, &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0], period, &[]);
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] / size - 1.0).abs() < 1e-9, "{end:?}");
     }
 }
@@ -127,7 +132,7 @@ fn an_orbit_closes_after_its_period() {
         let start =
             [1.0 - eccentricity, 0.0, 0.0, f64::sqrt((1.0 + eccentricity) / (1.0 - eccentricity))];
         let path = follow(&kepler, &start, TAU, &[Event::record(expression("x"))]);
-        let end = path.at(TAU).expect("a state");
+        let end = path.states_at(TAU).expect("a state");
         for (value, expected) in end.iter().zip(start) {
             assert!((value - expected).abs() < 1e-11, "{eccentricity}: {end:?}");
         }
@@ -152,10 +157,10 @@ fn a_corner_is_met_and_left_where_it_is() {
     {
         let bilinear = system(&["x", "v"], &["v", right], &[("k", 3.0)]).unwrap();
         for path in by_both(&bilinear, &[-1.0, 0.0], 100.0, &[Event::stop(expression("v"))]) {
-            assert_eq!(path.reason(), End::Event(0));
+            assert_eq!(path.reason(), PathEnd::Event(0));
             // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
             assert!((path.end() - 0.75 * PI).abs() < 1e-12, "{right}: {}", path.end());
-            assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
+            assert!((path.states_at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
         }
     }
     // Free fall onto a wall of constant force: parabolas.
@@ -163,7 +168,7 @@ fn a_corner_is_met_and_left_where_it_is() {
     let end = 8.0 * 2.0_f64.sqrt();
     let paths = by_both(&wall, &[1.0, 0.0], end, &[Event::record(expression("x"))]);
     for (path, allowed) in paths.iter().zip([1e-13, 1e-11]) {
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] - 1.0).abs() < allowed, "{end:?}");
         assert_eq!(path.occurrences().len(), 4);
     }
@@ -182,11 +187,11 @@ fn corners_are_met_in_any_units() {
         {
             assert_eq!(
                 (path.reason(), path.end()),
-                (End::Reached, 50.0 * period),
+                (PathEnd::Reached, 50.0 * period),
                 "{omega} {:?}",
                 path.occurrences()
             );
-            let end = path.at(path.end()).expect("a state");
+            let end = path.states_at(path.end()).expect("a state");
             assert!((end[0] / length + 1.0).abs() < 1e-10, "{omega} {end:?}");
             let turns = path.occurrences().iter().filter(|met| met.time < 49.9 * period);
             assert_eq!(turns.count(), 99, "{omega}");
@@ -203,16 +208,16 @@ fn a_contact_is_gated_by_its_step() {
     for path in by_both(&contact, &[-0.4, 1.0], 10.0, &events) {
         // In time the contact has no series at the touch and the release: the series may end there,
         // and says so.
-        if path.reason() == End::Singular && path.step_count() < 200 {
-            assert!(path.at(path.end()).expect("a state")[0].abs() < 1e-12);
+        if path.reason() == PathEnd::Singular && path.step_count() < 200 {
+            assert!(path.states_at(path.end()).expect("a state")[0].abs() < 1e-12);
             continue;
         }
-        assert_eq!(path.reason(), End::Event(1));
-        let end = path.at(path.end()).expect("a state");
+        assert_eq!(path.reason(), PathEnd::Event(1));
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[1] + 1.0).abs() < 1e-8, "{end:?}");
         let deepest =
             path.occurrences().iter().find(|met| met.event == 0).expect("a turning point");
-        let depth = path.at(deepest.time).expect("a state")[0];
+        let depth = path.states_at(deepest.time).expect("a state")[0];
         assert!((depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8, "{depth}");
     }
 }
@@ -224,7 +229,7 @@ fn any_number_of_states_by_a_closure() {
         *rates = [-w[1] * w[2], 2.0 * w[0] * w[2], -w[0] * w[1]]
     };
     let start = [0.1, 1.0, 0.2];
-    let options = ode::Options::with_tolerance(1e-13);
+    let options = ode::IntegrationOptions::with_tolerance(1e-13);
     let turned = ode::Event::new(|point: &Point<[f64; 3]>| point.y[1], ode::Action::Record);
     let path = integrate_first_order(spin, Point { t: 0.0, y: start }, 40.0, &[turned], &options)
         .expect("a path");
@@ -243,7 +248,7 @@ fn any_number_of_states_by_a_closure() {
     for point in path.samples(101) {
         let [a, b, c] = point.y;
         assert!((2.0 * a * a + b * b - 1.02).abs() < 1e-11 && (a * a - c * c + 0.03).abs() < 1e-11);
-        for (value, expected) in series.at(point.t).expect("a state").iter().zip(point.y) {
+        for (value, expected) in series.states_at(point.t).expect("a state").iter().zip(point.y) {
             assert!((value - expected).abs() < 1e-10, "{point:?}");
         }
     }
@@ -272,16 +277,16 @@ fn fast_events_and_corners_are_all_met() {
     // Up on one half of every period, down on the other; and twice as long up as down.
     let square = system(&["x", "y"], &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"], &[]).unwrap();
     for path in by_both(&square, &[0.0, 0.0], TAU, &[]) {
-        let end = path.at(TAU).expect("a state");
+        let end = path.states_at(TAU).expect("a state");
         assert!(end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11, "{end:?}");
     }
     // A late start costs no digits.
     let bilinear = system(&["x", "v"], &["v", "-x - 3*x*H(x)"], &[]).unwrap();
-    for options in [Options::default(), runge_kutta()] {
+    for options in [SystemOptions::default(), runge_kutta()] {
         let path = bilinear
             .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
             .expect("a path");
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
     }
 }
@@ -310,12 +315,12 @@ fn an_event_on_a_corner_is_met_once() {
     // At rest on a corner to which both sides lead back, and on one that it can leave on one side.
     let held = system(&["x", "v"], &["v", "1 - 2*H(x)"], &[]).unwrap();
     for path in by_both(&held, &[0.0, 0.0], 3.0, &[]) {
-        assert_eq!((path.reason(), path.end()), (End::Sticks, 0.0));
+        assert_eq!((path.reason(), path.end()), (PathEnd::Sticks, 0.0));
     }
     let bounce = system(&["x", "v"], &["v", "-sgn(x)"], &[]).unwrap();
     for path in by_both(&bounce, &[0.0, 1.0], 9.0, &[Event::record(expression("x"))]) {
-        assert_eq!((path.reason(), path.occurrences().len()), (End::Reached, 4));
-        let end = path.at(9.0).expect("a state");
+        assert_eq!((path.reason(), path.occurrences().len()), (PathEnd::Reached, 4));
+        let end = path.states_at(9.0).expect("a state");
         assert!((end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11, "{end:?}");
     }
 }
@@ -326,11 +331,11 @@ fn an_event_on_a_corner_is_met_once() {
 fn dry_friction_stops_the_motion_where_it_holds() {
     let slider = system(&["x", "v"], &["v", "-x - mu*sgn(v)"], &[("mu", 0.1)]).unwrap();
     for path in by_both(&slider, &[-1.05, 0.0], 100.0, &[Event::record(expression("v"))]) {
-        assert_eq!(path.reason(), End::Sticks);
+        assert_eq!(path.reason(), PathEnd::Sticks);
         // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of
         // time pi.
         assert!((path.end() - 5.0 * PI).abs() < 1e-11, "{}", path.end());
-        assert!((path.at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
+        assert!((path.states_at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
     }
 }
 
@@ -352,9 +357,15 @@ fn an_event_may_count_in_one_direction() {
     // x = t^2/2 - 1e-17 t: it dips below zero for 2e-17.
     let onset = system(&["x"], &["t - e"], &[("e", 1e-17)]).unwrap();
     let path = onset
-        .solve(0.0, &[0.0], 1.0, &[Event::stop(expression("x")).falling()], &Options::default())
+        .solve(
+            0.0,
+            &[0.0],
+            1.0,
+            &[Event::stop(expression("x")).falling()],
+            &SystemOptions::default(),
+        )
         .expect("a path");
-    assert_eq!(path.reason(), End::Reached);
+    assert_eq!(path.reason(), PathEnd::Reached);
 }
 
 #[test]
@@ -372,7 +383,7 @@ fn what_cannot_be_followed_is_said() {
     // What has no value has no sign either.
     let unsigned = system(&["x"], &["1 + H(log(x))"], &[]).unwrap();
     let root = system(&["x"], &["sqrt(x)"], &[]).unwrap();
-    for options in [Options::default(), runge_kutta()] {
+    for options in [SystemOptions::default(), runge_kutta()] {
         let refused = unsigned.solve(0.0, &[-1.0], 1.0, &[], &options);
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Start("x".into()));
         let refused = root.solve(0.0, &[-1.0], 1.0, &[], &options);
@@ -385,22 +396,25 @@ fn what_cannot_be_followed_is_said() {
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Event(0));
         // Without a way to go the start is all there is.
         let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
-        assert_eq!((path.end(), path.reason(), path.at(2.0)), (2.0, End::Reached, Some(vec![1.0])));
-        assert!(path.at(2.1).is_none() && path.at(1.9).is_none());
+        assert_eq!(
+            (path.end(), path.reason(), path.states_at(2.0)),
+            (2.0, PathEnd::Reached, Some(vec![1.0]))
+        );
+        assert!(path.states_at(2.1).is_none() && path.states_at(1.9).is_none());
     }
     assert!(matches!(
-        root.solve(0.0, &[f64::NAN], 1.0, &[], &Options::default()),
+        root.solve(0.0, &[f64::NAN], 1.0, &[], &SystemOptions::default()),
         Err(SystemError::Bounds)
     ));
     // x' = x^2 ends in a pole at t = 1.
     let pole = system(&["x"], &["x^2"], &[]).unwrap();
     for path in by_both(&pole, &[1.0], 2.0, &[]) {
-        assert_eq!(path.reason(), End::Singular);
+        assert_eq!(path.reason(), PathEnd::Singular);
         assert!((path.end() - 1.0).abs() < 1e-6, "{}", path.end());
     }
-    let short = Options { step_limit: 3, ..Options::default() };
+    let short = SystemOptions { step_limit: 3, ..SystemOptions::default() };
     let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
-    assert_eq!((path.reason(), path.step_count()), (End::StepLimit, 3));
+    assert_eq!((path.reason(), path.step_count()), (PathEnd::StepLimit, 3));
 }
 
 /// `x'' = x` from rest at one: x = cosh(t), which is 1e300 at ln(2e300). There either integrator
@@ -411,20 +425,20 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     let expected = 300.0 * std::f64::consts::LN_10 + std::f64::consts::LN_2;
     let events = [Event::record(expression("x - 1e10"))];
     for path in by_both(&growing, &[1.0, 0.0], 1000.0, &events) {
-        assert_eq!(path.reason(), End::Overflow);
+        assert_eq!(path.reason(), PathEnd::Overflow);
         assert!((path.end() - expected).abs() < 1e-7, "{} {expected}", path.end());
-        let last = path.at(path.end()).expect("a state");
+        let last = path.states_at(path.end()).expect("a state");
         assert!(last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6), "{last:?}");
         assert_eq!(path.occurrences().len(), 1);
     }
     // In time to be followed to its end.
     for path in by_both(&growing, &[1.0, 0.0], 600.0, &events) {
-        assert_eq!((path.reason(), path.end()), (End::Reached, 600.0));
+        assert_eq!((path.reason(), path.end()), (PathEnd::Reached, 600.0));
     }
     // A rate is too large before its state is: v^4 of v = 2 exp(t), and x grows likewise.
     let steep = system(&["v", "w"], &["v", "v^4"], &[]).unwrap();
     for path in by_both(&steep, &[2.0, 0.0], 1000.0, &[]) {
-        assert_eq!(path.reason(), End::Overflow);
+        assert_eq!(path.reason(), PathEnd::Overflow);
         // w = 4 exp(4 t) reaches 1e300.
         assert!(
             (path.end() - 0.25 * (300.0 * std::f64::consts::LN_10 - 4.0_f64.ln())).abs() < 1e-6,
@@ -434,11 +448,11 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     }
     let pole = system(&["x"], &["x^2"], &[]).unwrap();
     for path in by_both(&pole, &[1.0], 2.0, &[]) {
-        assert_eq!(path.reason(), End::Singular);
+        assert_eq!(path.reason(), PathEnd::Singular);
     }
     for start in [1.1e300, -1e308] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let options = Options { integrator, ..Options::default() };
+            let options = SystemOptions { integrator, ..SystemOptions::default() };
             let refused = growing.solve(0.0, &[start, 0.0], 1.0, &[], &options).unwrap_err();
             assert_eq!(refused, SystemError::Large("x".into(), start));
         }
@@ -460,10 +474,10 @@ fn corners_at_the_same_place_are_all_switched() {
         let system = system(&["x", "v"], &["v", force], &[]).unwrap();
         let period = 1.5 * std::f64::consts::PI;
         for path in by_both(&system, &[1.0, 0.0], 3.0 * period, &[]) {
-            assert_eq!(path.reason(), End::Reached, "{force}");
+            assert_eq!(path.reason(), PathEnd::Reached, "{force}");
             for (time, expected) in [(1.0 / 6.0, [0.0, -2.0]), (2.0, [1.0, 0.0]), (3.0, [1.0, 0.0])]
             {
-                let state = path.at(time * period).expect("a state");
+                let state = path.states_at(time * period).expect("a state");
                 let astray = (state[0] - expected[0]).abs().max((state[1] - expected[1]).abs());
                 assert!(astray < 1e-9, "{force}: {state:?} after {time} periods");
             }
@@ -483,11 +497,15 @@ fn a_loose_tolerance_is_followed_to_the_end() {
     for (right, start, exact) in motions {
         let system = system(&["x", "v"], right, &[]).unwrap();
         for tolerance in [0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-            let options = Options { tolerance, ..Options::default() };
+            let options = SystemOptions { tolerance, ..SystemOptions::default() };
             let path = system.solve(0.0, &start, 20.0, &[], &options).expect("a path");
-            assert_eq!((path.end(), path.reason()), (20.0, End::Reached), "{right:?} {tolerance}");
+            assert_eq!(
+                (path.end(), path.reason()),
+                (20.0, PathEnd::Reached),
+                "{right:?} {tolerance}"
+            );
             assert!(path.step_count() <= 60, "{right:?} {tolerance}: {} steps", path.step_count());
-            let error = (path.at(20.0).expect("a state")[0] - exact(20.0)).abs();
+            let error = (path.states_at(20.0).expect("a state")[0] - exact(20.0)).abs();
             assert!(error < 100.0 * tolerance + 1e-6, "{right:?} {tolerance}: {error}");
         }
     }
@@ -498,8 +516,8 @@ fn a_loose_tolerance_is_followed_to_the_end() {
 fn a_state_that_begins_with_a_high_power_is_followed() {
     let power = system(&["x"], &["14*t^13"], &[]).unwrap();
     for path in by_both(&power, &[0.0], 2.0, &[]) {
-        assert_eq!(path.reason(), End::Reached);
-        let end = path.at(2.0).expect("a state")[0];
+        assert_eq!(path.reason(), PathEnd::Reached);
+        let end = path.states_at(2.0).expect("a state")[0];
         assert!((end / 2.0_f64.powi(14) - 1.0).abs() < 1e-12, "{end}");
     }
 }
@@ -522,7 +540,11 @@ fn motions_side_by_side_are_what_each_is_alone() {
                     assert_eq!(alone.occurrences(), together.occurrences(), "{what}");
                     for part in 0..=100 {
                         let time = alone.end() * f64::from(part) / 100.0;
-                        assert_eq!(alone.at(time), together.at(time), "{what} at {time}");
+                        assert_eq!(
+                            alone.states_at(time),
+                            together.states_at(time),
+                            "{what} at {time}"
+                        );
                     }
                 }
                 (alone, together) => panic!("{what}: {alone:?} and {together:?}"),
@@ -530,7 +552,7 @@ fn motions_side_by_side_are_what_each_is_alone() {
         }
     };
     let count = 2 * LANES + 3;
-    let options = Options::default();
+    let options = SystemOptions::default();
     for (right, events) in [
         (
             "-d*v - sin(x) + cos(3*t)/4",

@@ -4,8 +4,8 @@
 use std::process::Command;
 
 use lindstedt::audit::paper;
-use lindstedt::impact::{Parameter, Reading, Setup, SiImpact, solve};
-use lindstedt::numeric::ode::{Event, Options, State, integrate};
+use lindstedt::impact::{Parameter, PhaseReading, Setup, SiImpact, solve};
+use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
 use lindstedt::problem::Problem;
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ fn followed(pendulum: &Pendulum) -> [f64; 6] {
     let (inertia, weight) = (mass * length * length, mass * gravity * length);
     let force = |x: f64| stiffness * (length * (x - barrier)).max(0.0).powf(1.5);
     let acceleration = |_: f64, x: f64, _: f64| -(weight * x.sin() + force(x) * length) / inertia;
-    let options = Options::with_tolerance(1e-12);
+    let options = IntegrationOptions::with_tolerance(1e-12);
     let from = |t, x, v| State { t, x, v };
     let seconds = (length / gravity).sqrt();
     let touch = Event::stop(|_, x, _| x - barrier);
@@ -159,7 +159,7 @@ fn the_printed_contact_time_is_not_that_of_any_reading() {
     let index = stiff
         .columns
         .iter()
-        .position(|column| column.reading == Reading::Paper)
+        .position(|column| column.reading == PhaseReading::Paper)
         .expect("the paper's");
     let ratios = paper::over_contact_time(&stiff.si().expect("units"));
     assert!((ratios.runge_kutta - 1.0).abs() < 0.05, "{ratios:?}");
@@ -229,7 +229,8 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     let first = motion.impacts[0];
     let (from, to) = (first.entry_time, first.exit_time.expect("it leaves"));
     let force = |k: u32| {
-        let (x, v) = motion.path.at(from + (to - from) * f64::from(k) / 1e4).expect("a place");
+        let (x, v) =
+            motion.path.phase_point_at(from + (to - from) * f64::from(k) / 1e4).expect("a place");
         model.contact(x - 0.323, v)
     };
     let greatest = si.units.force() * (0..=10_000).map(force).fold(0.0, f64::max);

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::audit::{
-    Audit, Claims, Computed, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend,
-    Verdict, audit,
+    Audit, ClaimFinding, ClaimQuantity, Claims, Computed, NAMES, Printed, PrintedStatement,
+    Relation, Rounding, Trend, Verdict, audit,
 };
 
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
@@ -17,7 +17,7 @@ fn claims(text: &str) -> Claims {
     text.parse().unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn finding<'a>(audit: &'a Audit, id: &str) -> &'a Finding {
+fn finding<'a>(audit: &'a Audit, id: &str) -> &'a ClaimFinding {
     let found = audit.findings.iter().find(|finding| finding.claim.id == id);
     found.unwrap_or_else(|| panic!("no claim {id}"))
 }
@@ -83,7 +83,7 @@ fn a_changed_digit_turns_the_verdict() {
     for text in [PAPER, FREQUENCIES] {
         let honest = audit(claims(text));
         for (index, finding) in honest.findings.iter().enumerate() {
-            let Some(Stated::Number(printed)) =
+            let Some(PrintedStatement::Number(printed)) =
                 finding.claim.entries.first().map(|entry| &entry.stated)
             else {
                 continue;
@@ -96,7 +96,8 @@ fn a_changed_digit_turns_the_verdict() {
             let mut claim = claims(text).claims.swap_remove(index);
             let text =
                 tampered(claim.entries[0].read_as.as_ref().unwrap_or(&claim.entries[0].printed));
-            claim.entries[0].stated = Stated::Number(Printed::read(&text).expect("a number"));
+            claim.entries[0].stated =
+                PrintedStatement::Number(Printed::read(&text).expect("a number"));
             // An unknown takes up what is left of two digits.
             claim.unknown = claim.unknown.filter(|_| false);
             let id = claim.id.clone();
@@ -207,7 +208,7 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
     assert!(!steel.is_within && steel.range[0] < density && density < steel.range[1]);
     // The speed of the pendulum.
     let number = |id: &str| {
-        let tried = finding(&paper, id).shown().expect("a try");
+        let tried = finding(&paper, id).displayed_attempt().expect("a try");
         tried.computed[0].as_ref().expect("a number").number().expect("a number")
     };
     let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
@@ -373,7 +374,7 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
             "[[claim]]\nid = \"one\"\nquantity = \"identity\"\nformula = \"m*X'^2/2\"\nvalues = {{ X = \"L*sin(x)\" }}\nprinted = \"{printed}\""
         );
         let found = audit(claims(&text)).findings.swap_remove(0);
-        assert!(matches!(found.claim.question.quantity, Quantity::Identity(_)));
+        assert!(matches!(found.claim.question.quantity, ClaimQuantity::Identity(_)));
         (found.verdict, found.evidence.join("; "))
     };
     assert_eq!(of("m*L^2*x'^2*cos(x)^2/2").0, Verdict::Reproduced);

@@ -9,8 +9,8 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
-    LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactComparisonDocument,
+    ImpactDocument, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
     OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
@@ -57,26 +57,27 @@ fn is_impact(file: &Path) -> bool {
 /// The schemas of all kinds, as the program prints them.
 struct Published {
     schemas: Schemas,
-    indices: Vec<(Kind, SchemaIndex)>,
+    indices: Vec<(DocumentKind, SchemaIndex)>,
 }
 
 impl Published {
     fn new() -> Self {
         let mut schemas = Schemas::new();
         let mut compiler = Compiler::new();
-        let index = |kind: Kind| {
+        let index = |kind: DocumentKind| {
             let schema =
                 serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
             compiler.add_resource(kind.name(), schema).expect("a schema");
             (kind, compiler.compile(kind.name(), &mut schemas).expect("a schema of draft 2020-12"))
         };
-        let indices = Kind::ALL.map(index).into();
+        let indices = DocumentKind::ALL.map(index).into();
         Self { schemas, indices }
     }
 
     /// What the schema of the kind that a document names has against it.
     fn refusal(&self, document: &Value) -> Option<String> {
-        let of_kind = |(kind, _): &&(Kind, SchemaIndex)| document["schema"] == kind.schema();
+        let of_kind =
+            |(kind, _): &&(DocumentKind, SchemaIndex)| document["schema"] == kind.schema();
         let (_, index) = self.indices.iter().find(of_kind).expect("a known kind");
         self.schemas.validate(document, *index).err().map(|error| format!("{error:#}"))
     }
@@ -88,30 +89,30 @@ fn reads_back(document: &Value) {
         let typed: T = serde_json::from_value(document.clone()).expect("a document reads");
         serde_json::to_value(typed).expect("a document is written")
     }
-    let kind = Kind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
+    let kind = DocumentKind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
     let written = match kind.expect("a known kind") {
-        Kind::Solution => again::<SolutionDocument>(document),
-        Kind::Comparison => again::<ComparisonDocument>(document),
-        Kind::Impact => again::<ImpactDocument>(document),
-        Kind::ImpactComparison => again::<ImpactComparisonDocument>(document),
-        Kind::Simulation => again::<SimulationDocument>(document),
-        Kind::Sweep => again::<SweepDocument>(document),
-        Kind::Friction => again::<FrictionDocument>(document),
-        Kind::Lagrangian => again::<LagrangianDocument>(document),
-        Kind::MotionSweep => again::<MotionSweepDocument>(document),
-        Kind::Stability => again::<StabilityDocument>(document),
-        Kind::Motion => again::<MotionDocument>(document),
-        Kind::Primary => again::<PrimaryDocument>(document),
-        Kind::PrimarySweep => again::<PrimarySweepDocument>(document),
-        Kind::Materials => again::<MaterialsDocument>(document),
-        Kind::Optimization => again::<OptimizationDocument>(document),
-        Kind::Audit => again::<AuditDocument>(document),
-        Kind::Catalog => again::<CatalogDocument>(document),
-        Kind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
+        DocumentKind::Solution => again::<SolutionDocument>(document),
+        DocumentKind::Comparison => again::<ComparisonDocument>(document),
+        DocumentKind::Impact => again::<ImpactDocument>(document),
+        DocumentKind::ImpactComparison => again::<ImpactComparisonDocument>(document),
+        DocumentKind::Simulation => again::<SimulationDocument>(document),
+        DocumentKind::Sweep => again::<SweepDocument>(document),
+        DocumentKind::Friction => again::<FrictionDocument>(document),
+        DocumentKind::Lagrangian => again::<LagrangianDocument>(document),
+        DocumentKind::MotionSweep => again::<MotionSweepDocument>(document),
+        DocumentKind::Stability => again::<StabilityDocument>(document),
+        DocumentKind::Motion => again::<MotionDocument>(document),
+        DocumentKind::Primary => again::<PrimaryDocument>(document),
+        DocumentKind::PrimarySweep => again::<PrimarySweepDocument>(document),
+        DocumentKind::Materials => again::<MaterialsDocument>(document),
+        DocumentKind::Optimization => again::<OptimizationDocument>(document),
+        DocumentKind::Audit => again::<AuditDocument>(document),
+        DocumentKind::Catalog => again::<CatalogDocument>(document),
+        DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
         }
-        Kind::Certificate => again::<CertificateDocument>(document),
-        Kind::Response => again::<ResponseDocument>(document),
+        DocumentKind::Certificate => again::<CertificateDocument>(document),
+        DocumentKind::Response => again::<ResponseDocument>(document),
     };
     assert_eq!(written.to_string(), document.to_string());
 }
@@ -181,7 +182,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
         assert_eq!(published.refusal(document), None, "{name}");
         reads_back(document);
     }
-    for kind in Kind::ALL {
+    for kind in DocumentKind::ALL {
         let of_kind = |entry: &&(String, Value)| entry.1["schema"] == kind.schema();
         assert!(
             documents.iter().any(|entry| of_kind(&entry)),
@@ -266,7 +267,7 @@ fn unpinned(value: &mut Value) {
 #[test]
 fn schemas_in_files_are_those_of_the_types() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/export/json/schemas");
-    for kind in Kind::ALL {
+    for kind in DocumentKind::ALL {
         let generated = serde_json::to_string_pretty(&kind.generated_schema())
             .expect("a schema is JSON")
             + "\n";
@@ -329,7 +330,7 @@ fn every_key_is_described_and_no_other_is_allowed() {
             _ => {}
         }
     }
-    for kind in Kind::ALL {
+    for kind in DocumentKind::ALL {
         let printed = output(&["schema", kind.name()]);
         assert_eq!(printed.trim_end(), kind.json_schema().trim_end());
         let schema: Value = serde_json::from_str(&printed).expect("a schema is JSON");
@@ -340,17 +341,21 @@ fn every_key_is_described_and_no_other_is_allowed() {
         assert!(keys >= 9, "{}: only {keys} keys", kind.name());
     }
     // What is easily taken for something else is said where it stands.
-    let said = |kind: Kind, place: &str, words: &[&str]| {
+    let said = |kind: DocumentKind, place: &str, words: &[&str]| {
         let schema: Value = serde_json::from_str(kind.json_schema()).expect("a schema is JSON");
         let description = schema.pointer(place).and_then(Value::as_str).expect(place);
         assert!(words.iter().all(|word| description.contains(word)), "{place}: {description}");
     };
     let key = |name: &str| format!("/properties/{name}/description");
-    said(Kind::Solution, &key("frequency_squared"), &["judged before `frequency`"]);
-    said(Kind::Solution, &key("closed_form"), &["parameter m"]);
-    said(Kind::Solution, &key("displacement"), &["equilibrium included"]);
-    said(Kind::Impact, "/$defs/Phase/description", &["s = t - clock"]);
-    said(Kind::Impact, "/$defs/Phase/properties/clock/description", &["counts", "derived return"]);
+    said(DocumentKind::Solution, &key("frequency_squared"), &["judged before `frequency`"]);
+    said(DocumentKind::Solution, &key("closed_form"), &["parameter m"]);
+    said(DocumentKind::Solution, &key("displacement"), &["equilibrium included"]);
+    said(DocumentKind::Impact, "/$defs/Phase/description", &["s = t - clock"]);
+    said(
+        DocumentKind::Impact,
+        "/$defs/Phase/properties/clock/description",
+        &["counts", "derived return"],
+    );
 }
 
 #[test]
@@ -362,7 +367,7 @@ fn an_unknown_kind_is_refused_with_the_known_ones() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
-    assert!(Kind::ALL.iter().all(|kind| message.contains(kind.name())), "{message}");
+    assert!(DocumentKind::ALL.iter().all(|kind| message.contains(kind.name())), "{message}");
 }
 
 #[test]
@@ -525,7 +530,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
             assert_eq!(line[0], phase.name);
             let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
-            let expected: Vec<f64> = inside.map(|t| phase.at(*t).0).collect();
+            let expected: Vec<f64> = inside.map(|t| phase.phase_point_at(*t).0).collect();
             assert_eq!(line.len(), 1 + expected.len());
             assert!(expected.len() >= 3);
             for (x, value) in line[1..].iter().zip(expected) {

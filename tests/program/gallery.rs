@@ -460,7 +460,7 @@ fn every_example_reads_back_to_the_same_solution() {
                 if list("phases").is_empty() { list("derived_phases") } else { list("phases") };
             for (phase, entry) in phases.iter().zip(&entries) {
                 assert_eq!(phase.closed_form(), entry["closed_form"].as_str().expect("text"));
-                let (x, velocity) = phase.at(phase.end);
+                let (x, velocity) = phase.phase_point_at(phase.end);
                 assert_eq!(Some(x), entry["end_state"]["x"].as_f64());
                 assert_eq!(Some(velocity), entry["end_state"]["velocity"].as_f64());
             }

@@ -6,10 +6,12 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use lindstedt::export::{decimal, significant};
-use lindstedt::genetic::Options;
+use lindstedt::genetic::GeneticOptions;
 use lindstedt::impact::primary::simulate_primary;
 use lindstedt::impact::{Integrator, Parameter, Settings, Simulation, simulate};
-use lindstedt::optimize::{Objective, Question, Role, Route, Study, Watch, optimize};
+use lindstedt::optimize::{
+    Objective, OptimizationProblem, Route, Study, StudyObserver, VariableRole, optimize,
+};
 use lindstedt::problem::Problem;
 
 fn run(arguments: &[&str]) -> Output {
@@ -30,15 +32,15 @@ fn example(name: &str) -> String {
     format!("{}/examples/optimize/{name}.toml", env!("CARGO_MANIFEST_DIR"))
 }
 
-fn asked(text: &str) -> Question {
+fn asked(text: &str) -> OptimizationProblem {
     text.parse::<Problem>().expect("a file").optimize().expect("a question")
 }
 
-fn study(question: Question) -> Study {
-    optimize(question, vec![], &Watch::default()).expect("a study")
+fn study(question: OptimizationProblem) -> Study {
+    optimize(question, vec![], &StudyObserver::default()).expect("a study")
 }
 
-fn role(study: &Study, parameter: Parameter) -> Role {
+fn role(study: &Study, parameter: Parameter) -> VariableRole {
     let decision = study.decision.as_ref().expect("a decision");
     let found = decision.sensitivities.iter().find(|of| of.parameter == parameter);
     found.expect("a variable").role
@@ -48,15 +50,19 @@ fn role(study: &Study, parameter: Parameter) -> Role {
 #[test]
 fn the_unit_of_the_rest_time_chooses_the_corner() {
     for (objective, end, corner) in [
-        (Objective::RestTime, 0.03, Role::Lower),
-        (Objective::DimensionlessRestTime, 0.3, Role::Upper),
+        (Objective::RestTime, 0.03, VariableRole::Lower),
+        (Objective::DimensionlessRestTime, 0.3, VariableRole::Upper),
     ] {
-        let found = study(Question { objectives: vec![objective], runs: 3, ..Question::default() });
+        let found = study(OptimizationProblem {
+            objectives: vec![objective],
+            runs: 3,
+            ..OptimizationProblem::default()
+        });
         let best = &found.best().expect("a design").design;
         assert!((best.point[2] / end - 1.0).abs() < 1e-3, "{best:?}");
         assert_eq!(role(&found, Parameter::Length), corner);
         for flat in [Parameter::Mass, Parameter::Radius, Parameter::Modulus] {
-            assert_eq!(role(&found, flat), Role::Flat, "{flat}");
+            assert_eq!(role(&found, flat), VariableRole::Flat, "{flat}");
         }
         let ends = found.decision.as_ref().and_then(|decision| decision.ends).expect("both ends");
         assert!(ends.seconds[0] < ends.seconds[1] && ends.dimensionless[0] > ends.dimensionless[1]);
@@ -69,16 +75,18 @@ fn the_unit_of_the_rest_time_chooses_the_corner() {
 /// With mu held fixed the softest barrier loses most: there m, R and E are no longer flat.
 #[test]
 fn what_is_held_fixed_decides_what_is_flat() {
-    let found =
-        study(Question { runs: 2, ..asked("[contact]\nmu = 1e4\n[genetic]\npopulation = 40") });
-    assert_eq!(role(&found, Parameter::Modulus), Role::Lower);
+    let found = study(OptimizationProblem {
+        runs: 2,
+        ..asked("[contact]\nmu = 1e4\n[genetic]\npopulation = 40")
+    });
+    assert_eq!(role(&found, Parameter::Modulus), VariableRole::Lower);
     let best = &found.best().expect("a design").design;
     assert!(best.model.gamma < 1e5, "{}", best.model.gamma);
 }
 
 #[test]
 fn the_best_design_rests_when_runge_kutta_says() {
-    let found = study(Question { runs: 1, ..Question::default() });
+    let found = study(OptimizationProblem { runs: 1, ..OptimizationProblem::default() });
     let best = found.best().expect("a design");
     let (model, start) = found.question.motion_of(&best.design.point).expect("a motion");
     let settings = Settings { duration: 150.0, ..Settings::default() };
@@ -94,7 +102,7 @@ fn the_best_design_rests_when_runge_kutta_says() {
     let (entry, exit) = (first.entry_time, first.exit_time.expect("an end"));
     let force = (0..=2000).map(|step| {
         let t = entry + (exit - entry) * f64::from(step) / 2000.0;
-        let (x, velocity) = judge.path.at(t).expect("a state");
+        let (x, velocity) = judge.path.phase_point_at(t).expect("a state");
         model.contact(x - 0.323, velocity)
     });
     let greatest = force.fold(0.0, f64::max) * best.design.units.force();
@@ -103,7 +111,7 @@ fn the_best_design_rests_when_runge_kutta_says() {
 }
 
 /// The motion of a design by Runge-Kutta, as far as it is followed in a search.
-fn judged(question: &Question, point: &[f64]) -> Simulation {
+fn judged(question: &OptimizationProblem, point: &[f64]) -> Simulation {
     let (model, start) = question.motion_of(point).expect("a motion");
     let settings = Settings { duration: question.settings.duration, ..Settings::default() };
     simulate(&model, start, Integrator::RungeKutta, &settings).expect("a motion")
@@ -119,7 +127,7 @@ fn hardest_of(motion: &Simulation) -> (f64, f64, usize) {
         let barrier = motion.model.barrier(impact.side).expect("a barrier");
         let force = (0..=4000).map(|step| {
             let t = entry + (exit - entry) * f64::from(step) / 4000.0;
-            let (x, velocity) = motion.path.at(t).expect("a state");
+            let (x, velocity) = motion.path.phase_point_at(t).expect("a state");
             motion.model.contact(impact.side.sign() * (x - barrier), impact.side.sign() * velocity)
         });
         (force.fold(0.0, f64::max), impact.restitution.expect("a restitution"))
@@ -198,7 +206,7 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
             let barrier = model.barrier(impact.side).expect("a barrier");
             (0..=400).map(move |step| {
                 let t = impact.entry_time + (exit - impact.entry_time) * f64::from(step) / 400.0;
-                let state = motion.at(t).expect("a state");
+                let state = motion.state_at(t).expect("a state");
                 model.contact(sign * (state.x - barrier), sign * state.velocity)
             })
         });
@@ -225,7 +233,7 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
 #[test]
 fn limits_beside_a_main_mass_are_those_of_its_motion() {
     let text = std::fs::read_to_string(example("main-mass")).expect("an example");
-    let force = |question: &Question, point: &[f64]| {
+    let force = |question: &OptimizationProblem, point: &[f64]| {
         let design = question.follow(point, Route::Integration, true).expect("a design");
         Objective::PeakForce.value(&design).expect("a force")
     };
@@ -325,7 +333,7 @@ fn no_sentence_says_more_than_the_numbers() {
 fn a_mass_between_the_limits_is_a_trade_and_is_integrated() {
     let text = std::fs::read_to_string(example("trade")).expect("an example");
     let found = study(asked(&text));
-    assert_eq!(role(&found, Parameter::Mass), Role::Trade);
+    assert_eq!(role(&found, Parameter::Mass), VariableRole::Trade);
     let (evaluations, integrated) = found.evaluations();
     assert!(integrated > evaluations / 2, "{integrated} of {evaluations}");
     let best = found.best().expect("a design");
@@ -339,7 +347,7 @@ fn a_mass_between_the_limits_is_a_trade_and_is_integrated() {
 #[test]
 fn constraints_are_kept_by_integration_too() {
     let text = std::fs::read_to_string(example("steel-sphere")).expect("an example");
-    let found = study(Question { runs: 3, ..asked(&text) });
+    let found = study(OptimizationProblem { runs: 3, ..asked(&text) });
     let best = found.best().expect("a design");
     assert!(best.feasible);
     let design = &best.design;
@@ -510,7 +518,7 @@ fn the_page_prints_what_is_found() {
     let page = include_str!("../../docs/optimize.md");
     let text = std::fs::read_to_string(example("table-4")).expect("an example");
     let question = asked(&text);
-    assert_eq!(question.genetic, Options::default());
+    assert_eq!(question.genetic, GeneticOptions::default());
     let found = study(question.clone());
     let (best, papers) =
         (&found.best().expect("a design").design, found.default_design.as_ref().expect("Table 5"));

@@ -12,12 +12,12 @@
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
 //! use lindstedt::expr::parse_expression;
-//! use lindstedt::system::{Event, Options, System};
+//! use lindstedt::system::{Event, SystemOptions, System};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = System::parse(&[("x", "v"), ("v", "-sin(x)")], &[])?;
 //! let vertical = Event::stop(parse_expression("x")?);
-//! let path = pendulum.solve(0.0, &[1.5, 0.0], 10.0, &[vertical], &Options::default())?;
+//! let path = pendulum.solve(0.0, &[1.5, 0.0], 10.0, &[vertical], &SystemOptions::default())?;
 //! let quarter_period = std::f64::consts::FRAC_PI_2 / 0.860_608_346_679_613;
 //! assert!((path.end() - quarter_period).abs() < 1e-13);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -32,14 +32,14 @@ use std::collections::BTreeMap;
 
 use crate::expr::{EvaluationError, Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
 pub use taylor::LANES;
 
 use narrow::Argument;
-use taylor::{Expansion, Run, Step};
+use taylor::{SystemSeries, TaylorRun, TaylorStep};
 
 /// Equations ready to be followed.
 ///
@@ -48,15 +48,15 @@ use taylor::{Expansion, Run, Step};
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::system::{Options, System};
+/// use lindstedt::system::{SystemOptions, System};
 /// let links = System::parse(&[
 ///     ("a", "p"),
 ///     ("b", "q"),
 ///     ("p", "(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/(2 - cos(a - b)^2)"),
 ///     ("q", "(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/(2 - cos(a - b)^2)"),
 /// ], &[])?;
-/// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &Options::default())?;
-/// let [a, b, p, q] = path.at(20.0).expect("a state")[..] else { unreachable!() };
+/// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &SystemOptions::default())?;
+/// let [a, b, p, q] = path.states_at(20.0).expect("a state")[..] else { unreachable!() };
 /// let energy = p * p + q * q / 2.0 + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos();
 /// assert!((energy + 2.0 * 1.5_f64.cos() + 0.5_f64.cos()).abs() < 1e-12);
 /// # Ok::<(), lindstedt::system::SystemError>(())
@@ -68,11 +68,11 @@ pub struct System {
     right: Vec<Expr>,
     numbers: BTreeMap<Symbol, f64>,
     critical: Vec<f64>,
-    /// What may turn faster than the motion.
+    /// Arguments of functions that may vary faster than the motion.
     narrow: Vec<Argument>,
 }
 
-/// Why there is no system, or no path from this start.
+/// The reason why there is no system, or no path from this start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SystemError {
@@ -110,39 +110,38 @@ pub enum SystemError {
         "`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit"
     )]
     Large(Symbol, f64),
-    /// A start, an end or a tolerance that is no finite number, or an end before the start.
+    /// A start, an end or a tolerance that is not a finite number, or an end before the start.
     #[error(
         "start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1"
     )]
     Bounds,
 }
 
-/// How equations are followed.
+/// The integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// By the Taylor series of the states, to rounding accuracy.
+    /// The Taylor series of the states, to rounding accuracy.
     #[default]
     Taylor,
-    /// By Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands
-    /// nothing.
+    /// Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands nothing.
     RungeKutta,
 }
 
-/// How closely and how long to follow.
+/// Method, tolerance and limits of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// By which integrator.
+pub struct SystemOptions {
+    /// The integration method.
     pub integrator: Integrator,
     /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than
     /// 1e-14.
     pub tolerance: f64,
     /// Steps after which the run ends; those of Runge-Kutta that had to be repeated count.
     pub step_limit: usize,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
-impl Default for Options {
+impl Default for SystemOptions {
     /// Taylor series to rounding accuracy, 100 000 steps.
     fn default() -> Self {
         Self {
@@ -179,11 +178,11 @@ impl Event {
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::system::{Event, Options, System};
+    /// use lindstedt::system::{Event, SystemOptions, System};
     ///
     /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
     /// let upwards = Event::stop(parse_expression("x")?).rising();
-    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &Options::default())?;
+    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &SystemOptions::default())?;
     /// assert!((path.end() - 1.5 * std::f64::consts::PI).abs() < 1e-13); // cos t falls through zero at pi/2
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -206,40 +205,38 @@ impl Event {
 
 /// An event that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Occurrence {
-    /// Which of the events.
+pub struct EventCrossing {
+    /// Index of the event.
     pub event: usize,
-    /// When.
+    /// The time.
     pub time: f64,
     /// Whether its expression grew through zero.
     pub rising: bool,
 }
 
-/// Why a path ended.
+/// The reason why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// At the time asked for.
+pub enum PathEnd {
+    /// The end time.
     Reached,
-    /// At this event.
+    /// The event of this index.
     Event(usize),
     /// After as many steps as were allowed.
     StepLimit,
     /// The steps vanish, or a state or an event has no value any more: a pole, or a root at zero.
     Singular,
-    /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates
-    /// are.
+    /// A state overflowed: it is larger than 1e300, or so large that its rates are.
     Overflow,
-    /// It stays on a corner: the rates on both sides lead back to it.
+    /// The state stays on a corner: the rates on both sides lead back to it.
     Sticks,
-    /// Somebody asked for it.
+    /// An interrupt.
     Interrupted,
 }
 
 /// The relative tolerances of a step that can be asked for.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-16..=0.1;
 
-/// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need
-/// room.
+/// Largest size of a state: doubles end at 1.8e308, and sums and products within a step need room.
 const LARGEST: f64 = 1e300;
 
 /// A state from which on rates without a value are too large rather than undefined: fourth powers
@@ -251,12 +248,12 @@ fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
     states.all(|state| state.abs() <= LARGEST)
 }
 
-/// Why a run ends in these states where its rates have no value, or no next step is possible,
-/// behind a step from one time to another.
-fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> End {
+/// The reason why a run ends in these states where its rates have no value, or no next step is
+/// possible, behind a step from one time to another.
+fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> PathEnd {
     match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
-        true => End::Overflow,
-        false => End::Singular,
+        true => PathEnd::Overflow,
+        false => PathEnd::Singular,
     }
 }
 
@@ -273,24 +270,24 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
     if is_within(length) {
         return None;
     }
-    let [within, _] = bisect(is_within, 0.0, length, Until::Halvings(HALVINGS));
+    let [within, _] = bisect(is_within, 0.0, length, BisectionStop::Halvings(HALVINGS));
     Some(within)
 }
 
 /// The states from the start to the end.
 #[derive(Clone, Debug)]
 pub struct Path {
-    motion: Motion,
+    motion: PathRepresentation,
     end: f64,
-    reason: End,
-    occurrences: Vec<Occurrence>,
+    reason: PathEnd,
+    occurrences: Vec<EventCrossing>,
 }
 
-/// What the states are read from.
+/// The representation from which states are interpolated.
 #[derive(Clone, Debug)]
-enum Motion {
-    Taylor { steps: Vec<Step>, start: f64 },
-    RungeKutta(runge_kutta::Motion),
+enum PathRepresentation {
+    Taylor { steps: Vec<TaylorStep>, start: f64 },
+    RungeKutta(runge_kutta::ScaledTrajectory),
 }
 
 impl Path {
@@ -299,32 +296,32 @@ impl Path {
         self.end
     }
 
-    /// Why it ends there.
-    pub fn reason(&self) -> End {
+    /// The reason why it ends there.
+    pub fn reason(&self) -> PathEnd {
         self.reason
     }
 
     /// The events met, in order.
-    pub fn occurrences(&self) -> &[Occurrence] {
+    pub fn occurrences(&self) -> &[EventCrossing] {
         &self.occurrences
     }
 
     /// The number of steps.
     pub fn step_count(&self) -> usize {
         match &self.motion {
-            Motion::Taylor { steps, .. } => steps.len(),
-            Motion::RungeKutta(motion) => motion.step_count(),
+            PathRepresentation::Taylor { steps, .. } => steps.len(),
+            PathRepresentation::RungeKutta(motion) => motion.step_count(),
         }
     }
 
     /// All states at a time; `None` outside the path.
-    pub fn at(&self, time: f64) -> Option<Vec<f64>> {
+    pub fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         if time.is_nan() || time > self.end {
             return None;
         }
         match &self.motion {
-            Motion::Taylor { steps, start } => taylor::at(steps, time - start),
-            Motion::RungeKutta(motion) => motion.at(time),
+            PathRepresentation::Taylor { steps, start } => taylor::states_at(steps, time - start),
+            PathRepresentation::RungeKutta(motion) => motion.states_at(time),
         }
     }
 }
@@ -333,18 +330,20 @@ impl Path {
     /// One state, by its number, at a time; `None` outside the path.
     pub fn state_at(&self, time: f64, state: usize) -> Option<f64> {
         match &self.motion {
-            Motion::Taylor { .. } if time.is_nan() || time > self.end => None,
-            Motion::Taylor { steps, start } => taylor::state_at(steps, time - start, state),
-            Motion::RungeKutta(_) => self.at(time)?.get(state).copied(),
+            PathRepresentation::Taylor { .. } if time.is_nan() || time > self.end => None,
+            PathRepresentation::Taylor { steps, start } => {
+                taylor::state_at(steps, time - start, state)
+            }
+            PathRepresentation::RungeKutta(_) => self.states_at(time)?.get(state).copied(),
         }
     }
 
     /// The states at many times, in increasing order: those of the times that are within the path
     /// are added to `kept`, and the first states there to the columns, one each. Costs less than as
-    /// many calls of [`Path::at`] and has the same values.
+    /// many calls of [`Path::states_at`] and has the same values.
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
-            Motion::Taylor { steps, start } => {
+            PathRepresentation::Taylor { steps, start } => {
                 let before = times.partition_point(|time| *time - start < 0.0);
                 let own = &times[before..];
                 let own = &own[..own.partition_point(|time| *time <= self.end)];
@@ -352,9 +351,9 @@ impl Path {
                 let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
                 taylor::sample(steps, &since_start, columns);
             }
-            Motion::RungeKutta(_) => {
+            PathRepresentation::RungeKutta(_) => {
                 for time in times {
-                    let Some(states) = self.at(*time) else {
+                    let Some(states) = self.states_at(*time) else {
                         continue;
                     };
                     kept.push(*time);
@@ -371,22 +370,22 @@ impl Path {
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::system::{Options, System};
+/// use lindstedt::system::{SystemOptions, System};
 ///
 /// let stiffness = |k: f64| [("k".into(), k)].into();
-/// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &Options::default());
+/// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &SystemOptions::default());
 /// let slower = solver.with_numbers(&stiffness(0.25)).expect("equations of the same form");
 /// let path = slower.solve(0.0, &[1.0, 0.0], 2.0)?;
-/// assert!((path.at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
+/// assert!((path.states_at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
 /// # Ok::<(), lindstedt::system::SystemError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Solver {
     system: System,
     events: Vec<Event>,
-    options: Options,
+    options: SystemOptions,
     /// Runge-Kutta has no use for it.
-    expansion: Option<Result<Expansion, RecurrenceError>>,
+    expansion: Option<Result<SystemSeries, RecurrenceError>>,
 }
 
 impl Solver {
@@ -422,7 +421,7 @@ impl Solver {
         match &self.expansion {
             Some(expansion) => {
                 let expansion = expansion.clone()?;
-                let run = Run::new(system, [start, end], values, events, options, expansion);
+                let run = TaylorRun::new(system, [start, end], values, events, options, expansion);
                 taylor::follow(run)
             }
             None => runge_kutta::follow(system, [start, end], values, events, options),
@@ -438,15 +437,15 @@ pub fn solve_together(
     start: f64,
     end: f64,
 ) -> Vec<Result<Path, SystemError>> {
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<TaylorRun> = Vec::new();
     let mut alone = Vec::new();
     for (solver, values) in motions {
         let Solver { system, events, options, expansion } = *solver;
-        let is_like = |own: &Expansion| runs.first().is_none_or(|run| run.is_like(own));
+        let is_like = |own: &SystemSeries| runs.first().is_none_or(|run| run.is_like(own));
         match expansion {
             Some(Ok(own)) if is_like(own) && system.check(start, values, end, options).is_ok() => {
                 let times = [start, end];
-                runs.push(Run::new(system, times, values, events, options, own.clone()));
+                runs.push(TaylorRun::new(system, times, values, events, options, own.clone()));
                 alone.push(None);
             }
             _ => alone.push(Some(solver.solve(start, values, end))),
@@ -519,13 +518,13 @@ impl System {
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
-    /// use lindstedt::system::{Integrator, Options, System};
+    /// use lindstedt::system::{Integrator, SystemOptions, System};
     ///
     /// // Prey and predator of Lotka and Volterra, by both integrators.
     /// let system = System::parse(&[("x", "x*(1 - y)"), ("y", "y*(x - 1)")], &[])?;
     /// let [taylor, runge_kutta] = [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
-    ///     let options = Options { integrator, ..Options::default() };
-    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.at(10.0))
+    ///     let options = SystemOptions { integrator, ..SystemOptions::default() };
+    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.states_at(10.0))
     /// });
     /// let difference = taylor?.expect("a state")[0] - runge_kutta?.expect("a state")[0];
     /// assert!(difference.abs() < 1e-9);
@@ -537,13 +536,20 @@ impl System {
         values: &[f64],
         end: f64,
         events: &[Event],
-        options: &Options,
+        options: &SystemOptions,
     ) -> Result<Path, SystemError> {
         self.check(start, values, end, options)?;
         match options.integrator {
             Integrator::Taylor => {
                 let expansion = taylor::expansion(self, events, options.tolerance)?;
-                taylor::follow(Run::new(self, [start, end], values, events, options, expansion))
+                taylor::follow(TaylorRun::new(
+                    self,
+                    [start, end],
+                    values,
+                    events,
+                    options,
+                    expansion,
+                ))
             }
             Integrator::RungeKutta => {
                 runge_kutta::follow(self, [start, end], values, events, options)
@@ -552,7 +558,7 @@ impl System {
     }
 
     /// This system ready to be followed many times with these events.
-    pub fn solver(self, events: &[Event], options: &Options) -> Solver {
+    pub fn solver(self, events: &[Event], options: &SystemOptions) -> Solver {
         // A tolerance out of range has no order; the runs refuse it.
         let has_order = TOLERANCES.contains(&options.tolerance);
         let expansion = match options.integrator {
@@ -570,7 +576,7 @@ impl System {
         start: f64,
         values: &[f64],
         end: f64,
-        options: &Options,
+        options: &SystemOptions,
     ) -> Result<(), SystemError> {
         let size = self.state.len();
         if values.len() != size {

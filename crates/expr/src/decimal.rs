@@ -1,4 +1,4 @@
-//! Floating-point numbers as people write them.
+//! Floating-point numbers in the usual form.
 //!
 //! In: a double or a fraction, and how many digits. Out: decimal text, or the fraction that these
 //! digits stand for.
@@ -9,7 +9,7 @@ use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::scaled::Scaled;
 use crate::exact::{Integer, Rational};
 
-/// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
+/// Six significant digits or more, in the usual form: `0.860608`, `3.0407e7`, `-1.49`.
 ///
 /// ```
 /// use lindstedt_expr::decimal::decimal;
@@ -20,7 +20,7 @@ pub fn decimal(value: f64) -> String {
     significant(value, 6)
 }
 
-/// `value` with so many significant digits, without trailing zeros.
+/// `value` with this many significant digits, without trailing zeros.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -47,7 +47,8 @@ pub fn rounded(value: f64) -> Rational {
     rounded_to(value, 15)
 }
 
-/// So many significant digits of a number, as a fraction; seventeen tell any two numbers apart.
+/// A number rounded to this many significant digits, as a fraction; seventeen tell any two numbers
+/// apart.
 pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
     parsed(&format!("{value:.decimals$e}"))
@@ -65,13 +66,13 @@ fn parsed(text: &str) -> Rational {
     if power < 0 { digits / scale } else { digits * scale }
 }
 
-/// So many significant digits of a fraction, as a fraction, however large or small it is.
+/// A fraction rounded to this many significant digits, as a fraction, however large or small it is.
 pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
     let (mantissa, power) = scientific(value, digits);
     Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)
 }
 
-/// The decimals of so many significant digits next to a fraction, the first not above it and the
+/// The decimals of this many significant digits next to a fraction, the first not above it and the
 /// second not below: both are the fraction itself where it is one.
 pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     let (_, power) = scientific(value, digits);
@@ -80,7 +81,7 @@ pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     [count.floor() * &unit, count.ceil() * unit]
 }
 
-/// A fraction with so many significant digits, as [`significant`] writes it, beyond the range of
+/// A fraction with this many significant digits, as [`significant`] writes it, beyond the range of
 /// doubles as well.
 pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     let double = to_f64(value);
@@ -102,13 +103,13 @@ fn in_powers(value: &Rational, mantissa: &Integer, power: i32) -> String {
     format!("{sign}{first}{point}{rest}e{exponent}")
 }
 
-/// The decimal of so many significant digits next below a number that is not negative, as
+/// The decimal of this many significant digits next below a number that is not negative, as
 /// [`significant`] writes it.
 pub fn rounded_down(value: f64, digits: usize) -> String {
     rounded_to_side(value, digits, 0)
 }
 
-/// The decimal of so many significant digits next above a number that is not negative, likewise.
+/// The decimal of this many significant digits next above a number that is not negative, likewise.
 pub fn rounded_up(value: f64, digits: usize) -> String {
     rounded_to_side(value, digits, 1)
 }
@@ -134,7 +135,7 @@ pub fn not_above_typed(value: f64) -> f64 {
     }
 }
 
-/// A decimal in full, as [`significant`] writes it; `None` where it has more than forty significant
+/// A decimal in full, as [`significant`] writes it; `None` if it has more than forty significant
 /// digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
@@ -148,7 +149,7 @@ pub fn exact_decimal(value: &Rational) -> Option<String> {
     })
 }
 
-/// A fraction with so many decimals at most, without zeros at the end; of what is very large or
+/// A fraction with this many decimals at most, without zeros at the end; of what is very large or
 /// small fifteen digits.
 pub fn plain_decimal(value: &Rational, decimals: usize) -> String {
     match has_plain_decimals(value) {
@@ -201,7 +202,7 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     const SHORT: usize = 12;
     /// Whole numbers are written out up to here.
     const WRITTEN_OUT: usize = 21;
-    /// The most characters; a longer one is no number of an equation that somebody typed.
+    /// The most characters; a longer one is not a number of an equation that somebody typed.
     const LONGEST_BITS: u64 = 4_000;
     /// Digits that tell any two doubles apart: more of them are no number that was rounded or
     /// typed.
@@ -258,7 +259,7 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     (fraction > longest && text.len() < fraction).then(|| format!("{sign}{text}"))
 }
 
-/// A whole number of so many digits, and the power of ten that makes it the fraction, rounded.
+/// A whole number of this many digits, and the power of ten that makes it the fraction, rounded.
 fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
     if value.is_zero() {
         return (Integer::zero(), 0);

@@ -1,14 +1,14 @@
 //! Independent pieces of work on all threads of the current pool; one after the other without the
 //! feature `parallel`.
 //!
-//! What comes back is in the order of the pieces, whatever the number of threads.
+//! Results are in the order of the items, whatever the number of threads.
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::symbol::letters::Letters;
+use crate::symbol::letters::ResultSymbols;
 
-/// What `work` makes of each item, in their order.
-pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
+/// Applies `work` to each item in parallel and returns the results in order.
+pub fn par_map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
     run(items.len(), &|number| {
         let result = work(&items[number]);
@@ -23,7 +23,7 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
 /// Every number up to this one; a function of its own, so that it is built once for all kinds of
 /// work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
-    let letters = Letters::here();
+    let letters = ResultSymbols::in_force_here();
     let work = &|number| {
         let _letters = letters.exactly();
         work(number);
@@ -37,7 +37,7 @@ fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// How many threads there are.
+/// Number of threads.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]
     return rayon::current_num_threads();
@@ -45,7 +45,7 @@ pub fn threads() -> usize {
     return 1;
 }
 
-/// Work in a pool of so many threads; in the current one where no other can be made.
+/// Work in a pool of this many threads; in the current one where no other can be made.
 #[cfg(feature = "parallel")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
@@ -62,8 +62,8 @@ mod tests {
     fn results_keep_their_order() {
         let items: Vec<usize> = (0..1000).collect();
         let expected: Vec<usize> = items.iter().map(|item| item * item).collect();
-        assert_eq!(each(&items, |item| item * item), expected);
-        assert_eq!(each(&[] as &[usize], |item| *item), Vec::<usize>::new());
+        assert_eq!(par_map(&items, |item| item * item), expected);
+        assert_eq!(par_map(&[] as &[usize], |item| *item), Vec::<usize>::new());
         assert!(threads() > 0);
     }
 

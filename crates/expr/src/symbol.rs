@@ -32,8 +32,7 @@ pub const GREEK: [&str; 21] = [
     "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
 ];
 
-/// What the text of a symbol ends with that is [apart](Symbol::apart); no name that is typed has
-/// it.
+/// Last character of a symbol that is [apart](Symbol::apart); no name that is typed has it.
 const APART: char = '\u{1}';
 
 static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
@@ -56,7 +55,7 @@ impl Symbol {
     }
 
     /// The name as it is printed: that of something in an answer gives way to the same name of an
-    /// equation, see `Letters`.
+    /// equation, see `ResultSymbols`.
     pub fn written(self) -> &'static str {
         letters::written(self)
     }
@@ -92,7 +91,7 @@ impl Symbol {
         self.with_name(&format!("{}'", self.name()))
     }
 
-    /// How many primes the name ends with: 0 for `x`, 2 for `x''`.
+    /// Number of primes at the end of the name: 0 for `x`, 2 for `x''`.
     pub fn primes(self) -> usize {
         self.name().len() - self.name().trim_end_matches('\'').len()
     }

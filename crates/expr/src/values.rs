@@ -1,8 +1,8 @@
 //! Exact values of symbols, as a user gives them.
 //!
 //! In: names with numbers or multiples of pi, as text or one by one. Out: the same, exact or as
-//! doubles; in the units of whoever wrote the equation. What is no number, or is given twice, is a
-//! [`ValueError`].
+//! doubles; in the units of whoever wrote the equation. What is not a number, or is given twice, is
+//! a [`ValueError`].
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -24,11 +24,11 @@ use crate::symbol::Symbol;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values(BTreeMap<Symbol, Expr>);
 
-/// Why a value is no value.
+/// The reason why a value is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ValueError {
-    /// It contains a symbol.
+    /// The value contains a symbol.
     #[error(
         "the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3"
     )]
@@ -37,10 +37,10 @@ pub enum ValueError {
         name: Symbol,
         /// The value as typed.
         value: String,
-        /// What is in it.
+        /// The symbol in it.
         symbol: Symbol,
     },
-    /// It is not finite.
+    /// The value is not finite.
     #[error("the value `{value}` of `{name}` is not a finite number")]
     NotFinite {
         /// The name.

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Somebody who may ask to stop; nobody by default.
+/// A flag that asks a computation to stop; the default never does.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// use lindstedt::Interrupt;
 ///
 /// static STOP: AtomicBool = AtomicBool::new(false);
-/// let interrupt = Interrupt::by(&STOP);
+/// let interrupt = Interrupt::from_flag(&STOP);
 /// assert!(!interrupt.is_requested());
 /// STOP.store(true, Ordering::Relaxed);
 /// assert!(interrupt.is_requested());
@@ -20,8 +20,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub struct Interrupt(Option<&'static AtomicBool>);
 
 impl Interrupt {
-    /// Asked for by setting this flag.
-    pub fn by(flag: &'static AtomicBool) -> Self {
+    /// Takes the flag that asks for a stop.
+    pub fn from_flag(flag: &'static AtomicBool) -> Self {
         Self(Some(flag))
     }
 
@@ -31,11 +31,11 @@ impl Interrupt {
     }
 }
 
-/// Somebody who sees how far long work has come; nobody by default.
+/// An observer of the progress of a computation; the default has none.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress(Option<&'static Counter>);
 
-/// How many parts of how many are done.
+/// The progress of a computation: the parts done, and all of them.
 #[derive(Debug, Default)]
 pub struct Counter {
     done: AtomicU64,
@@ -43,24 +43,24 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Nothing is known yet.
+    /// A counter without parts.
     pub const fn new() -> Self {
         Self { done: AtomicU64::new(0), all: AtomicU64::new(0) }
     }
 
-    /// How many parts are done, of how many; of none before the work has begun.
+    /// Returns the number of parts done and of all parts, both zero before the work begins.
     pub fn read(&self) -> (u64, u64) {
         (self.done.load(Ordering::Relaxed), self.all.load(Ordering::Relaxed))
     }
 }
 
 impl Progress {
-    /// Seen in this counter.
-    pub fn by(counter: &'static Counter) -> Self {
+    /// Takes the counter that shows the progress.
+    pub fn from_counter(counter: &'static Counter) -> Self {
         Self(Some(counter))
     }
 
-    /// Work of so many parts begins.
+    /// Work of this many parts begins.
     pub fn begin(self, parts: usize) {
         if let Some(counter) = self.0 {
             counter.done.store(0, Ordering::Relaxed);
@@ -85,13 +85,13 @@ impl PartialEq for Progress {
     }
 }
 
-/// Who may stop long work, and who sees how far it has come; nobody by default.
+/// Interrupt and progress of a long computation; the default has neither.
 ///
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supervision {
-    /// Who may stop it.
+    /// The interrupt.
     pub interrupt: Interrupt,
-    /// Who sees how far it has come.
+    /// The observer of the progress.
     pub progress: Progress,
 }
 

@@ -1,9 +1,10 @@
-//! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words
-//! and equations.
+//! The derivation of an answer as on paper: the orders of an expansion, and lines of words and
+//! equations.
 //!
-//! In: what a method did, in its order. Out: [`Step`]s and [`Line`]s for every format to lay out.
+//! In: what a method did, in its order. Out: [`Step`]s and [`DerivationLine`]s for every format to
+//! lay out.
 //!
-//! What prints as text prints as LaTeX: both read the same formulas.
+//! Text and LaTeX are printed from the same formulas.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -25,7 +26,7 @@ pub struct Step {
     pub resonance: Polynomial,
     /// `W_n`, which the secular condition fixes.
     pub correction: Polynomial,
-    /// What pins down the homogeneous solution.
+    /// The conditions that fix the homogeneous solution.
     pub conditions: Vec<Condition>,
     /// `y_n`.
     pub displacement: FourierSeries<Polynomials>,
@@ -34,13 +35,13 @@ pub struct Step {
 }
 
 impl Step {
-    /// What drives `y_n` beside the secular term: `y_n'' + y_n`.
+    /// `y_n'' + y_n`, the forcing of the n-th order without its secular term.
     pub fn right_side(&self) -> FourierSeries<Polynomials> {
         self.displacement.derivative().derivative().sum(&self.displacement)
     }
 }
 
-/// What a homogeneous solution is chosen by.
+/// A condition that fixes a homogeneous solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// `y_n(0)` has this value.
@@ -67,16 +68,16 @@ pub struct AmplitudeCondition {
 
 /// One line of a derivation: words, an equation, or an equation with the reason for it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    /// What is done; may be empty.
+pub struct DerivationLine {
+    /// The step in words; may be empty.
     pub words: String,
     /// Formulas that are equal, from left to right; may be empty.
-    pub equal: Vec<Formula>,
+    pub equal: Vec<DerivationFormula>,
 }
 
-/// What a line is made of: an expression, or what no expression of the grammar can say.
+/// A part of a line: an expression, or a formula that the grammar of expressions cannot write.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Formula {
+pub enum DerivationFormula {
     /// An expression.
     Expression(Expr),
     /// A motion or a force along it.
@@ -90,7 +91,7 @@ pub enum Formula {
     Oscillator {
         /// `y`.
         of: Symbol,
-        /// What stands before `y`.
+        /// The coefficient of `y`.
         square: Expr,
     },
     /// `y(0)`, or `y'(0)`.
@@ -102,43 +103,46 @@ pub enum Formula {
     },
     /// `factor * int_from^to integrand d(variable)`.
     Integral {
-        /// What stands before the integral.
+        /// The factor in front of the integral.
         factor: Expr,
         /// The lower end.
         from: Expr,
         /// The upper end.
         to: Expr,
-        /// What is integrated.
+        /// The integrand.
         integrand: Box<Self>,
-        /// Over which variable.
+        /// The variable of integration.
         variable: Symbol,
     },
     /// `numerator/sqrt(inside)`.
     OverRoot(Expr, Box<Self>),
     /// `factor * d(of)/d(by)`.
     Slope {
-        /// What stands before the derivative.
+        /// The factor in front of the derivative.
         factor: Expr,
-        /// What is differentiated.
+        /// The dependent variable.
         of: Symbol,
-        /// By what.
+        /// The variable of differentiation.
         by: Symbol,
     },
 }
 
-impl Line {
+impl DerivationLine {
     /// Words alone.
     pub fn words(words: impl Into<String>) -> Self {
         Self { words: words.into(), equal: vec![] }
     }
 
     /// Formulas that are equal.
-    pub fn equal(formulas: impl IntoIterator<Item = Formula>) -> Self {
+    pub fn equal(formulas: impl IntoIterator<Item = DerivationFormula>) -> Self {
         Self { words: String::new(), equal: formulas.into_iter().collect() }
     }
 
     /// An equation between two expressions.
-    pub fn equation(left: impl Into<Formula>, right: impl Into<Formula>) -> Self {
+    pub fn equation(
+        left: impl Into<DerivationFormula>,
+        right: impl Into<DerivationFormula>,
+    ) -> Self {
         Self::equal([left.into(), right.into()])
     }
 
@@ -157,25 +161,25 @@ impl Line {
     pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
         self.words = self.words.replace('θ', name.name());
         for formula in &mut self.equal {
-            if let Formula::Waves { phase, .. } = formula {
+            if let DerivationFormula::Waves { phase, .. } = formula {
                 *phase = name;
             }
         }
         self
     }
 
-    /// The same line with words in front of it.
+    /// Returns this line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
         Self { words: words.into(), ..self }
     }
 
     /// The names in its formulas.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
-        self.equal.iter().flat_map(Formula::symbols).collect()
+        self.equal.iter().flat_map(DerivationFormula::symbols).collect()
     }
 }
 
-impl Formula {
+impl DerivationFormula {
     fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         let changed = |expression: &Expr| {
             expression.with_numbers(change).unwrap_or_else(|_| expression.clone())
@@ -229,38 +233,38 @@ impl Formula {
     }
 }
 
-impl From<Expr> for Formula {
+impl From<Expr> for DerivationFormula {
     fn from(expression: Expr) -> Self {
         Self::Expression(expression)
     }
 }
 
-impl From<&Expr> for Formula {
+impl From<&Expr> for DerivationFormula {
     fn from(expression: &Expr) -> Self {
         Self::Expression(expression.clone())
     }
 }
 
-impl From<&str> for Formula {
+impl From<&str> for DerivationFormula {
     /// A name.
     fn from(name: &str) -> Self {
         Self::Expression(Expr::symbol(name))
     }
 }
 
-impl From<Symbol> for Formula {
+impl From<Symbol> for DerivationFormula {
     fn from(name: Symbol) -> Self {
         Self::Expression(Expr::from(name))
     }
 }
 
-impl From<&Polynomial> for Formula {
+impl From<&Polynomial> for DerivationFormula {
     fn from(polynomial: &Polynomial) -> Self {
         FourierSeries::constant(POLYNOMIALS, polynomial.clone()).into()
     }
 }
 
-impl From<FourierSeries<Polynomials>> for Formula {
+impl From<FourierSeries<Polynomials>> for DerivationFormula {
     fn from(series: FourierSeries<Polynomials>) -> Self {
         Self::Waves { series, phase: Symbol::new("theta") }
     }
@@ -276,7 +280,7 @@ pub const NOTATION: Notation = Notation {
     brackets: ["(", ")"],
 };
 
-impl fmt::Display for Line {
+impl fmt::Display for DerivationLine {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.words)?;
         if !self.words.is_empty() && !self.equal.is_empty() {
@@ -290,7 +294,7 @@ impl fmt::Display for Line {
     }
 }
 
-impl fmt::Display for Formula {
+impl fmt::Display for DerivationFormula {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Expression(expression) => write!(formatter, "{expression}"),
@@ -338,7 +342,7 @@ impl fmt::Display for Formula {
     }
 }
 
-/// A factor in front of something that is no expression.
+/// A factor in front of something that is not an expression.
 fn before(factor: &Expr) -> String {
     match *factor == Expr::one() {
         true => String::new(),

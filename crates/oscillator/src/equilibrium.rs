@@ -1,5 +1,5 @@
-//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for,
-//! and the equation seen from there.
+//! The equilibrium about which a motion oscillates, the stable one nearest to `x = 0` or the one
+//! asked for, and the equation in the deviation from it.
 //!
 //! In comes an [`Oscillator`], with or without an equilibrium asked for; out goes a [`Centred`]:
 //! the position, the equation about it, and what its symbols stand for; or an [`OscillatorError`]
@@ -41,9 +41,9 @@ use crate::series::taylor::taylor;
 use crate::solution::Definition;
 use crate::solution::note::{CornerSide, CrossWell};
 use crate::symbol::{Symbol, fresh};
-use force::{Force, Pull};
+use force::{PositionForce, SingularAttraction};
 use search::Zero as SignChange;
-use shift::{moved, value_at};
+use shift::{shifted_force, value_at};
 
 /// An equation of motion in the deviation from its equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub struct Centred {
     /// The equilibrium in numbers and parameters; seventeen digits where it has no closed form
     /// here.
     pub position: Expr,
-    /// The same with the symbol of `definition` in it, where there is one.
+    /// The equilibrium with the symbol of `definition` in it, if there is one.
     pub written: Expr,
     /// The symbol that stands for the equilibrium, or its negative, in the force.
     pub definition: Option<Definition>,
@@ -101,7 +101,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
     let Ok(expanded) = oscillator.force.expand() else {
         return Ok(Centred::at_origin(oscillator));
     };
-    // What drives the motion does not decide where it swings.
+    // Terms with the time in them do not decide about the equilibrium.
     let (driving, quiet): (Vec<Expr>, Vec<Expr>) =
         expanded.terms().iter().cloned().partition(|term| term.contains(t));
     let mut free = oscillator.clone();
@@ -124,7 +124,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
 /// As [`centred`], of a force that does not know the time.
 fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
-    // Where the force has no value at rest the methods refuse it.
+    // If the force has no value at rest, the methods refuse it.
     let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
         return Ok(Centred::at_origin(oscillator));
     };
@@ -132,7 +132,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         return about(oscillator, &still, asked, degree);
     }
     let at_zero = value_at(&still, position, &Expr::zero());
-    let force = Force::new(&still, position);
+    let force = PositionForce::new(&still, position);
     let pull = match &at_zero {
         Err(_) if !force.vanishes_towards_zero() => force.pull_without_bound(),
         _ => None,
@@ -140,7 +140,8 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),
         Err(_) => {
-            force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse))
+            force.vanishes_towards_zero()
+                || matches!(pull, Some(SingularAttraction::Passed | SingularAttraction::Inverse))
         }
     };
     if rests {
@@ -155,7 +156,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         }
         return match stable {
             true => Ok(Centred {
-                endless: pull == Some(Pull::Inverse),
+                endless: pull == Some(SingularAttraction::Inverse),
                 // Letters may have made it a hilltop.
                 cross_well: match oscillator.of_position_alone() && !force.is_numerical() {
                     true => force.cross_well(&Expr::zero()),
@@ -172,14 +173,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         uneven,
     };
     let no_equilibrium = || match pull {
-        Some(Pull::Endless) => falls_in(false),
-        Some(Pull::UnevenInverse) => falls_in(true),
+        Some(SingularAttraction::Endless) => falls_in(false),
+        Some(SingularAttraction::UnevenInverse) => falls_in(true),
         _ => OscillatorError::NoEquilibrium(force.at_rest(&at_zero)),
     };
     if force.is_numerical() {
         let mut stable = force.stable();
-        // Where it is infinite it is none, whatever an expression with a sign in it is worth at
-        // zero itself.
+        // A point at which the force is infinite is no equilibrium, whatever the sign function in
+        // the expression is worth at zero.
         stable.retain(|found| pull.is_none() || found.position.abs() > 1e-100);
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
@@ -273,9 +274,9 @@ fn about(
     asked: &Expr,
     degree: Option<u32>,
 ) -> Result<Centred, OscillatorError> {
-    /// How far a number typed may be from the equilibrium it means, relatively.
+    /// Relative error of a typed number that still means the equilibrium.
     const ROUNDING: f64 = 1e-3;
-    let force = Force::new(still, oscillator.coordinate);
+    let force = PositionForce::new(still, oscillator.coordinate);
     let none_there = || OscillatorError::NoSuchEquilibrium {
         coordinate: oscillator.coordinate,
         asked: asked.clone(),
@@ -286,7 +287,7 @@ fn about(
         return found.ok_or_else(none_there);
     }
     if let Some(form) = force.stable_form_of(asked) {
-        return seen_from(oscillator, &Place::Exact(form), degree);
+        return seen_from(oscillator, &EquilibriumPosition::Exact(form), degree);
     }
     let Ok(near) = asked.evaluate(&BTreeMap::new()) else {
         return Err(none_there());
@@ -303,7 +304,7 @@ fn about(
         return seen_from(oscillator, &force.exact_or_rounded(found.position), degree);
     }
     // About a place known by its number alone no force is odd.
-    if let Some(Place::Exact(hilltop)) =
+    if let Some(EquilibriumPosition::Exact(hilltop)) =
         nearest(false).map(|found| force.exact_or_rounded(found.position))
     {
         let found = about_zero_of_force(oscillator, still, &hilltop, degree)?;
@@ -320,8 +321,8 @@ fn about_zero_of_force(
     place: &Expr,
     degree: Option<u32>,
 ) -> Result<Option<Centred>, OscillatorError> {
-    let there = moved(still, oscillator.coordinate, place)?;
-    let there = Force::new(&there, oscillator.coordinate);
+    let there = shifted_force(still, oscillator.coordinate, place)?;
+    let there = PositionForce::new(&there, oscillator.coordinate);
     let stable = there.is_stable_at_zero();
     // Without a drive, which has been taken out of the force, and without what velocities add.
     let conservative =
@@ -333,40 +334,43 @@ fn about_zero_of_force(
     if !stable && cross_well.is_none() {
         return Ok(None);
     }
-    Ok(Some(Centred { cross_well, ..seen_from(oscillator, &Place::Exact(place.clone()), degree)? }))
+    Ok(Some(Centred {
+        cross_well,
+        ..seen_from(oscillator, &EquilibriumPosition::Exact(place.clone()), degree)?
+    }))
 }
 
 /// The refusal of an equilibrium that was asked for because it is no stable one.
 pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
     let asked = oscillator.about.clone().unwrap_or_else(Expr::zero);
-    let stable = Force::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
+    let stable = PositionForce::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
     OscillatorError::NoSuchEquilibrium { coordinate: oscillator.coordinate, asked, stable }
 }
 
 /// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put
-/// in for these decide. `None` where there are none.
+/// in for these decide. `None` if there are none.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
     let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
     if still.contains(Symbol::new("t")) {
         return None;
     }
-    let force = Force::new(&still, oscillator.coordinate);
+    let force = PositionForce::new(&still, oscillator.coordinate);
     let found = force.stable_equilibria();
     (!force.is_numerical() && !found.positions.is_empty())
         .then(|| force.unstable(oscillator.of_position_alone()))
 }
 
-/// Where an equilibrium is.
+/// The position of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
-enum Place {
+enum EquilibriumPosition {
     /// In closed form.
     Exact(Expr),
-    /// By its number alone.
+    /// A numerical value.
     Rounded(f64),
 }
 
-/// The sides of corners on which there is no force at rest, where letters decide them; nothing
-/// where there is one all the same.
+/// The sides of corners on which there is no force at rest, where letters decide them; `None` if
+/// there is one all the same.
 fn rests_beside_corners(
     still: &Expr,
     coordinate: Symbol,
@@ -380,13 +384,13 @@ fn rests_beside_corners(
 /// The equation in the deviation from a place.
 fn seen_from(
     oscillator: &Oscillator,
-    place: &Place,
+    place: &EquilibriumPosition,
     degree: Option<u32>,
 ) -> Result<Centred, OscillatorError> {
     let coordinate = oscillator.coordinate;
     let position = match place {
-        Place::Exact(position) => position.clone(),
-        Place::Rounded(value) => Expr::number(rounded_to(*value, 17)),
+        EquilibriumPosition::Exact(position) => position.clone(),
+        EquilibriumPosition::Rounded(value) => Expr::number(rounded_to(*value, 17)),
     };
     let number = position.evaluate(&BTreeMap::new()).ok();
     let mut centred = Centred {
@@ -394,10 +398,10 @@ fn seen_from(
         written: position.clone(),
         ..Centred::at_origin(oscillator)
     };
-    let simple =
-        matches!(place, Place::Exact(_)) && position.to_polynomial(&mut |_| None)?.is_some();
+    let simple = matches!(place, EquilibriumPosition::Exact(_))
+        && position.to_polynomial(&mut |_| None)?.is_some();
     if simple {
-        centred.oscillator.force = moved(&oscillator.force, coordinate, &position)?;
+        centred.oscillator.force = shifted_force(&oscillator.force, coordinate, &position)?;
         return Ok(centred);
     }
     if let (Some(degree), Some(number)) = (degree, number) {
@@ -412,7 +416,7 @@ fn seen_from(
         centred.oscillator.force = &oscillator.force - &at_rest;
         return Ok(centred);
     }
-    // What stands for the equilibrium is positive wherever that is known, as edges of barriers are
+    // The symbol of the equilibrium is positive if its sign is known, as edges of barriers are
     // taken to be.
     let negative = number.is_some_and(|number| number < 0.0);
     let symbol = fresh(&format!("{coordinate}_e"), &oscillator.names());

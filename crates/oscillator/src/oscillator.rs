@@ -1,7 +1,7 @@
 //! The question: an equation of motion in normal form.
 //!
 //! In comes an equation as text or as [`Equation`]; out goes an [`Oscillator`], its force taken
-//! apart by what its terms do, and expanded about rest. What is no oscillator, or cannot be
+//! apart by what its terms do, and expanded about rest. What is not an oscillator, or cannot be
 //! expanded, is an [`OscillatorError`] that names the term.
 //!
 //! ```text
@@ -121,7 +121,8 @@ impl Oscillator {
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
         let force = Expr::divide(&rest, &mass)?;
-        // Where the force has a pole there no motion comes to rest; elsewhere the mass is another.
+        // If the force has a pole there, no motion comes to rest; otherwise the mass is the
+        // problem.
         let vanishes = at_rest(&mass, coordinate).is_ok_and(|mass| mass.is_zero());
         if vanishes && at_rest(&force, coordinate).is_ok() {
             return Err(OscillatorError::VanishingMass(mass.to_string()));
@@ -145,14 +146,14 @@ impl Oscillator {
         })
     }
 
-    /// The same equation, to be seen from this equilibrium.
+    /// Returns the equation, to be solved about this equilibrium.
     #[must_use]
     pub fn about(mut self, equilibrium: Expr) -> Self {
         self.about = Some(equilibrium);
         self
     }
 
-    /// The same equation with exact values for some of its parameters.
+    /// Returns the equation with exact values for some of its parameters.
     ///
     /// # Errors
     /// A value at which a term has none.
@@ -171,7 +172,7 @@ impl Oscillator {
 
     /// Returns the equation with the names that an answer uses for its amplitudes and its
     /// frequency, `A`, `a` and `omega`, kept [apart](Symbol::apart) from those of the answer: the
-    /// answer then writes other [`Letters`].
+    /// answer then writes other [`ResultSymbols`].
     ///
     /// # Errors
     /// An expression beyond all limits.
@@ -207,18 +208,18 @@ impl Oscillator {
 
     /// The letters of amplitude and frequency in what is derived from this equation: those in force
     /// on this thread, else the ones that the equation leaves free.
-    pub fn letters(&self) -> Letters {
-        Letters::current().unwrap_or_else(|| {
+    pub fn letters(&self) -> ResultSymbols {
+        ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.own_names().collect();
-            Letters::beside(&own, self.force.contains(Symbol::new("t")))
+            ResultSymbols::avoiding(&own, self.force.contains(Symbol::new("t")))
         })
     }
 
     /// The symbol that a person means by this name: one of the equation, or else the one that is
     /// written so in the answer.
-    pub fn meant(&self, name: Symbol) -> Symbol {
+    pub fn resolve_symbol(&self, name: Symbol) -> Symbol {
         let own: Vec<Symbol> = self.own_names().collect();
-        self.letters().meant(name, &own)
+        self.letters().resolve(name, &own)
     }
 
     /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be
@@ -258,7 +259,7 @@ impl Oscillator {
     /// method introduces is named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let letters = self.letters();
-        let letters = letters.unusual().map(|(_, written)| written);
+        let letters = letters.renamed().map(|(_, written)| written);
         self.own_names().chain(letters).collect()
     }
 
@@ -335,7 +336,7 @@ impl Oscillator {
     /// An unknown name, or several parameters that would do.
     pub fn small_parameter(&self, asked: Option<&str>) -> Result<SmallParameter, OscillatorError> {
         if let Some(name) = asked {
-            let symbol = self.meant(Symbol::new(name));
+            let symbol = self.resolve_symbol(Symbol::new(name));
             return match symbol {
                 AMPLITUDE | FIRST_HARMONIC => Ok(SmallParameter::Amplitude),
                 _ if self.parameters.contains(&symbol) => Ok(SmallParameter::Parameter(symbol)),
@@ -405,13 +406,14 @@ impl Oscillator {
             return Ok(Some(degree));
         }
         let mut names = NamedConstants::new(self);
-        let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
+        let polynomial =
+            self.force.to_polynomial(&mut |constant| names.symbol_of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
         Ok(range.filter(|range| range.0 >= 0).and_then(|range| u32::try_from(range.1).ok()))
     }
 
     /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
-    /// What is left of a bead on a wire that turns, `-Omega^2 x`, is no such thing.
+    /// The remainder `-Omega^2 x` of a bead on a turning wire does not count.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
         let Ok(rest) =
             self.force.substitute(parameter, &Expr::zero()).and_then(|rest| rest.expand())

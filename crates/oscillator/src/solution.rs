@@ -1,8 +1,8 @@
 //! The answer: a frequency relation and a motion, with everything needed to use them rightly.
 //!
 //! In come the parts that a method found: a [`Law`], a displacement as a Fourier series, [`Note`]s,
-//! a derivation. Out go its values at numbers, its law in one line, its polynomials in the order in
-//! which people read them. Nothing here knows how a method works or how a format looks.
+//! a derivation. Out go its values at numbers, its law in one line, its polynomials in the order of
+//! printing. Nothing here knows how a method works or how a format looks.
 //!
 //! A formula without its amplitude convention, order and validity is half a formula, so all of them
 //! travel together.
@@ -31,15 +31,17 @@ pub use advice::{Advice, Setting};
 pub use branch::Branch;
 pub use convergence::Convergence;
 pub use degrees::Degrees;
-use law::Shown;
-pub use law::{ClosedForm, Law, Root, System};
+use law::DisplayedLaw;
+pub use law::{AlgebraicSystem, ClosedForm, Law, Root};
 pub use method::{Counts, Method};
 pub use modulation::Modulation;
 pub use note::Note;
 pub use response::Response;
 pub use sum::Sum;
 
-pub use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, Step};
+pub use crate::derivation::{
+    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, Step,
+};
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::exact::polynomial::Monomial;
@@ -48,10 +50,10 @@ use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Equation, Expr};
 use crate::series::FourierSeries;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, ResultSymbols};
 use crate::symbol::{Symbol, fresh, phase_beside};
 
-/// What the amplitude in a formula measures.
+/// The definition of the amplitude in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AmplitudeConvention {
     /// `A` = x(0) minus the equilibrium, with x'(0) = 0.
@@ -92,7 +94,8 @@ impl AmplitudeConvention {
         }
     }
 
-    /// What the symbol is in a motion of this coordinate: `A = x(0) - equilibrium, x'(0) = 0`.
+    /// The definition of the symbol for a motion of this coordinate:
+    /// `A = x(0) - equilibrium, x'(0) = 0`.
     pub fn in_words(self, coordinate: Symbol) -> String {
         match self {
             Self::Initial => format!(
@@ -107,14 +110,14 @@ impl AmplitudeConvention {
 /// A symbol that the program introduced, and what it stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
-    /// For example `omega0`.
+    /// The symbol, for example `omega0`.
     pub symbol: Symbol,
-    /// For example `sqrt(k)`.
+    /// Its meaning, for example `sqrt(k)`.
     pub meaning: Expr,
 }
 
 impl Definition {
-    /// The meaning as people read it.
+    /// The meaning as it is printed.
     pub fn meaning_in_words(&self) -> String {
         constant_in_words(&self.meaning)
     }
@@ -132,7 +135,7 @@ pub fn constant_in_words(value: &Expr) -> String {
 /// A number with more signs than this must be a rounded one.
 const MANY: usize = 16;
 
-/// The number that a constant is, where it is a fraction of so many digits that it must be a
+/// The number that a constant is, where it is a fraction of this many digits that it must be a
 /// rounded number.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
     value.as_number().filter(|number| !number.is_integer() && number.to_string().len() > MANY)
@@ -144,7 +147,7 @@ pub struct LimitCycle {
     /// The amplitude, in the convention of the solution; to leading order where the motion is left
     /// out.
     pub amplitude: Polynomial,
-    /// Which of the cycles it is, counted from one.
+    /// Number of this cycle, counted from one.
     pub number: usize,
     /// All limit cycles of the equation that start from a harmonic motion, smallest first.
     pub cycles: Vec<LeadingCycle>,
@@ -157,8 +160,8 @@ pub struct LimitCycle {
 pub struct LeadingCycle {
     /// Its amplitude where the small parameter vanishes.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` at a
-    /// multiple root of the equation for the amplitude, which says neither.
+    /// An expression that is positive if the cycle attracts and negative if it repels; `None` at a
+    /// multiple root of the equation for the amplitude, which does not decide.
     pub attracts_where: Option<Expr>,
 }
 
@@ -190,7 +193,7 @@ impl LeadingCycle {
 pub struct Solution {
     /// The equation as it was understood, `x'' + f = 0`.
     pub equation: Equation,
-    /// Who derived it.
+    /// The method of the derivation.
     pub method: Method,
     /// Highest power kept, inclusive, of the small parameter.
     pub order: u32,
@@ -199,7 +202,7 @@ pub struct Solution {
     /// The parameter in which the expansion runs; the amplitude symbol where it runs in the
     /// amplitude.
     pub small_parameter: Symbol,
-    /// What the amplitude symbol measures.
+    /// The definition of the amplitude symbol.
     pub amplitude: AmplitudeConvention,
     /// The parameters of the equation, in alphabetical order.
     pub parameters: Vec<Symbol>,
@@ -207,7 +210,7 @@ pub struct Solution {
     pub definitions: Vec<Definition>,
     /// The equilibrium about which the motion swings; `A` is measured from it.
     pub equilibrium: Expr,
-    /// What ties the frequency to the amplitude.
+    /// The law of frequency and amplitude.
     pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomials>,
@@ -220,17 +223,17 @@ pub struct Solution {
     pub modulation: Option<Modulation>,
     /// Driven motions: the frequency-response equation and what follows from it.
     pub response: Option<Response>,
-    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no
+    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is not a
     /// fraction.
     pub numerical: bool,
-    /// What is known of where the formula holds.
+    /// Notes on the validity of the formula.
     pub validity: Vec<Note>,
-    /// How far the series of omega^2 converges, where that has been looked for.
+    /// Nearest singularity of the series of omega^2; `None` if it was not looked for.
     pub convergence: Option<Convergence>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
-    /// What precedes the orders, or the derivation of any other method, line by line.
-    pub derivation: Vec<Line>,
+    /// Lines in front of the orders, or the derivation of any other method.
+    pub derivation: Vec<DerivationLine>,
 }
 
 impl Solution {
@@ -347,7 +350,7 @@ impl Solution {
     pub fn names(&self) -> Vec<Symbol> {
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         let letters = self.letters();
-        let letters = letters.unusual().map(|(_, written)| written);
+        let letters = letters.renamed().map(|(_, written)| written);
         self.names_of_equation().chain(defined).chain(letters).collect()
     }
 
@@ -358,11 +361,11 @@ impl Solution {
 
     /// The letters of amplitude and frequency: those in force on this thread, else the ones that
     /// the equation leaves free. They are how the symbols of this answer print while they are
-    /// [in force](Letters::in_force).
-    pub fn letters(&self) -> Letters {
-        Letters::current().unwrap_or_else(|| {
+    /// [in force](ResultSymbols::in_force).
+    pub fn letters(&self) -> ResultSymbols {
+        ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.names_of_equation().collect();
-            Letters::beside(&own, self.equation.left.contains(Symbol::new("t")))
+            ResultSymbols::avoiding(&own, self.equation.left.contains(Symbol::new("t")))
         })
     }
 
@@ -445,8 +448,8 @@ impl Solution {
         self.validity.push(Note::RoundedCoefficients);
     }
 
-    /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one
-    /// order.
+    /// The meaning of the order in words: `to order 4 in A`, `3 harmonics`; empty for methods of
+    /// one order.
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
@@ -490,21 +493,23 @@ impl Solution {
         }
         let shown = self.law.in_one_line();
         let law = match shown {
-            Shown::Squared(law) => format!("{FREQUENCY}^2 = {}", self.ordered(law)),
-            Shown::Frequency(law) => format!("{FREQUENCY} = {}", self.ordered(law)),
-            Shown::Relation(relation) => format!("0 = {}", self.ordered(relation)),
-            Shown::Closed(form) if self.numerical => {
+            DisplayedLaw::Squared(law) => format!("{FREQUENCY}^2 = {}", self.ordered(law)),
+            DisplayedLaw::Frequency(law) => format!("{FREQUENCY} = {}", self.ordered(law)),
+            DisplayedLaw::Relation(relation) => format!("0 = {}", self.ordered(relation)),
+            DisplayedLaw::Closed(form) if self.numerical => {
                 format!("{} in closed form, with rounded coefficients", form.name())
             }
-            Shown::Closed(form) => form.to_string(),
-            Shown::Quadrature(_) | Shown::System(_)
+            DisplayedLaw::Closed(form) => form.to_string(),
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_)
                 if self.method.counts() == Counts::Harmonics =>
             {
                 let harmonics = self.balanced_harmonics();
                 let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
                 format!("harmonics {} balanced, solved by numbers", kept.join(", "))
             }
-            Shown::Quadrature(_) | Shown::System(_) => self.by_numbers().unwrap_or_default(),
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_) => {
+                self.by_numbers().unwrap_or_default()
+            }
         };
         let definitions = self.definitions_of_formula().into_iter();
         let definitions = definitions.map(|definition| {
@@ -513,12 +518,12 @@ impl Solution {
         std::iter::once(law).chain(definitions).collect()
     }
 
-    /// The definitions of the law in one line: none where words stand for it.
+    /// The definitions of the law in one line: empty if words stand for it.
     pub fn definitions_of_formula(&self) -> Vec<&Definition> {
         let shown = self.law.in_one_line();
         match shown {
-            Shown::Closed(_) if self.numerical => vec![],
-            Shown::Quadrature(_) | Shown::System(_)
+            DisplayedLaw::Closed(_) if self.numerical => vec![],
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_)
                 if self.method.counts() == Counts::Harmonics =>
             {
                 vec![]
@@ -553,7 +558,7 @@ impl Solution {
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that
     /// continues omega0^2 from amplitude zero or, about an unstable equilibrium, that of the first
-    /// order; `None` where a value is missing or the branch ends before.
+    /// order; `None` if a value is missing or the branch ends before.
     pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         if let Some(law) = self.law.frequency_squared() {
             return self.evaluate(law, value_of).ok();
@@ -572,8 +577,8 @@ impl Solution {
         Some(frequency * frequency.abs())
     }
 
-    /// The value of an expression in the parameters, the amplitude and the definitions; `None`
-    /// where it has none.
+    /// The value of an expression in the parameters, the amplitude and the definitions; `None` if
+    /// it has none.
     fn evaluate_expression(
         &self,
         expression: &Expr,
@@ -588,8 +593,8 @@ impl Solution {
     }
 
     /// The branch of the relation that starts at the linear frequency or, about an unstable
-    /// equilibrium, at the first order, at given values; `None` where there is no relation, a value
-    /// is missing, or the branch has no start.
+    /// equilibrium, at the first order, at given values; `None` if there is no relation, a value is
+    /// missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.law.relation()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
@@ -605,13 +610,13 @@ impl Solution {
             for (symbol, size) in &sizes {
                 coefficient = coefficient.product(size.power(monomial.exponent(*symbol)));
             }
-            branch::Term {
+            branch::BranchTerm {
                 coefficient,
                 amplitude: monomial.exponent(amplitude),
                 frequency: monomial.exponent(omega) / 2,
             }
         };
-        let terms: Vec<branch::Term> = relation.terms().map(term).collect();
+        let terms: Vec<branch::BranchTerm> = relation.terms().map(term).collect();
         branch::follow(&terms, value_of(amplitude).unwrap_or(0.0), self.precision())
     }
 
@@ -623,13 +628,13 @@ impl Solution {
         closed_root::is_the_branch(relation, self.amplitude.symbol()).then_some(form)
     }
 
-    /// How far the coefficients are rounded, relatively: to fifteen digits, or as any double.
+    /// Relative rounding error of the coefficients: of fifteen digits, or of a double.
     fn precision(&self) -> f64 {
         if self.numerical { 5e-15 } else { f64::EPSILON }
     }
 
-    /// How far rounding of the coefficients may move omega^2, relatively, where the law is a
-    /// polynomial: its terms cancel far outside of its reach. `None` where a value is missing.
+    /// Bound of the relative change of omega^2 by rounding of the coefficients, if the law is a
+    /// polynomial: its terms cancel far outside of its range. `None` if a value is missing.
     pub fn rounding_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let (law, power) = match (self.law.frequency_squared(), self.law.frequency()) {
             (Some(law), _) => (law, 1.0),
@@ -639,9 +644,9 @@ impl Solution {
         Some(power * self.precision() * size / value.abs())
     }
 
-    /// How far rounding of the coefficients may move the swing about the equilibrium, over the
-    /// amplitude: the terms of its harmonics cancel far outside of its reach. `None` if a value is
-    /// missing, or the amplitude is zero.
+    /// Bound of the change of the deviation from the equilibrium by rounding of the coefficients,
+    /// over the amplitude: the terms of its harmonics cancel far outside of its range. `None` if a
+    /// value is missing, or the amplitude is zero.
     pub fn rounding_of_motion_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let amplitude = value_of(self.amplitude.symbol()).filter(|amplitude| *amplitude != 0.0)?;
         let harmonics = self.displacement.harmonics();

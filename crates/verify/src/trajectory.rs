@@ -8,9 +8,9 @@
 //! `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
 //! duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a
 //! mechanism has energies, and the same by the other integrator to judge it. Power series go first;
-//! where they end, as at a root or a touch that is no power series in time, Runge-Kutta takes the
-//! whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')` between
-//! two bodies, holds something, it stays until the force on it is more than friction bears.
+//! where they end, as at a root or a touch that is not a power series in time, Runge-Kutta takes
+//! the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')`
+//! between two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
 mod hold;
@@ -27,12 +27,14 @@ use thiserror::Error;
 
 use crate::expr::{CompiledFunction, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
-use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
+use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, Solver, System, SystemError, solve_together};
+use crate::system::{
+    Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
+};
 
-pub use section::{Crossing, MOST_CROSSINGS, Section};
+pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
@@ -40,38 +42,38 @@ use hold::{Layout, StateEquations};
 use root::roots_across_corners;
 use section::OnSection;
 
-/// What is followed, from where, and how long.
+/// An initial value problem: equations, initial state and duration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct TrajectoryRequest {
     /// The coordinates.
     pub coordinates: Vec<Symbol>,
     /// The equations, as they print, each `... = 0`.
     pub equations: Vec<Expr>,
     /// Coordinates and velocities with their rates.
     pub rates: Rates,
-    /// h and what changes it; nothing for an equation whose inertia depends on the position.
-    pub energy: Option<Energy>,
+    /// h and what changes it; `None` for an equation whose inertia depends on the position.
+    pub energy: Option<EnergyWithPowers>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
-    /// Where each coordinate begins and how fast, in the order of the states.
+    /// Initial positions and velocities, in the order of the states.
     pub start: Vec<f64>,
-    /// How long it is followed.
+    /// Duration, in the unit of time.
     pub duration: f64,
-    /// Where it is looked at, beside the times that are asked for.
-    pub section: Option<Section>,
-    /// From when on: what is before that has not settled.
+    /// The Poincaré section at which states are recorded beside the requested times.
+    pub section: Option<PoincareSection>,
+    /// Start of the recording: the motion before it has not settled.
     pub after: f64,
     /// Relative error of a step.
     pub tolerance: f64,
     /// Steps after which it ends.
     pub step_limit: usize,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
 /// An energy and what changes it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Energy {
+pub struct EnergyWithPowers {
     /// h in coordinates and velocities.
     pub value: Expr,
     /// The power of each force that has no part in h, by its name.
@@ -81,34 +83,34 @@ pub struct Energy {
 /// A motion.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
-    /// What was asked.
-    pub course: Course,
-    /// By which integrator it was followed.
+    /// The initial value problem that was solved.
+    pub course: TrajectoryRequest,
+    /// The integration method.
     pub integrator: Integrator,
-    /// The balance of energy; nothing where there is no energy.
-    pub balance: Option<Balance>,
-    pieces: Vec<Piece>,
+    /// The balance of energy; `None` if there is no energy.
+    pub balance: Option<EnergyBalance>,
+    pieces: Vec<TrajectorySegment>,
     on_section: OnSection,
-    reason: End,
+    reason: PathEnd,
 }
 
 /// The energy at the end, beside that of the start and the work in between.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// h at the start.
     pub start: f64,
     /// h at the end.
     pub end: f64,
-    /// What forces, dampers and moving constraints have done, all together.
+    /// Work of all forces, dampers and moving constraints together.
     pub work: f64,
-    /// What each of them has done, by its name.
+    /// Work of each of them, by its name.
     pub works: Vec<(String, f64)>,
     /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share:
     /// how far the account is off.
     pub residual: f64,
 }
 
-/// Why there is no motion.
+/// The reason why there is no motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
@@ -118,12 +120,12 @@ pub enum TrajectoryError {
     /// A value for a name that does not occur.
     #[error("there is a value for `{0}`, which does not occur")]
     Unknown(Symbol),
-    /// A start for a name that is no state.
+    /// A start for a name that is not a state.
     #[error("the start gives `{name}`, but the states are {states}")]
     NoState {
         /// The name.
         name: Symbol,
-        /// What there is.
+        /// The names of the states that there are.
         states: String,
     },
     /// A duration that is none.
@@ -140,7 +142,7 @@ pub enum TrajectoryError {
     /// The equations cannot be followed.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// No accelerations.
+    /// The mechanism has no accelerations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
     /// A step of algebra failed.
@@ -156,10 +158,10 @@ fn names(symbols: &[Symbol]) -> String {
 /// The times at which energy is accounted for.
 const ACCOUNTS: u32 = 2000;
 
-impl Course {
-    /// That of an equation of motion, from rest at zero for 50 units of time. Its energy is that of
-    /// the velocity and of all terms of the position alone that have a potential in closed form;
-    /// every other term works for itself.
+impl TrajectoryRequest {
+    /// The initial value problem of an equation of motion, from rest at zero for 50 units of time.
+    /// Its energy is that of the velocity and of all terms of the position alone that have a
+    /// potential in closed form; every other term has a work of its own.
     pub fn of_equation(oscillator: &Oscillator) -> Self {
         let coordinate = oscillator.coordinate;
         let velocity = oscillator.velocity();
@@ -171,17 +173,17 @@ impl Course {
                 states: vec![coordinate, velocity],
                 right: vec![Expr::from(velocity), -&oscillator.force],
             },
-            energy::of(oscillator),
+            energy::energy_of_equation(oscillator),
         )
     }
 
-    /// That of a mechanism, likewise.
+    /// The initial value problem of a mechanism, from rest at zero for 50 units of time.
     ///
     /// # Errors
     /// Energies that give no accelerations.
     pub fn of_mechanism(
         mechanism: &Mechanism,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
     ) -> Result<Self, TrajectoryError> {
         let lagrangian = &mechanism.kinetic - &mechanism.potential;
         let mut energy = vec![-&lagrangian];
@@ -198,7 +200,7 @@ impl Course {
         }
         powers.push(("dissipation".to_owned(), Expr::sum(lost)));
         powers.retain(|(_, power)| !power.is_zero());
-        let energy = Energy { value: Expr::sum(energy), powers };
+        let energy = EnergyWithPowers { value: Expr::sum(energy), powers };
         Ok(Self::new(
             mechanism.coordinates.clone(),
             equations.left.clone(),
@@ -211,7 +213,7 @@ impl Course {
         coordinates: Vec<Symbol>,
         equations: Vec<Expr>,
         rates: Rates,
-        energy: Option<Energy>,
+        energy: Option<EnergyWithPowers>,
     ) -> Self {
         Self {
             start: vec![0.0; rates.states.len()],
@@ -223,16 +225,16 @@ impl Course {
             duration: 50.0,
             section: None,
             after: 0.0,
-            tolerance: Options::default().tolerance,
-            step_limit: Options::default().step_limit,
+            tolerance: SystemOptions::default().tolerance,
+            step_limit: SystemOptions::default().step_limit,
             interrupt: Interrupt::default(),
         }
     }
 
-    /// Puts a state at its start: `x`, `x'`.
+    /// Sets the initial value of a state: `x`, `x'`.
     ///
     /// # Errors
-    /// A name that is no state.
+    /// A name that is not a state.
     pub fn begin(&mut self, name: Symbol, value: f64) -> Result<(), TrajectoryError> {
         match self.rates.states.iter().position(|state| *state == name) {
             Some(place) => self.start[place] = value,
@@ -253,7 +255,7 @@ impl Course {
 
     /// The names without whose numbers nothing moves.
     fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
-        let section = self.section.iter().map(Section::expression);
+        let section = self.section.iter().map(PoincareSection::expression);
         let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -287,12 +289,12 @@ impl Course {
     /// ```
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
-    /// use lindstedt::trajectory::Course;
+    /// use lindstedt::trajectory::TrajectoryRequest;
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
     /// course.begin("x".into(), 1.0)?;
     /// let motion = course.follow()?;
-    /// assert!((motion.at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
+    /// assert!((motion.states_at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(self) -> Result<Trajectory, TrajectoryError> {
@@ -308,7 +310,7 @@ impl Course {
         accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
         match first {
-            Ok(motion) if motion.reason != End::Singular => Ok(motion),
+            Ok(motion) if motion.reason != PathEnd::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
                 let second = self.followed_by(Integrator::RungeKutta, accounted);
                 match (&first, &second) {
@@ -324,7 +326,7 @@ impl Course {
     /// Follows the motion by this integrator alone.
     ///
     /// # Errors
-    /// As [`Course::follow`].
+    /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         self.followed_by(integrator, Accounted::Yes)
     }
@@ -404,8 +406,8 @@ impl Course {
         Ok(motion)
     }
 
-    fn options(&self, integrator: Integrator) -> Options {
-        Options {
+    fn options(&self, integrator: Integrator) -> SystemOptions {
+        SystemOptions {
             integrator,
             tolerance: self.tolerance,
             step_limit: self.step_limit,
@@ -499,7 +501,7 @@ struct Ready {
 
 impl Ready {
     /// The states at the start of a course; no work has been done.
-    fn start(&self, course: &Course) -> Vec<f64> {
+    fn start(&self, course: &TrajectoryRequest) -> Vec<f64> {
         let mut start = course.start.clone();
         start.resize(self.states.len(), 0.0);
         start
@@ -507,7 +509,7 @@ impl Ready {
 
     /// These equations take the numbers of a course that differs in its numbers and its start
     /// alone. `None` says that other numbers make other equations.
-    fn with_numbers(&self, course: &Course) -> Option<Self> {
+    fn with_numbers(&self, course: &TrajectoryRequest) -> Option<Self> {
         let mut values = self.values.clone();
         for (name, value) in &mut values {
             *value = *course.values.get(name)?;
@@ -528,23 +530,23 @@ impl Ready {
 
 /// A stretch of a motion: as the equations say, or with something held by dry friction.
 #[derive(Clone, Debug)]
-struct Piece {
+struct TrajectorySegment {
     from: f64,
     path: Path,
-    /// How all states are read from those of the path, where something is held; nothing where the
-    /// path has all states.
+    /// The map from the integrated states to all states on a sliding segment; `None` if all states
+    /// are integrated.
     layout: Option<Layout>,
     /// The number of events of the path that are those of the section; they come first.
     recorded: usize,
 }
 
-impl Piece {
+impl TrajectorySegment {
     fn end(&self) -> f64 {
         self.path.end()
     }
 
-    fn at(&self, time: f64) -> Option<Vec<f64>> {
-        let states = self.path.at(time)?;
+    fn states_at(&self, time: f64) -> Option<Vec<f64>> {
+        let states = self.path.states_at(time)?;
         Some(match &self.layout {
             None => states,
             Some(layout) => layout.states(time, &states),
@@ -559,7 +561,7 @@ impl Piece {
 
 /// The states at many times.
 struct Sampled {
-    /// Those of the times at which there are states.
+    /// The times at which states were requested.
     times: Vec<f64>,
     /// State by state the values then.
     columns: Vec<Vec<f64>>,
@@ -574,7 +576,7 @@ impl Sampled {
 
 impl Trajectory {
     /// The account of the energy.
-    fn account(&self) -> Option<Balance> {
+    fn account(&self) -> Option<EnergyBalance> {
         let energy = self.course.energy.as_ref()?;
         if !self.course.missing_for_energy().is_empty() {
             return None;
@@ -609,7 +611,7 @@ impl Trajectory {
             astray = astray.max((now - start - work).abs());
             moved = moved.max(now.abs()).max(work.abs()).max(largest);
         }
-        Some(Balance {
+        Some(EnergyBalance {
             start,
             end,
             work: sum(&works),
@@ -619,7 +621,7 @@ impl Trajectory {
     }
 
     /// An expression as a function of the time and the states, at the values of this motion; `None`
-    /// where a name has no value.
+    /// if a name has no value.
     fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
         let states = &self.course.rates.states;
         let moving: Vec<Symbol> =
@@ -631,10 +633,10 @@ impl Trajectory {
         Some(move |time: f64, state: &[f64]| function.call(&[&[time], state, &numbers].concat()))
     }
 
-    /// The states and the work so far; nothing outside of the motion.
+    /// The states and the work so far; `None` outside of the motion.
     fn all_at(&self, time: f64) -> Option<Vec<f64>> {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
-        self.pieces.get(place)?.at(time)
+        self.pieces.get(place)?.states_at(time)
     }
 
     /// One coordinate or velocity at a time.
@@ -642,7 +644,7 @@ impl Trajectory {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
         let piece = self.pieces.get(place)?;
         match piece.is_held() {
-            true => piece.at(time)?.get(state).copied(),
+            true => piece.states_at(time)?.get(state).copied(),
             false => piece.path.state_at(time, state),
         }
     }
@@ -660,7 +662,7 @@ impl Trajectory {
                 continue;
             }
             for time in own {
-                let Some(states) = piece.at(*time) else {
+                let Some(states) = piece.states_at(*time) else {
                     continue;
                 };
                 kept.push(*time);
@@ -674,7 +676,7 @@ impl Trajectory {
 
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,
     /// on a belt or on another body.
-    pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
+    pub fn sticking_intervals(&self) -> impl Iterator<Item = [f64; 2]> {
         let mut held: Vec<[f64; 2]> = Vec::new();
         for piece in self.pieces.iter().filter(|piece| piece.is_held()) {
             match held.last_mut() {
@@ -688,21 +690,21 @@ impl Trajectory {
 
     /// The time at which it ends.
     pub fn end(&self) -> f64 {
-        self.pieces.last().map_or(0.0, Piece::end)
+        self.pieces.last().map_or(0.0, TrajectorySegment::end)
     }
 
-    /// Why it ends there.
-    pub fn reason(&self) -> End {
+    /// The reason why it ends there.
+    pub fn reason(&self) -> PathEnd {
         self.reason
     }
 
     /// Whether it was followed as long as asked.
     pub fn is_complete(&self) -> bool {
-        self.reason == End::Reached
+        self.reason == PathEnd::Reached
     }
 
-    /// Coordinates, then velocities; nothing outside of the motion.
-    pub fn at(&self, time: f64) -> Option<Vec<f64>> {
+    /// Coordinates, then velocities; `None` outside of the motion.
+    pub fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let mut state = self.all_at(time)?;
         state.truncate(self.course.rates.states.len());
         Some(state)
@@ -716,7 +718,7 @@ impl Trajectory {
         let mut apart = vec![(0.0_f64, 0.0_f64); count];
         for index in 0..=ACCOUNTS {
             let time = end * f64::from(index) / f64::from(ACCOUNTS);
-            let (Some(one), Some(two)) = (self.at(time), other.at(time)) else {
+            let (Some(one), Some(two)) = (self.states_at(time), other.states_at(time)) else {
                 continue;
             };
             for (entry, (one, two)) in apart.iter_mut().zip(one.iter().zip(&two)) {
@@ -728,17 +730,17 @@ impl Trajectory {
     }
 }
 
-/// Why a motion ended, in words.
-pub fn in_words(end: End) -> &'static str {
+/// The reason why a motion ended, in words.
+pub fn in_words(end: PathEnd) -> &'static str {
     match end {
-        End::Reached => "at the time asked for",
-        End::Event(_) => "at an event",
-        End::StepLimit => "after as many steps as were allowed",
-        End::Singular => "where a state or its rate has no value, or no next step",
-        End::Overflow => "where a state leaves the range of numbers, 1e300",
-        End::Sticks => {
+        PathEnd::Reached => "at the time asked for",
+        PathEnd::Event(_) => "at an event",
+        PathEnd::StepLimit => "after as many steps as were allowed",
+        PathEnd::Singular => "where a state or its rate has no value, or no next step",
+        PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
+        PathEnd::Sticks => {
             "on a corner that the rates on both sides lead back to, where it is not followed"
         }
-        End::Interrupted => "interrupted",
+        PathEnd::Interrupted => "interrupted",
     }
 }

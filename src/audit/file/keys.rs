@@ -1,6 +1,6 @@
-//! Which keys a claim of each kind takes: one that would say nothing is refused by name.
+//! The keys of a claim of each kind: a key without effect is refused by name.
 
-use super::{Found, Section, Text, helped, mistake};
+use super::{ReadResult, Section, Text, helped, mistake};
 use crate::audit::quantity::{NAMES, is_a_name};
 use crate::spelling::nearest;
 use std::ops::Range;
@@ -50,9 +50,8 @@ pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
     [own, of_a_law, of_a_number].concat()
 }
 
-/// The quantity: one of [`KINDS`], a name of a number, or nothing where only what is missing is
-/// told.
-pub(super) fn kind(section: &Section) -> Found<&str> {
+/// The quantity: one of [`KINDS`], a name of a number, or empty if only what is missing is told.
+pub(super) fn kind(section: &Section) -> ReadResult<&str> {
     let Some(quantity) = &section.quantity else {
         return match section.needs.is_empty() {
             false => Ok(""),
@@ -76,7 +75,7 @@ pub(super) fn kind(section: &Section) -> Found<&str> {
 }
 
 /// Refuses what this quantity would not read.
-pub(super) fn check_keys(section: &Section, kind: &str) -> Found<()> {
+pub(super) fn check_keys(section: &Section, kind: &str) -> ReadResult<()> {
     let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
     let given: [(&str, Option<Range<usize>>); 19] = [
         ("formula", span(&section.formula)),

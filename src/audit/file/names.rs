@@ -1,8 +1,8 @@
 //! The names of a claim: each has a value, and each value is asked for.
 
 use super::values::{number, symbol};
-use super::{Found, Section, helped, mistake};
-use crate::audit::claim::{Claim, Quantity, Stated, Supposition};
+use super::{ReadResult, Section, helped, mistake};
+use crate::audit::claim::{Claim, ClaimQuantity, PrintedStatement, Supposition};
 use crate::audit::quantity::{NAMES, is_a_name};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -14,7 +14,7 @@ use toml::Spanned;
 /// The names that a question uses, through the values that they are made of.
 pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
     let mut formulas: Vec<Expr> = match &claim.question.quantity {
-        Quantity::Value(formula) | Quantity::Trend(formula) => vec![formula.clone()],
+        ClaimQuantity::Value(formula) | ClaimQuantity::Trend(formula) => vec![formula.clone()],
         _ => vec![],
     };
     let mut tables = vec![claim.question.values.clone()];
@@ -40,8 +40,8 @@ pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
 
 /// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks
 /// for.
-pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
-    if !matches!(claim.question.quantity, Quantity::Value(_) | Quantity::Trend(_)) {
+pub(super) fn check_names(section: &Section, claim: &Claim) -> ReadResult<()> {
+    if !matches!(claim.question.quantity, ClaimQuantity::Value(_) | ClaimQuantity::Trend(_)) {
         return Ok(());
     }
     let used = used(claim);
@@ -131,17 +131,17 @@ pub(super) fn asked_by<'a>(
 }
 
 /// Refuses values of a claim that nothing asks for.
-pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
+pub(super) fn check_values(section: &Section, claim: &Claim) -> ReadResult<()> {
     let quantity = &claim.question.quantity;
     let mut used = used(claim);
     let formulas = match quantity {
-        Quantity::Identity(formula) => vec![formula],
-        Quantity::Motion { kinetic, potential, force } => vec![kinetic, potential, force],
+        ClaimQuantity::Identity(formula) => vec![formula],
+        ClaimQuantity::Motion { kinetic, potential, force } => vec![kinetic, potential, force],
         _ => vec![],
     };
     if !formulas.is_empty() {
         let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
-            Stated::Formula(printed) => Some(printed),
+            PrintedStatement::Formula(printed) => Some(printed),
             _ => None,
         });
         let all = formulas.into_iter().chain(printed).chain(claim.question.values.values());
@@ -159,7 +159,7 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
     let supposed = section.suppose.iter().flat_map(|suppose| &suppose.get_ref().values);
     for (name, value) in tables.chain(supposed).flatten() {
         let symbol = symbol(name, value.span())?;
-        if !used.contains(&symbol) && *quantity != Quantity::Nothing {
+        if !used.contains(&symbol) && *quantity != ClaimQuantity::Nothing {
             return mistake(
                 value.span(),
                 format!("nothing in claim `{}` asks for `{name}`: leave it out", claim.id),

@@ -1,7 +1,7 @@
 //! Single values of a claims file: expressions, equations, methods, verdicts, each with its place
 //! for messages.
 
-use super::{Found, Mistake, Table, Text, mistake};
+use super::{Mistake, NamedValues, ReadResult, Text, mistake};
 use crate::audit::claim::Verdict;
 use crate::audit::printed::Rounding;
 use crate::catalog;
@@ -15,14 +15,14 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 
-pub(super) fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
+pub(super) fn table(table: &NamedValues) -> ReadResult<BTreeMap<Symbol, Expr>> {
     let row = |(name, value): (&String, &Spanned<toml::Value>)| {
         Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
     };
     table.iter().map(row).collect()
 }
 
-pub(super) fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
+pub(super) fn symbol(name: &str, span: Range<usize>) -> ReadResult<Symbol> {
     let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
     match found.filter(|symbol| symbol.name() == name) {
         Some(symbol) => Ok(symbol),
@@ -33,7 +33,7 @@ pub(super) fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
 }
 
 /// A number or a formula, exactly as it is typed.
-pub(super) fn number(value: &toml::Value, span: Range<usize>) -> Found<Expr> {
+pub(super) fn number(value: &toml::Value, span: Range<usize>) -> ReadResult<Expr> {
     match value {
         toml::Value::String(text) => parsed(text, span),
         toml::Value::Integer(number) => parsed(&number.to_string(), span),
@@ -42,11 +42,11 @@ pub(super) fn number(value: &toml::Value, span: Range<usize>) -> Found<Expr> {
     }
 }
 
-pub(super) fn expression(text: &Text) -> Found<Expr> {
+pub(super) fn expression(text: &Text) -> ReadResult<Expr> {
     parsed(text.get_ref(), text.span())
 }
 
-pub(super) fn parsed(text: &str, span: Range<usize>) -> Found<Expr> {
+pub(super) fn parsed(text: &str, span: Range<usize>) -> ReadResult<Expr> {
     parse_expression(text).map_err(|ParseError { message, help, .. }| Mistake {
         span,
         what: message,
@@ -55,14 +55,14 @@ pub(super) fn parsed(text: &str, span: Range<usize>) -> Found<Expr> {
 }
 
 /// A formula, or of an equation the difference of its sides.
-pub(super) fn equal_to_zero(text: &Text) -> Found<Expr> {
+pub(super) fn equal_to_zero(text: &Text) -> ReadResult<Expr> {
     match text.get_ref().split_once('=') {
         None => expression(text),
         Some((left, right)) => Ok(&parsed(left, text.span())? - &parsed(right, text.span())?),
     }
 }
 
-pub(super) fn equation(text: &Text) -> Found<Oscillator> {
+pub(super) fn equation(text: &Text) -> ReadResult<Oscillator> {
     let equation =
         catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
     Oscillator::parse(equation).or_else(|error| {
@@ -72,7 +72,7 @@ pub(super) fn equation(text: &Text) -> Found<Oscillator> {
     })
 }
 
-pub(super) fn method(text: &Text) -> Found<Method> {
+pub(super) fn method(text: &Text) -> ReadResult<Method> {
     let name = text.get_ref();
     Method::from_name(name).ok_or_else(|| {
         let near = nearest(name, Method::ALL.map(Method::name));
@@ -87,7 +87,7 @@ pub(super) fn method(text: &Text) -> Found<Method> {
     })
 }
 
-pub(super) fn convention(text: &Text) -> Found<AmplitudeConvention> {
+pub(super) fn convention(text: &Text) -> ReadResult<AmplitudeConvention> {
     match AmplitudeConvention::from_name(text.get_ref()) {
         Some(convention) => Ok(convention),
         None => mistake(
@@ -97,11 +97,11 @@ pub(super) fn convention(text: &Text) -> Found<AmplitudeConvention> {
     }
 }
 
-pub(super) fn rule(text: &Text) -> Found<Rule> {
+pub(super) fn rule(text: &Text) -> ReadResult<Rule> {
     text.get_ref().parse().or_else(|error| mistake(text.span(), format!("{error}")))
 }
 
-pub(super) fn rounding(text: &Text) -> Found<Rounding> {
+pub(super) fn rounding(text: &Text) -> ReadResult<Rounding> {
     match Rounding::from_name(text.get_ref()) {
         Some(rounding) => Ok(rounding),
         None => {
@@ -111,7 +111,7 @@ pub(super) fn rounding(text: &Text) -> Found<Rounding> {
     }
 }
 
-pub(super) fn verdict(text: &Text) -> Found<Verdict> {
+pub(super) fn verdict(text: &Text) -> ReadResult<Verdict> {
     match Verdict::from_name(text.get_ref()) {
         Some(verdict) => Ok(verdict),
         None => {
@@ -121,7 +121,7 @@ pub(super) fn verdict(text: &Text) -> Found<Verdict> {
     }
 }
 
-pub(super) fn tolerance(number: &Spanned<f64>) -> Found<f64> {
+pub(super) fn tolerance(number: &Spanned<f64>) -> ReadResult<f64> {
     let value = *number.get_ref();
     match value.is_finite() && value > 0.0 {
         true => Ok(value),

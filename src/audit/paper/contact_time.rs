@@ -1,6 +1,6 @@
 //! The contact time of the paper beside that of every reading of the contact.
 
-use crate::impact::{Quantity, SiImpact};
+use crate::impact::{ImpactQuantity, SiImpact};
 
 /// The contact time that the paper prints after its equation (15), in s: compared with, never
 /// computed from.
@@ -20,9 +20,9 @@ pub const CONTACT_TIME: f64 = 9.258e-8;
 /// assert!(ratio.is_some_and(|ratio| ratio > 1000.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn over_contact_time(si: &SiImpact) -> Quantity {
+pub fn over_contact_time(si: &SiImpact) -> ImpactQuantity {
     let over = |time: f64| time / CONTACT_TIME;
-    Quantity {
+    ImpactQuantity {
         name: "duration / printed",
         runge_kutta: over(si.duration.runge_kutta),
         closed_forms: si.duration.closed_forms.iter().copied().map(over).collect(),

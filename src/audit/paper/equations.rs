@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::mechanics::dimension::{Dimension, check, dimension};
-use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion};
+use crate::mechanics::{EquationsOfMotion, Groups, MechanicsError, Mechanism, MechanismQuestion};
 use crate::symbol::Symbol;
 
 /// An equation of the paper.
@@ -79,7 +79,7 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
         // A torque over omega x': that is what equations (5) and (7) make of it.
         ("mu4", [1, 2, 0]),
     ]
-    .map(|(name, exponents)| (Symbol::new(name), Dimension::of(exponents)))
+    .map(|(name, exponents)| (Symbol::new(name), Dimension::from_exponents(exponents)))
     .into()
 }
 
@@ -107,9 +107,9 @@ pub fn findings() -> Result<Vec<Finding>, MechanicsError> {
     let units = units();
     let all = mechanism.all_units(&units);
     let equations = mechanism.equations()?;
-    let groups = Groups::of(&mechanism, &equations, &units)?;
+    let groups = Groups::from_mechanism(&mechanism, &equations, &units)?;
     let read = |text: &str| text.parse::<Expr>().unwrap_or_else(|_| Expr::zero());
-    let energy = Dimension::of([1, 2, -2]);
+    let energy = Dimension::from_exponents([1, 2, -2]);
     let mut findings = vec![kinetic(&mechanism, &energy, &all)?];
     let potential = check(&read(POTENTIAL), &energy, &all, "potential energy");
     findings.push(Finding {
@@ -134,7 +134,7 @@ pub fn findings() -> Result<Vec<Finding>, MechanicsError> {
         findings.push(Finding {
             equation: equation.to_owned(),
             printed: printed.to_owned(),
-            agrees: Some(found == Dimension::of(unit)),
+            agrees: Some(found == Dimension::from_exponents(unit)),
             words: format!("{words}: {found}"),
         });
     }
@@ -175,7 +175,7 @@ fn kinetic(
 
 /// Equation (5): its swing term by term, its contact by its unit.
 fn equation_of_motion(
-    equations: &Equations,
+    equations: &EquationsOfMotion,
     all: &BTreeMap<Symbol, Dimension>,
 ) -> Result<Finding, MechanicsError> {
     let swing: Expr = PRINTED_SWING.parse().unwrap_or_else(|_| Expr::zero());
@@ -189,7 +189,7 @@ fn equation_of_motion(
     let difference = (&own - &swing).expand()?;
     let force: Expr = CONTACT_FORCE.parse().unwrap_or_else(|_| Expr::zero());
     let per_inertia: Expr = "1/(m*L^2)".parse().unwrap_or_else(|_| Expr::one());
-    let rate = Dimension::of([0, 0, -2]);
+    let rate = Dimension::from_exponents([0, 0, -2]);
     let contact = check(&(&force * &per_inertia), &rate, all, "equation of motion");
     let lever =
         check(&(force * per_inertia * Expr::symbol("l")), &rate, all, "equation of motion").is_ok();

@@ -60,7 +60,7 @@ fn has_digits(printed: &str, number: f64) -> [bool; 2] {
 
 /// A printed number, and how the number that belongs there comes to its digits with some pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Entry {
+pub struct PrintedDigits {
     /// The entry as it is printed.
     pub printed: &'static str,
     /// Whether they are those of the rounded number.
@@ -69,8 +69,8 @@ pub struct Entry {
     pub cut: bool,
 }
 
-impl Entry {
-    fn of(printed: &'static str, number: f64) -> Self {
+impl PrintedDigits {
+    fn new(printed: &'static str, number: f64) -> Self {
         let [rounded, cut] = has_digits(printed, number);
         Self { printed, rounded, cut }
     }
@@ -93,7 +93,7 @@ pub struct TableRow {
     pub laws: SpeedRow,
     /// The printed value and error at a speed of the paper, with what the best pi makes of them;
     /// nothing at any other speed.
-    pub printed: Option<[Entry; 2]>,
+    pub printed: Option<[PrintedDigits; 2]>,
 }
 
 /// The number of printed entries that come out with one value of pi.
@@ -112,11 +112,12 @@ pub struct PiReading {
 }
 
 impl PiReading {
-    fn of(name: &'static str, value: f64) -> Self {
-        let entries: Vec<Entry> =
+    fn new(name: &'static str, value: f64) -> Self {
+        let entries: Vec<PrintedDigits> =
             SPEEDS.iter().flat_map(|(speed, printed)| entries(*speed, printed, value)).collect();
-        let count =
-            |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
+        let count = |wanted: fn(&PrintedDigits) -> bool| {
+            entries.iter().filter(|entry| wanted(entry)).count()
+        };
         Self {
             name,
             value,
@@ -137,38 +138,39 @@ impl PiReading {
     }
 }
 
-fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [Entry; 2] {
+fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [PrintedDigits; 2] {
     [
-        Entry::of(printed.value, arctangent(speed, pi)),
-        Entry::of(printed.error, arctangent_error(speed, pi)),
+        PrintedDigits::new(printed.value, arctangent(speed, pi)),
+        PrintedDigits::new(printed.error, arctangent_error(speed, pi)),
     ]
 }
 
 /// Table 1, recomputed and searched.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct FrictionTable {
     /// The two laws at the paper's speeds, then at those asked for.
     pub rows: Vec<TableRow>,
     /// Every value of pi that was tried.
     pub readings: Vec<PiReading>,
     /// The least and the greatest pi with which every printed entry comes out, rounded or cut off;
-    /// nothing where none does.
+    /// `None` if none does.
     pub pi_range: Option<[f64; 2]>,
     best: usize,
 }
 
-impl Table {
+impl FrictionTable {
     /// Table 1 of the paper, and the speeds of a study beside its own.
     ///
     /// ```
-    /// use lindstedt::{audit::paper::Table, impact::friction};
+    /// use lindstedt::{audit::paper::FrictionTable, impact::friction};
     ///
-    /// let table = Table::of(&friction::study(friction::FrictionSetup::default())?);
+    /// let table = FrictionTable::from_study(&friction::study(friction::FrictionSetup::default())?);
     /// assert_eq!((table.best().name, table.best().either), ("3.14", table.entries()));
     /// # Ok::<(), friction::FrictionError>(())
     /// ```
-    pub fn of(study: &FrictionStudy) -> Self {
-        let readings: Vec<PiReading> = TRIED.map(|name| PiReading::of(name, value_of(name))).into();
+    pub fn from_study(study: &FrictionStudy) -> Self {
+        let readings: Vec<PiReading> =
+            TRIED.map(|name| PiReading::new(name, value_of(name))).into();
         // Of equals the first, which is the shortest.
         let best = (0..readings.len())
             .rev()
@@ -176,7 +178,7 @@ impl Table {
         let best = best.unwrap_or_default();
         let pi = readings[best].value;
         let own = SPEEDS.iter().map(|(speed, printed)| TableRow {
-            laws: SpeedRow::at(*speed),
+            laws: SpeedRow::new(*speed),
             printed: Some(entries(*speed, printed, pi)),
         });
         let others = study.rows.iter().map(|laws| TableRow { laws: *laws, printed: None });
@@ -227,13 +229,13 @@ mod tests {
         assert_eq!(has_digits("-0.99414", -0.994138), [true, false]);
         assert_eq!(has_digits("0.00000", -0.0), [true, true]);
         assert_eq!(has_digits("0.5", 0.61), [false, false]);
-        assert_eq!(Entry::of("-0.5", -0.54).treatment(), "either");
+        assert_eq!(PrintedDigits::new("-0.5", -0.54).treatment(), "either");
     }
 
     #[test]
     fn the_range_of_pi_is_where_every_entry_comes_out() {
         let [least, greatest] = pi_range().unwrap();
-        let all = |pi: f64| PiReading::of("", pi).either == 2 * SPEEDS.len();
+        let all = |pi: f64| PiReading::new("", pi).either == 2 * SPEEDS.len();
         let width = greatest - least;
         assert!(width > 0.0 && width < 1e-6, "{width}");
         for part in [0.01, 0.5, 0.99] {
@@ -251,13 +253,13 @@ mod tests {
     #[test]
     fn a_short_pi_overshoots() {
         let short = value_of("3.14");
-        let reading = PiReading::of("3.14", short);
+        let reading = PiReading::new("3.14", short);
         let speed = reading.exceeds_from().unwrap();
         assert!((arctangent(speed, short) - 1.0).abs() < 1e-14);
         assert!(
             arctangent(1e9, short) > 1.0005
                 && (reading.limit() - arctangent(1e12, short)).abs() < 1e-12
         );
-        assert_eq!(PiReading::of("pi", PI).exceeds_from(), None);
+        assert_eq!(PiReading::new("pi", PI).exceeds_from(), None);
     }
 }

@@ -10,4 +10,4 @@ mod friction;
 
 pub use contact_time::{CONTACT_TIME, is_reproduced, over_contact_time};
 pub use equations::{Finding, findings, mechanism, pendulum, units};
-pub use friction::{Entry, PiReading, PrintedSpeed, SPEEDS, Table, TableRow};
+pub use friction::{FrictionTable, PiReading, PrintedDigits, PrintedSpeed, SPEEDS, TableRow};

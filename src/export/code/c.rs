@@ -1,6 +1,6 @@
 //! C99, with the functions of `math.h`. A number that does not exist is `NAN`.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {
@@ -137,7 +137,7 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-fn beginning(used: &Used) -> String {
+fn beginning(used: &UsedRoutines) -> String {
     let pi = match used.has("PI") {
         true => "\nstatic const double PI = 3.14159265358979323846;\n",
         false => "",

@@ -1,6 +1,6 @@
 //! Julia, with the functions of `Base`. A number that does not exist is a `DomainError`.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {
@@ -72,7 +72,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     size: |name| format!("{name} = abs({name})"),
     positive: |name, _, reason| format!("{name} > 0 || throw(DomainError({name}, \"{reason}\"))"),
     breaks: Break::AfterSigns(""),
-    beginning: |_: &Used| String::new(),
+    beginning: |_: &UsedRoutines| String::new(),
     routine,
 };
 

@@ -1,7 +1,7 @@
 //! MATLAB and GNU Octave. Arguments may be arrays. A number that does not exist is NaN, or an error
 //! of `realsqrt` and its like, which stand for functions that would make complex numbers.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {
@@ -90,7 +90,7 @@ fn function(function: Function) -> &'static str {
 }
 
 /// A file has one function that others can call: here it hands the others out.
-fn beginning(used: &Used) -> String {
+fn beginning(used: &UsedRoutines) -> String {
     let handles = used.routines.iter().map(|name| format!("    motion.{name} = @{name};\n"));
     let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\n\
                 function motion = oscillator()\n";

@@ -1,5 +1,5 @@
-//! What the program of an answer consists of, whatever the language: `angular_frequency` by the law
-//! that is judged, `displacement` and its derivative `velocity`, and what is said of them.
+//! The program of an answer in any language: `angular_frequency` by the law that is judged,
+//! `displacement` and its derivative `velocity`, and comments on them.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::exact::{Doubles, Polynomial, Rational};
 use crate::export::rounding_noise;
 use crate::expr::{Expr, Function, Node, fresh};
 use crate::method::numbers::{is_odd_equation, law_takes_size, motion_takes_size};
-use crate::method::table::{Entry, Motion};
+use crate::method::table::{MethodEntry, MotionEvaluation};
 use crate::oscillator::Oscillator;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
@@ -43,11 +43,11 @@ pub(super) fn of_solution(
     if solution.slow().is_some() {
         return Err(NoCode::Slow);
     }
-    let names = Names::of(solution);
+    let names = ProgramNames::new(solution);
     let mut header = header(solution, verification, tolerance);
     let mut remarks: Vec<String> = Vec::new();
     let formula = formula(solution);
-    let is_exact = Entry::of(solution.method).motion == Motion::Exact;
+    let is_exact = MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact;
     let mut routines = Vec::new();
     match (&formula, verification) {
         (Ok(law), _) => {
@@ -59,7 +59,7 @@ pub(super) fn of_solution(
             } else if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
-            remarks.extend(unseen(oscillator, solution));
+            remarks.extend(unchecked_conditions(oscillator, solution));
             remarks.extend(at_rest(solution, law));
         }
         (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason.clone())),
@@ -92,7 +92,7 @@ pub(super) fn of_solution(
     Ok(Program { header, routines })
 }
 
-/// What a report says of the answer, without the formulas.
+/// The report of the answer without its formulas.
 fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> Vec<String> {
     let document = report::solution(solution, verification, tolerance);
     let is_formula = |block: &Block| {
@@ -133,7 +133,7 @@ fn wrapped(line: &str) -> Vec<String> {
 }
 
 /// The names of variables that a program introduces.
-struct Names {
+struct ProgramNames {
     amplitude: Symbol,
     time: Symbol,
     theta: Symbol,
@@ -149,8 +149,8 @@ struct Names {
     sign: Symbol,
 }
 
-impl Names {
-    fn of(solution: &Solution) -> Self {
+impl ProgramNames {
+    fn new(solution: &Solution) -> Self {
         let taken = solution.names();
         Self {
             amplitude: solution.amplitude.symbol(),
@@ -173,7 +173,7 @@ struct Law {
     squared: bool,
 }
 
-/// The law that is judged, or why it is no formula.
+/// The law that is judged, or why it is not a formula.
 fn formula(solution: &Solution) -> Result<Law, String> {
     let polynomial = |law: &Polynomial, squared| Law {
         value: ordered(solution, law),
@@ -217,11 +217,11 @@ fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
     Value::Sum(sum.terms().map(term).collect())
 }
 
-/// What the symbols of a formula are: the definitions behind them, and the arguments, the amplitude
+/// Resolves the symbols of a formula: the definitions behind them, and the arguments, the amplitude
 /// first.
 fn resolved<'a>(
     solution: &'a Solution,
-    names: &Names,
+    names: &ProgramNames,
     symbols: BTreeSet<Symbol>,
 ) -> (Vec<&'a Definition>, Vec<Symbol>) {
     let definitions = solution.definitions_behind(symbols.clone());
@@ -263,7 +263,12 @@ fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
     turned().unwrap_or(false)
 }
 
-fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &Law) -> Routine {
+fn frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    names: &ProgramNames,
+    law: &Law,
+) -> Routine {
     let (definitions, arguments) = resolved(solution, names, law.expression.symbols());
     let mut body = Vec::new();
     let by_size = arguments.contains(&names.amplitude) && law_takes_size(oscillator, solution);
@@ -309,7 +314,7 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     }
 }
 
-/// The same of what is known in numbers alone.
+/// The routine of a frequency that is known in numbers alone.
 fn constant_frequency(verification: &Verification) -> Result<Routine, NoCode> {
     let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
     let frequency = verification.frequency.ok_or_else(no_motion)?;
@@ -361,8 +366,8 @@ fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
     terms
 }
 
-/// What a function of the motion does before its result, and of what it is one.
-struct Beginning {
+/// The statements of a function of the motion before its result, and its arguments.
+struct FunctionPrologue {
     arguments: Vec<Symbol>,
     body: Vec<Statement>,
 }
@@ -370,7 +375,7 @@ struct Beginning {
 fn motion(
     oscillator: &Oscillator,
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     of_frequency: &[Symbol],
 ) -> [Routine; 2] {
     let harmonics = solution.displacement.harmonics();
@@ -396,7 +401,7 @@ fn motion(
         }
         body.extend(variables(definitions.clone()));
         body.push(Statement::Variable(names.omega, Value::Call(FREQUENCY, of_frequency.to_vec())));
-        // Where a definition stands in a motion, it stands there over omega^2.
+        // A definition enters the motion over omega^2.
         let scale = Expr::product([names.omega, names.amplitude].map(Expr::from));
         body.extend(digits(names, definitions.iter().map(|own| &own.meaning), names.omega, &scale));
         body.push(match sign {
@@ -405,13 +410,13 @@ fn motion(
             }
             Sign::Any | Sign::Opposite => angle(names),
         });
-        Beginning { arguments, body }
+        FunctionPrologue { arguments, body }
     };
     let symbols =
         |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
     let all: BTreeSet<Symbol> = harmonics.iter().flat_map(symbols).flatten().collect();
     let beginnings = match sign {
-        // What lets the turned motion begin at its amplitude is made of all harmonics.
+        // The shift that lets the turned motion begin at its amplitude contains all harmonics.
         Sign::HalfPeriod => {
             let all = &all | &solution.equilibrium.symbols();
             [beginning(all.clone()), beginning(all)]
@@ -455,13 +460,13 @@ fn motion(
         Sign::Opposite => Some(names.sign),
         _ => None,
     };
-    both(names, beginnings, before, displaced.collect(), moving.collect())
+    displacement_and_velocity(names, beginnings, before, displaced.collect(), moving.collect())
 }
 
 /// Displacement and velocity of a motion that is an expression in the time.
 fn written_motion(
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     motion: &Expr,
 ) -> Result<[Routine; 2], NoCode> {
     let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
@@ -483,7 +488,7 @@ fn written_motion(
 }
 
 /// `omega*t`, for a negative amplitude half a period later.
-fn turned_angle(names: &Names) -> Expr {
+fn turned_angle(names: &ProgramNames) -> Expr {
     let half = Expr::pi() * Expr::number(Rational::new(1.into(), 2.into()));
     Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
 }
@@ -493,7 +498,7 @@ fn turned_angle(names: &Names) -> Expr {
 /// with it.
 fn missing_at_start(
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     harmonics: &[(usize, Polynomial, Polynomial)],
 ) -> Expr {
     let half = Expr::number(Rational::new(1.into(), 2.into()));
@@ -507,15 +512,15 @@ fn missing_at_start(
 }
 
 /// `theta = omega*t`.
-fn angle(names: &Names) -> Statement {
+fn angle(names: &ProgramNames) -> Statement {
     let angle = Expr::from(names.omega) * Expr::from(names.time);
     Statement::Variable(names.theta, Value::Expression(angle))
 }
 
 /// Displacement and velocity; `before` stands before either.
-fn both(
-    names: &Names,
-    beginnings: [Beginning; 2],
+fn displacement_and_velocity(
+    names: &ProgramNames,
+    beginnings: [FunctionPrologue; 2],
     before: Option<Symbol>,
     displaced: Vec<Harmonic>,
     moving: Vec<Harmonic>,
@@ -562,9 +567,10 @@ fn both(
     [displacement, velocity]
 }
 
-/// How a motion whose formula is written for the size of the amplitude is that of a negative one.
+/// The transformation of a motion to negative amplitudes, if its formula holds for the size of the
+/// amplitude.
 enum Sign {
-    /// By the formula itself.
+    /// The formula holds for either sign.
     Any,
     /// With the opposite sign.
     Opposite,
@@ -572,7 +578,7 @@ enum Sign {
     HalfPeriod,
 }
 
-fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -> Sign {
+fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &ProgramNames) -> Sign {
     let harmonics = solution.displacement.harmonics();
     let amplitude: Polynomial = Polynomial::symbol(names.amplitude);
     let of_one_term = harmonics.iter().all(|(k, cosine, sine)| match k {
@@ -596,14 +602,14 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
 }
 
 /// Whether a symbol is defined by way of the amplitude.
-fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
+fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &ProgramNames) -> bool {
     let behind = solution.definitions_behind(BTreeSet::from([symbol]));
     behind.iter().any(|definition| definition.meaning.contains(names.amplitude))
 }
 
 /// The motion at given values.
 fn motion_in_numbers(
-    names: &Names,
+    names: &ProgramNames,
     motion: &FourierSeries<Doubles>,
     frequency: f64,
 ) -> [Routine; 2] {
@@ -623,23 +629,29 @@ fn motion_in_numbers(
             cosine: value(sine).map(|_| number(k as f64 * sine)),
             sine: value(cosine).map(|_| number(-(k as f64) * cosine)),
         });
-    let beginning = || Beginning {
+    let beginning = || FunctionPrologue {
         arguments: vec![names.time],
         body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
     };
-    both(names, [beginning(), beginning()], None, displaced.collect(), moving.collect())
+    displacement_and_velocity(
+        names,
+        [beginning(), beginning()],
+        None,
+        displaced.collect(),
+        moving.collect(),
+    )
 }
 
 /// Ends a function where the terms of its formulas cancel and more than half of the digits of
 /// `value*scale` with them: as the amplitude goes to zero, several of them become infinite and
 /// their sum does not.
 fn digits<'a>(
-    names: &Names,
+    names: &ProgramNames,
     formulas: impl IntoIterator<Item = &'a Expr>,
     value: Symbol,
     scale: &Expr,
 ) -> Vec<Statement> {
-    /// What terms may be larger than their sum.
+    /// Largest ratio of a term to the sum.
     const LARGEST: i64 = 1_000_000_000;
     let is_infinite = |term: &&Expr| term.substitute(names.amplitude, &Expr::zero()).is_err();
     let size = |formula: Expr| Expr::function(Function::Absolute, vec![formula]).ok();
@@ -666,9 +678,9 @@ fn digits<'a>(
     ]
 }
 
-/// What a program does not look at and the numbers of an answer do: whether there is a motion, and
-/// whether the force is defined all along it.
-fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
+/// Conditions that a program does not check and a numerical answer does: whether there is a motion,
+/// and whether the force is defined all along it.
+fn unchecked_conditions(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {
         Node::Function(function, _) => {
             use Function::{Acos, Asin, Log, Tan};
@@ -685,7 +697,7 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     if solution.validity.contains(&Note::Exact(ExactBy::Linear)) {
         return None;
     }
-    if Entry::of(solution.method).motion == Motion::Exact {
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact {
         return Some(
             "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing."
                 .to_owned(),
@@ -700,7 +712,7 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     })
 }
 
-/// What is said of a formula that has no value at rest.
+/// A remark on a formula that has no value at rest; `None` if it has one.
 fn at_rest(solution: &Solution, law: &Law) -> Option<String> {
     let amplitude = solution.amplitude.symbol();
     let limit = law.expression.substitute(amplitude, &Expr::zero());

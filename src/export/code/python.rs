@@ -1,7 +1,7 @@
 //! Python 3, with the module `math`; arrays element by element with NumPy. A number that does not
 //! exist is a `ValueError`.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {

@@ -1,6 +1,6 @@
 //! Rust, with the standard library. A number that does not exist is NaN.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {
@@ -36,7 +36,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     routine,
 };
 
-/// Of a number written out no power is a method: it has no type of its own.
+/// A power. That of a literal number cannot be a method call: it has no type of its own.
 fn power(base: &Base, exponent: Exponent) -> String {
     let Base { inside, operand, literal } = base;
     let call = |method: &str, argument: &str| match (literal, argument) {
@@ -87,7 +87,7 @@ fn function(function: Function) -> &'static str {
 }
 
 /// Names keep the letters that they have in the formulas.
-fn beginning(used: &Used) -> String {
+fn beginning(used: &UsedRoutines) -> String {
     let signatures =
         || used.text.lines().filter(|line| line.contains("fn ") || line.contains("let "));
     let name = |line: &str| {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_traits::{One, Signed, Zero};
 
 use super::{
-    Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value,
+    Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, UsedRoutines, Value,
     commented,
 };
 use crate::exact::Integer;
@@ -28,7 +28,7 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
     }
     let text = parts.join("\n");
     let routines: Vec<&str> = program.routines.iter().map(|routine| routine.name).collect();
-    let beginning = (syntax.beginning)(&Used { text: &text, routines: &routines });
+    let beginning = (syntax.beginning)(&UsedRoutines { text: &text, routines: &routines });
     let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
     let renamed: Vec<String> =
         renamed.map(|(symbol, name)| format!("{symbol} is {name} here")).collect();
@@ -70,7 +70,7 @@ fn functions(program: &Program) -> BTreeSet<Function> {
         _ => None,
     };
     let mut functions: BTreeSet<Function> = nodes.filter_map(function).collect();
-    // What all three are computed by stands with the first of them.
+    // The computation of all three functions is in the first of them.
     if [Function::JacobiCn, Function::JacobiDn].iter().any(|function| functions.contains(function))
     {
         functions.insert(Function::JacobiSn);
@@ -116,9 +116,9 @@ fn names(
     names
 }
 
-/// How tightly an expression holds together.
+/// The precedence of an expression.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
-enum Level {
+enum Precedence {
     Sum,
     Product,
     Power,
@@ -127,29 +127,29 @@ enum Level {
 
 /// A part of an expression as text.
 #[derive(Clone)]
-struct Piece {
+struct CodeFragment {
     /// Without its sign.
     text: String,
     /// Whether a minus stands before it.
     negative: bool,
-    level: Level,
+    level: Precedence,
     /// Whether it is made of numbers written out alone.
     literal: bool,
-    /// What stands below the line where this is a factor of a fraction.
-    below: Option<Box<Piece>>,
+    /// The denominator, if this is a factor of a fraction.
+    below: Option<Box<CodeFragment>>,
 }
 
-impl Piece {
-    fn new(text: String, level: Level) -> Self {
+impl CodeFragment {
+    fn new(text: String, level: Precedence) -> Self {
         Self { text, negative: false, level, literal: false, below: None }
     }
 
-    fn literal(text: String, level: Level) -> Self {
+    fn literal(text: String, level: Precedence) -> Self {
         Self { literal: true, ..Self::new(text, level) }
     }
 
     /// With its sign.
-    fn whole(&self) -> String {
+    fn with_sign(&self) -> String {
         match self.negative {
             true => format!("-{}", self.text),
             false => self.text.clone(),
@@ -157,15 +157,19 @@ impl Piece {
     }
 
     /// As an operand that must hold together this tightly.
-    fn at(&self, level: Level) -> String {
+    fn as_operand(&self, level: Precedence) -> String {
         match self.level < level || self.negative {
-            true => format!("({})", self.whole()),
+            true => format!("({})", self.with_sign()),
             false => self.text.clone(),
         }
     }
 
     fn as_base(&self) -> Base {
-        Base { inside: self.whole(), operand: self.at(Level::Atom), literal: self.literal }
+        Base {
+            inside: self.with_sign(),
+            operand: self.as_operand(Precedence::Atom),
+            literal: self.literal,
+        }
     }
 
     fn is_one(&self) -> bool {
@@ -214,7 +218,7 @@ impl Writer<'_> {
 
     /// A value between two texts, in as many lines as it needs.
     fn lines(&self, before: &str, value: &Value, after: &str) -> Result<Vec<String>, NoCode> {
-        let whole = self.value(value)?.whole();
+        let whole = self.value(value)?.with_sign();
         if before.len() + whole.len() + after.len() <= WIDTH {
             return Ok(vec![format!("{before}{whole}{after}")]);
         }
@@ -224,15 +228,15 @@ impl Writer<'_> {
                 let mut parts = Vec::new();
                 for (index, term) in terms.enumerate() {
                     let term = term?;
-                    let unsigned = Piece { negative: false, ..term.clone() };
+                    let unsigned = CodeFragment { negative: false, ..term.clone() };
                     let sign = match (index, term.negative) {
                         (0, false) => "",
                         (0, true) => "-",
                         (_, false) => "+ ",
                         (_, true) => "- ",
                     };
-                    let level = if index == 0 { Level::Sum } else { Level::Product };
-                    parts.push(format!("{sign}{}", unsigned.at(level)));
+                    let level = if index == 0 { Precedence::Sum } else { Precedence::Product };
+                    parts.push(format!("{sign}{}", unsigned.as_operand(level)));
                 }
                 parts
             }
@@ -250,45 +254,50 @@ impl Writer<'_> {
         Ok(broken(before, filled.collect(), after, &self.syntax.breaks))
     }
 
-    fn value(&self, value: &Value) -> Result<Piece, NoCode> {
+    fn value(&self, value: &Value) -> Result<CodeFragment, NoCode> {
         match value {
             Value::Expression(expression) => self.expression(expression),
             Value::Sum(parts) | Value::Lines(parts) => {
-                let parts: Vec<Piece> =
+                let parts: Vec<CodeFragment> =
                     parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 Ok(self.sum(&parts))
             }
             Value::Product(parts) => {
-                let parts: Vec<Piece> =
+                let parts: Vec<CodeFragment> =
                     parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 let negative = parts.iter().filter(|part| part.negative).count() % 2 == 1;
-                let unsigned = parts.into_iter().map(|part| Piece { negative: false, ..part });
-                let factors: Vec<Piece> = unsigned.filter(|part| !part.is_one()).collect();
+                let unsigned =
+                    parts.into_iter().map(|part| CodeFragment { negative: false, ..part });
+                let factors: Vec<CodeFragment> = unsigned.filter(|part| !part.is_one()).collect();
                 // A fraction stands before what it is multiplied with, without parentheses.
-                let first = factors.first().map(|first| Piece {
-                    level: if first.level == Level::Product { Level::Power } else { first.level },
+                let first = factors.first().map(|first| CodeFragment {
+                    level: if first.level == Precedence::Product {
+                        Precedence::Power
+                    } else {
+                        first.level
+                    },
                     ..first.clone()
                 });
                 let factors = first.into_iter().chain(factors.into_iter().skip(1)).collect();
-                Ok(Piece { negative, ..self.fraction(factors, vec![]) })
+                Ok(CodeFragment { negative, ..self.fraction(factors, vec![]) })
             }
             Value::Call(name, arguments) => {
                 let arguments: Vec<String> =
                     arguments.iter().map(|argument| self.name(*argument)).collect();
-                Ok(Piece::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
+                Ok(CodeFragment::new(format!("{name}({})", arguments.join(", ")), Precedence::Atom))
             }
         }
     }
 
-    fn expression(&self, expression: &Expr) -> Result<Piece, NoCode> {
-        expression.fold(|node, children: &[Piece]| self.node(node, children))
+    fn expression(&self, expression: &Expr) -> Result<CodeFragment, NoCode> {
+        expression.fold(|node, children: &[CodeFragment]| self.node(node, children))
     }
 
-    fn node(&self, expression: &Expr, children: &[Piece]) -> Result<Piece, NoCode> {
+    fn node(&self, expression: &Expr, children: &[CodeFragment]) -> Result<CodeFragment, NoCode> {
         Ok(match expression.node() {
             Node::Number(value) => self.number(value)?,
-            Node::Pi => Piece::new(self.syntax.pi.to_owned(), Level::Atom),
-            Node::Symbol(symbol) => Piece::new(self.name(*symbol), Level::Atom),
+            Node::Pi => CodeFragment::new(self.syntax.pi.to_owned(), Precedence::Atom),
+            Node::Symbol(symbol) => CodeFragment::new(self.name(*symbol), Precedence::Atom),
             Node::Sum(_) => self.sum(&positive_first(children)),
             Node::Product(coefficient, _) => {
                 let (above, below) = self.number_parts(coefficient)?;
@@ -299,12 +308,12 @@ impl Writer<'_> {
                         None => above.push(child.clone()),
                     }
                 }
-                Piece { negative: coefficient.is_negative(), ..self.fraction(above, below) }
+                CodeFragment { negative: coefficient.is_negative(), ..self.fraction(above, below) }
             }
             Node::Power(base, exponent) => match (exponent.as_number(), children) {
                 (Some(number), [written, _]) if number.is_negative() => {
                     let inverse = self.power(base, written, &-number)?;
-                    Piece {
+                    CodeFragment {
                         below: Some(Box::new(inverse.clone())),
                         ..self.fraction(vec![], vec![inverse])
                     }
@@ -312,18 +321,18 @@ impl Writer<'_> {
                 (Some(number), [written, _]) => self.power(base, written, number)?,
                 (None, [base, exponent]) => {
                     let text =
-                        (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
-                    Piece::new(text, Level::Power)
+                        (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.with_sign()));
+                    CodeFragment::new(text, Precedence::Power)
                 }
-                _ => Piece::new(String::new(), Level::Atom),
+                _ => CodeFragment::new(String::new(), Precedence::Atom),
             },
             Node::Function(function, _) => self.call((self.syntax.function)(*function), children),
         })
     }
 
-    fn call(&self, name: &str, arguments: &[Piece]) -> Piece {
-        let written = |arguments: &[Piece]| {
-            let written: Vec<String> = arguments.iter().map(Piece::whole).collect();
+    fn call(&self, name: &str, arguments: &[CodeFragment]) -> CodeFragment {
+        let written = |arguments: &[CodeFragment]| {
+            let written: Vec<String> = arguments.iter().map(CodeFragment::with_sign).collect();
             written.join(", ")
         };
         let text = match (name.strip_prefix('.'), arguments) {
@@ -332,15 +341,20 @@ impl Writer<'_> {
                 format!("f64::{method}({})", written(arguments))
             }
             (Some(method), [first, rest @ ..]) => {
-                format!("{}.{method}({})", first.at(Level::Atom), written(rest))
+                format!("{}.{method}({})", first.as_operand(Precedence::Atom), written(rest))
             }
             _ => format!("{name}({})", written(arguments)),
         };
-        Piece::new(text, Level::Atom)
+        CodeFragment::new(text, Precedence::Atom)
     }
 
     /// `base^number` for a positive number.
-    fn power(&self, base: &Expr, written: &Piece, number: &Rational) -> Result<Piece, NoCode> {
+    fn power(
+        &self,
+        base: &Expr,
+        written: &CodeFragment,
+        number: &Rational,
+    ) -> Result<CodeFragment, NoCode> {
         if number.is_one() {
             return Ok(written.clone());
         }
@@ -356,41 +370,42 @@ impl Writer<'_> {
             _ => Exponent::Real(&exponent),
         };
         let level = match exponent {
-            Exponent::Half => Level::Atom,
-            _ => Level::Power,
+            Exponent::Half => Precedence::Atom,
+            _ => Precedence::Power,
         };
-        Ok(Piece::new((self.syntax.power)(&written.as_base(), exponent), level))
+        Ok(CodeFragment::new((self.syntax.power)(&written.as_base(), exponent), level))
     }
 
     /// A sum of pieces, which has at least one.
-    fn sum(&self, terms: &[Piece]) -> Piece {
+    fn sum(&self, terms: &[CodeFragment]) -> CodeFragment {
         if let [only] = terms {
             return only.clone();
         }
         let mut text = String::new();
         for term in terms {
-            let unsigned = Piece { negative: false, ..term.clone() };
-            let level = if text.is_empty() { Level::Sum } else { Level::Product };
+            let unsigned = CodeFragment { negative: false, ..term.clone() };
+            let level = if text.is_empty() { Precedence::Sum } else { Precedence::Product };
             text.push_str(match (text.is_empty(), term.negative) {
                 (true, true) => "-",
                 (true, false) => "",
                 (false, true) => " - ",
                 (false, false) => " + ",
             });
-            text.push_str(&unsigned.at(level));
+            text.push_str(&unsigned.as_operand(level));
         }
         match text.is_empty() {
-            true => Piece::literal(format!("0{}", self.syntax.point), Level::Atom),
-            false => Piece {
+            true => CodeFragment::literal(format!("0{}", self.syntax.point), Precedence::Atom),
+            false => CodeFragment {
                 literal: terms.iter().all(|term| term.literal),
-                ..Piece::new(text, Level::Sum)
+                ..CodeFragment::new(text, Precedence::Sum)
             },
         }
     }
 
     /// Factors over factors.
-    fn fraction(&self, above: Vec<Piece>, below: Vec<Piece>) -> Piece {
-        let one = || vec![Piece::literal(format!("1{}", self.syntax.point), Level::Atom)];
+    fn fraction(&self, above: Vec<CodeFragment>, below: Vec<CodeFragment>) -> CodeFragment {
+        let one =
+            || vec![CodeFragment::literal(format!("1{}", self.syntax.point), Precedence::Atom)];
         let above = if above.is_empty() { one() } else { above };
         let numerator = self.product(&above);
         match below.as_slice() {
@@ -399,11 +414,11 @@ impl Writer<'_> {
                 let text = self.joined(
                     1,
                     (&numerator.text, numerator.literal),
-                    (&divisor.at(Level::Power), divisor.literal),
+                    (&divisor.as_operand(Precedence::Power), divisor.literal),
                 );
-                Piece {
+                CodeFragment {
                     literal: numerator.literal && divisor.literal,
-                    ..Piece::new(text, Level::Product)
+                    ..CodeFragment::new(text, Precedence::Product)
                 }
             }
             several => {
@@ -413,30 +428,32 @@ impl Writer<'_> {
                     (&numerator.text, numerator.literal),
                     (&format!("({})", divisor.text), divisor.literal),
                 );
-                Piece::new(text, Level::Product)
+                CodeFragment::new(text, Precedence::Product)
             }
         }
     }
 
-    fn product(&self, factors: &[Piece]) -> Piece {
+    fn product(&self, factors: &[CodeFragment]) -> CodeFragment {
         let Some((first, rest)) = factors.split_first() else {
-            return Piece::literal(format!("1{}", self.syntax.point), Level::Atom);
+            return CodeFragment::literal(format!("1{}", self.syntax.point), Precedence::Atom);
         };
         if rest.is_empty() {
             return match first.level {
-                Level::Sum => Piece::new(first.at(Level::Power), Level::Atom),
+                Precedence::Sum => {
+                    CodeFragment::new(first.as_operand(Precedence::Power), Precedence::Atom)
+                }
                 _ => first.clone(),
             };
         }
         let (mut text, mut literal, mut last) =
-            (first.at(Level::Power), first.literal, first.literal);
+            (first.as_operand(Precedence::Power), first.literal, first.literal);
         for factor in rest {
-            let next = factor.at(Level::Power);
+            let next = factor.as_operand(Precedence::Power);
             text = self.joined(0, (&text, last), (&next, factor.literal));
             literal &= factor.literal;
             last = factor.literal;
         }
-        Piece { literal, ..Piece::new(text, Level::Product) }
+        CodeFragment { literal, ..CodeFragment::new(text, Precedence::Product) }
     }
 
     /// Two operands with the sign of a product or a quotient between them, and whether each is a
@@ -452,9 +469,9 @@ impl Writer<'_> {
         format!("{}{}{}", left.0, operators[operator], right.0)
     }
 
-    fn number(&self, value: &Rational) -> Result<Piece, NoCode> {
+    fn number(&self, value: &Rational) -> Result<CodeFragment, NoCode> {
         let (above, below) = self.number_parts(value)?;
-        Ok(Piece {
+        Ok(CodeFragment {
             negative: value.is_negative(),
             ..self.fraction(Vec::from_iter(above), Vec::from_iter(below))
         })
@@ -462,13 +479,17 @@ impl Writer<'_> {
 
     /// The size of a number, what stands above and below the line; one of many digits is a decimal,
     /// which stands above.
-    fn number_parts(&self, value: &Rational) -> Result<(Option<Piece>, Option<Piece>), NoCode> {
+    fn number_parts(
+        &self,
+        value: &Rational,
+    ) -> Result<(Option<CodeFragment>, Option<CodeFragment>), NoCode> {
         /// All of them a double tells apart.
         const DIGITS: usize = 15;
         let size = value.abs();
         let [above, below] = [size.numer(), size.denom()].map(ToString::to_string);
         let whole = |text: &String| {
-            let piece = Piece::literal(format!("{text}{}", self.syntax.point), Level::Atom);
+            let piece =
+                CodeFragment::literal(format!("{text}{}", self.syntax.point), Precedence::Atom);
             (text != "1").then_some(piece)
         };
         if above.len().max(below.len()) <= DIGITS && above.len() + below.len() <= DIGITS + 1 {
@@ -476,7 +497,7 @@ impl Writer<'_> {
         }
         let double = to_f64(&size);
         match double.is_normal() {
-            true => Ok((Some(Piece::literal(decimal(double), Level::Atom)), None)),
+            true => Ok((Some(CodeFragment::literal(decimal(double), Precedence::Atom)), None)),
             false => Err(NoCode::Beyond),
         }
     }
@@ -492,7 +513,7 @@ fn decimal(value: f64) -> String {
 
 /// Terms as they are read: where those with a minus come first, those next without one stand before
 /// them.
-fn positive_first(terms: &[Piece]) -> Vec<Piece> {
+fn positive_first(terms: &[CodeFragment]) -> Vec<CodeFragment> {
     let minus = terms.iter().take_while(|term| term.negative).count();
     let (minus, others) = terms.split_at(minus);
     let plus = others.iter().take_while(|term| !term.negative).count();
@@ -500,7 +521,7 @@ fn positive_first(terms: &[Piece]) -> Vec<Piece> {
     [plus, minus, others].concat()
 }
 
-/// A text broken before its signs; the first line has so many letters before it.
+/// A text broken before its signs; the first line has this many letters before it.
 fn filled(text: &str, before: usize) -> Vec<String> {
     let mut places: Vec<usize> = [" + ", " - "]
         .iter()

@@ -11,7 +11,7 @@ use kuva::prelude::{
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use kuva::render::render_utils::wrap_text;
 
-use super::{Curve, CurveStyle, FigureError, Guide, POINTS, Panel, Scale};
+use super::{Curve, CurveStyle, FigureError, GuideLine, POINTS, Panel, Scale};
 
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.
 const PAGE: f64 = 720.0;
@@ -91,8 +91,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     }
     for guide in &panel.guides {
         let (at, label, list) = match *guide {
-            Guide::X(at, label) => (panel.x_scale.place(at), label, &mut xs),
-            Guide::Y(at, label) => (panel.y_scale.place(at), label, &mut ys),
+            GuideLine::X(at, label) => (panel.x_scale.position(at), label, &mut xs),
+            GuideLine::Y(at, label) => (panel.y_scale.position(at), label, &mut ys),
         };
         if !at.is_finite() {
             return Err(FigureError::OffAxes(within(format!("guide \"{label}\""))));
@@ -105,8 +105,12 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     let across = |y: f64| vec![(x_range.0, y / y_unit), (x_range.1, y / y_unit)];
     let upright = |x: f64| vec![(x / x_unit, y_range.0), (x / x_unit, y_range.1)];
     let guides = panel.guides.iter().map(|guide| match *guide {
-        Guide::X(at, label) => plot(label, upright(panel.x_scale.place(at)), CurveStyle::GUIDE),
-        Guide::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
+        GuideLine::X(at, label) => {
+            plot(label, upright(panel.x_scale.position(at)), CurveStyle::GUIDE)
+        }
+        GuideLine::Y(at, label) => {
+            plot(label, across(panel.y_scale.position(at)), CurveStyle::GUIDE)
+        }
     });
     let scaled = |points: Vec<(f64, f64)>| {
         points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect()
@@ -118,9 +122,9 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
 }
 
 impl Scale {
-    /// Where a value lies on an axis. A logarithmic axis is drawn as a linear one of exponents,
-    /// because the library's own ends at 1e-10.
-    fn place(self, value: f64) -> f64 {
+    /// The coordinate of a value on an axis. A logarithmic axis is drawn as a linear one of
+    /// exponents, because that of the plotting library ends at 1e-10.
+    fn position(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
             Self::Logarithmic => value.log10(),
@@ -134,7 +138,7 @@ fn placed(
     panel: &Panel,
 ) -> Result<Vec<(f64, f64)>, FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
-    let place = |&(x, y): &(f64, f64)| (panel.x_scale.place(x), panel.y_scale.place(y));
+    let place = |&(x, y): &(f64, f64)| (panel.x_scale.position(x), panel.y_scale.position(y));
     let off = |point: &&(f64, f64)| {
         let (x, y) = place(point);
         !point.0.is_finite() || !point.1.is_finite() || x.is_nan() || y.is_nan()
@@ -178,13 +182,13 @@ fn plot(
 }
 
 /// The power of ten that an axis is in, and its range in units of it.
-type Extent = (i32, (f64, f64));
+type AxisExtent = (i32, (f64, f64));
 
 /// The axes of a panel.
 fn axes(
     panel: &Panel,
-    (x_power, x_range): Extent,
-    (y_power, y_range): Extent,
+    (x_power, x_range): AxisExtent,
+    (y_power, y_range): AxisExtent,
     columns: usize,
 ) -> Layout {
     let mut layout = Layout::new(x_range, y_range)
@@ -216,7 +220,7 @@ fn axes(
 
 /// The power of ten that makes the values readable, and their range in units of it (a constant in
 /// the middle of one).
-fn extent(values: &[f64], scale: Scale) -> Extent {
+fn extent(values: &[f64], scale: Scale) -> AxisExtent {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if scale == Scale::Logarithmic {
@@ -253,8 +257,8 @@ pub(in crate::export) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
-/// At most [`MOST_POINTS`] points and the last one: of each run the first, the lowest and the
-/// highest.
+/// Thins points to at most [`MOST_POINTS`] and the last one: of each run the first, the lowest and
+/// the highest are kept.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MOST_POINTS {
         return points.to_vec();
@@ -328,14 +332,14 @@ mod tests {
         y_scale: Scale,
         label: &str,
         points: &[(f64, f64)],
-        guides: Vec<Guide>,
+        guides: Vec<GuideLine>,
     ) -> Result<String, FigureError> {
         let curves = vec![curve(label, points, CurveStyle::FORMULA)];
         let panel = panel("T", ["x (s)", "y (rad)"], curves, guides);
         figure(&[Panel { y_scale, ..panel }], "<svg>")
     }
 
-    /// What is drawn in the style of [`one`].
+    /// The paths of a figure that are drawn in the style of the formula.
     fn path(svg: &str) -> Vec<&str> {
         let drawn = |line: &&str| line.contains("<path") && line.contains(CurveStyle::FORMULA.0);
         svg.lines().filter(drawn).collect()
@@ -423,7 +427,7 @@ mod tests {
     fn a_logarithmic_abscissa_has_decades() {
         let points = [(1e4, 1.0), (1e6, 2.0), (1e9, 3.0)];
         let curves = vec![curve("", &points, CurveStyle::FORMULA)];
-        let panel = panel("T", ["stiffness", "y"], curves, vec![Guide::X(1e5, "")]);
+        let panel = panel("T", ["stiffness", "y"], curves, vec![GuideLine::X(1e5, "")]);
         let draw = |x_scale| figure(&[Panel { x_scale, ..panel.clone() }], "").unwrap();
         let svg = draw(Scale::Logarithmic);
         assert!(["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))), "{svg}");
@@ -445,7 +449,7 @@ mod tests {
                     Err(FigureError::OffAxes(_))
                 ));
             }
-            let guides = vec![Guide::X(bad, "g")];
+            let guides = vec![GuideLine::X(bad, "g")];
             assert!(matches!(one(Scale::Linear, "", &WAVE, guides), Err(FigureError::OffAxes(_))));
         }
         let [formula, truth] = [1.0, 1.1].map(|end| vec![(0.0, 1.0, 0.0), (end, 0.5, 0.2)]);

@@ -4,9 +4,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::texts;
-use crate::audit::{Audit, Computed, Finding, Tried, Verdict};
+use crate::audit::{Audit, ClaimAttempt, ClaimFinding, Computed, Verdict};
 use crate::report::{audit_computed, audit_entry, audit_printed};
 
 /// Claims of a publication, computed again, with a verdict each.
@@ -138,7 +138,7 @@ fn verdicts(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
 /// ```
 pub fn audit(audit: &Audit) -> AuditDocument {
     AuditDocument {
-        schema: Kind::Audit.schema().to_owned(),
+        schema: DocumentKind::Audit.schema().to_owned(),
         title: audit.title.clone(),
         counts: AuditCounts {
             reproduced: audit.count(Verdict::Reproduced),
@@ -151,21 +151,21 @@ pub fn audit(audit: &Audit) -> AuditDocument {
     }
 }
 
-fn number(found: &Result<Computed, crate::audit::Lack>) -> Option<f64> {
+fn number(found: &Result<Computed, crate::audit::NotComputable>) -> Option<f64> {
     found.as_ref().ok()?.number().filter(|number| number.is_finite())
 }
 
-fn claim(finding: &Finding) -> AuditClaim {
+fn claim(finding: &ClaimFinding) -> AuditClaim {
     let own = &finding.claim;
-    let shown = finding.shown();
-    let entry = |(index, printed): (usize, &crate::audit::Entry)| AuditEntry {
+    let shown = finding.displayed_attempt();
+    let entry = |(index, printed): (usize, &crate::audit::PrintedEntry)| AuditEntry {
         printed: printed.printed.clone(),
         computed: shown.and_then(|tried| audit_entry(finding, tried, index)),
         value: shown.and_then(|tried| number(tried.computed.get(index)?)),
         reproduced: shown
             .is_some_and(|tried| tried.reproduced.get(index).is_some_and(|entry| *entry)),
     };
-    let tried = |tried: &Tried| AuditTried {
+    let tried = |tried: &ClaimAttempt| AuditTried {
         supposing: texts(&tried.supposing),
         reproduced: tried.reproduced.iter().filter(|entry| **entry).count(),
         values: tried.computed.iter().map(number).collect(),

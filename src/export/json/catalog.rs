@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use crate::catalog;
 
 /// The classical oscillators that the program knows by name.
@@ -55,14 +55,14 @@ pub struct Applicability {
 /// let document = lindstedt::export::json::catalog(lindstedt::catalog::CATALOG);
 /// assert!(document.entries.iter().any(|entry| entry.name == "pendulum"));
 /// ```
-pub fn catalog(entries: &[catalog::Entry]) -> CatalogDocument {
+pub fn catalog(entries: &[catalog::CatalogEntry]) -> CatalogDocument {
     CatalogDocument {
-        schema: Kind::Catalog.schema().to_owned(),
+        schema: DocumentKind::Catalog.schema().to_owned(),
         entries: entries.iter().map(entry).collect(),
     }
 }
 
-fn entry(entry: &catalog::Entry) -> Entry {
+fn entry(entry: &catalog::CatalogEntry) -> Entry {
     let applicability =
         |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
             let reason = result.err().map(|refusal| refusal.to_string());

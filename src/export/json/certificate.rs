@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::number::{expression, texts};
 use super::schema::check_kind;
-use super::{JsonError, Kind, unexpected};
+use super::{DocumentKind, JsonError, unexpected};
 use crate::certificate::{
     Certificate, HIGHEST_HARMONIC, JudgedFormula, LettersOfLaw, MOST_BITS, coordinate,
 };
@@ -36,7 +36,7 @@ const LONGEST_FORCE: usize = 2000;
 #[serde(deny_unknown_fields)]
 pub struct CertificateDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Certificate.schema())))]
     pub schema: String,
     /// The equation that f belongs to.
     #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION)))]
@@ -75,7 +75,7 @@ pub struct CertificateDocument {
     pub formula: Option<CertificateFormula>,
 }
 
-/// What `ode` has.
+/// The form of the equation in `ode`.
 const EQUATION: &str = "x''+f(x)=0";
 
 /// A force.
@@ -146,7 +146,7 @@ pub struct CertificateLetters {
 /// ```
 pub fn certificate(certificate: &Certificate) -> CertificateDocument {
     CertificateDocument {
-        schema: Kind::Certificate.schema().to_owned(),
+        schema: DocumentKind::Certificate.schema().to_owned(),
         ode: EQUATION.to_owned(),
         f: force(&certificate.force),
         start: certificate.start.to_string(),
@@ -260,7 +260,7 @@ impl CertificateDocument {
     /// # Errors
     /// A key that holds something else, or more than a certificate ever has.
     pub fn read(&self) -> Result<Certificate, JsonError> {
-        check_kind(&self.schema, Kind::Certificate)?;
+        check_kind(&self.schema, DocumentKind::Certificate)?;
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }
@@ -324,7 +324,7 @@ impl CertificateFormula {
     }
 }
 
-/// What is claimed, from below and from above.
+/// Reads the lower and the upper bound of a claim.
 pub(super) fn range(ends: &[String; 2], key: &str) -> Result<[Rational; 2], JsonError> {
     Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
 }
@@ -379,7 +379,7 @@ pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
 /// A decimal, `2.5e-33`, that is not negative.
 pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     const EXPECTED: &str = "a decimal such as `2.5e-33`, not negative";
-    /// No double is smaller, and none larger.
+    /// Decimal exponents: no double is smaller, and none larger.
     const EXPONENTS: std::ops::RangeInclusive<i32> = -400..=400;
     if text.len() > LONGEST_NUMBER {
         return unexpected(key, EXPECTED);

@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number::{constants, finite, named, text};
-use super::{Constant, Kind, Map};
+use super::{Constant, DocumentKind, Map};
 use crate::solution::Degrees;
-use crate::verify::comparison::{Comparison, Refused, Row};
+use crate::verify::comparison::{Comparison, ComparisonRow, Refused};
 use crate::verify::{Verdict, validity};
 
 /// Every method on one equation at given values, beside the true motion of the equation as it was
@@ -142,7 +142,7 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     let _letters = comparison.letters().in_force();
     let applying = comparison.rows.iter().map(applying);
     ComparisonDocument {
-        schema: Kind::Comparison.schema().to_owned(),
+        schema: DocumentKind::Comparison.schema().to_owned(),
         equation: comparison.equation.to_string(),
         at: constants(&comparison.at),
         true_frequency: finite(comparison.true_frequency),
@@ -153,7 +153,7 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     }
 }
 
-fn applying(row: &Row) -> MethodRow {
+fn applying(row: &ComparisonRow) -> MethodRow {
     MethodRow::Applying(Box::new(ApplyingRow {
         method: row.solution.method.name().to_owned(),
         order: row.solution.order,
@@ -185,16 +185,16 @@ fn refused(refused: &Refused) -> MethodRow {
     })
 }
 
-fn reach(reach: validity::Reach) -> Reach {
+fn reach(reach: validity::AmplitudeReach) -> Reach {
     let searched = match reach {
-        validity::Reach::Everywhere(searched) => Some(searched),
-        validity::Reach::Between { to, open: true, .. } => Some(to),
-        validity::Reach::Between { .. } | validity::Reach::UpTo(_) | validity::Reach::Nowhere => {
-            None
-        }
+        validity::AmplitudeReach::Everywhere(searched) => Some(searched),
+        validity::AmplitudeReach::Between { to, open: true, .. } => Some(to),
+        validity::AmplitudeReach::Between { .. }
+        | validity::AmplitudeReach::UpTo(_)
+        | validity::AmplitudeReach::Nowhere => None,
     };
     let from = match reach {
-        validity::Reach::Between { from, .. } => Some(from),
+        validity::AmplitudeReach::Between { from, .. } => Some(from),
         _ => None,
     };
     Reach { from, up_to: reach.end(), searched }

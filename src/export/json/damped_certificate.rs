@@ -14,15 +14,15 @@ use super::certificate::{
 };
 use super::number::texts;
 use super::schema::check_kind;
-use super::{JsonError, Kind, unexpected};
+use super::{DocumentKind, JsonError, unexpected};
 use crate::certificate::{DampedCertificate, Drive, JudgedFormula};
 use crate::exact::Rational;
 
-/// What `ode` of a certificate of a limit cycle has.
+/// The form of the equation in `ode` of a certificate of a limit cycle.
 pub const EQUATION_OF_CYCLES: &str = "x''+g(x)*x'+h(x)=0";
 
-/// What `ode` of a certificate of a driven motion has; c and s are `cos(Omega t)` and
-/// `sin(Omega t)`.
+/// The form of the equation in `ode` of a certificate of a driven motion; c and s are
+/// `cos(Omega t)` and `sin(Omega t)`.
 pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 
 /// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion
@@ -33,7 +33,7 @@ pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 #[serde(deny_unknown_fields)]
 pub struct DampedCertificateDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Certificate.schema())))]
     pub schema: String,
     /// The equation that g and h belong to.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE])))]
@@ -161,7 +161,7 @@ pub struct CertificateFormulaOfCycle {
 /// ```
 pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateDocument {
     DampedCertificateDocument {
-        schema: Kind::Certificate.schema().to_owned(),
+        schema: DocumentKind::Certificate.schema().to_owned(),
         ode: match certificate.drive {
             None => EQUATION_OF_CYCLES.to_owned(),
             Some(_) => EQUATION_WITH_DRIVE.to_owned(),
@@ -250,7 +250,7 @@ impl DampedCertificateDocument {
     /// # Errors
     /// A key that holds something else, or more than a certificate ever has.
     pub fn read(&self) -> Result<DampedCertificate, JsonError> {
-        check_kind(&self.schema, Kind::Certificate)?;
+        check_kind(&self.schema, DocumentKind::Certificate)?;
         let is_driven = self.drive.is_some();
         let expected = if is_driven { EQUATION_WITH_DRIVE } else { EQUATION_OF_CYCLES };
         if self.ode != expected || self.p.is_some() == is_driven {

@@ -4,9 +4,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::text;
-use crate::audit::paper::{Entry, Table};
+use crate::audit::paper::{FrictionTable, PrintedDigits};
 use crate::impact::STEEPNESS;
 use crate::impact::friction::{CreepSample, FirstCycle, FrictionStudy};
 
@@ -158,7 +158,7 @@ pub struct RestTime {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn friction(study: &FrictionStudy) -> FrictionDocument {
-    let (table, near_rest) = (Table::of(study), &study.near_rest);
+    let (table, near_rest) = (FrictionTable::from_study(study), &study.near_rest);
     let speeds = table.rows.iter().map(|row| {
         let [value, error] =
             row.printed.map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));
@@ -183,7 +183,7 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
     let creep = &near_rest.creep;
     let times = near_rest.rest_times;
     FrictionDocument {
-        schema: Kind::Friction.schema().to_owned(),
+        schema: DocumentKind::Friction.schema().to_owned(),
         alpha: study.setup.alpha,
         amplitude: study.setup.amplitude,
         steepness: STEEPNESS,
@@ -218,6 +218,6 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
     }
 }
 
-fn printed(entry: Entry) -> Printed {
+fn printed(entry: PrintedDigits) -> Printed {
     Printed { text: entry.printed.to_owned(), rounded: entry.rounded, cut: entry.cut }
 }

@@ -9,14 +9,14 @@ use serde_json::Value;
 
 use super::{
     AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
-    LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactComparisonDocument,
+    ImpactDocument, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
     OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
 use crate::solution::Method;
 
-impl Kind {
+impl DocumentKind {
     /// The JSON Schema as the types have it: what the file `schemas/` of this kind has to say.
     pub fn generated_schema(self) -> Value {
         let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
@@ -72,7 +72,7 @@ impl JsonSchema for EitherCertificate {
     }
 }
 
-/// What a reader looks for first stands first.
+/// Moves the keys that a reader looks for first to the front.
 fn head_first(schema: Value) -> Value {
     let Value::Object(mut rest) = schema else {
         return schema;

@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use super::number::text;
 use super::solution::{SolutionDocument, solution};
-use super::{JsonError, Kind, check_kind};
+use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
 use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
 use crate::impact::{
-    self, ContactLoss, DerivedContact, Form, Impact, Modulus, Reading, Rule, Setup, SiImpact, Side,
+    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Rule, Setup, SiImpact,
+    Side,
 };
 use crate::verify::Verdict;
 
@@ -512,15 +513,15 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     };
     let phases = |reading| {
         let column = impact.column(reading).into_iter();
-        column.flat_map(|column| &column.phases.phases).map(Phase::of).collect()
+        column.flat_map(|column| &column.phases.phases).map(Phase::from_phase).collect()
     };
     let [paper, energy, derived] = READINGS.map(judged);
-    let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
+    let contact_laws = impact.contact_laws.iter().map(ContactLawRow::from_row);
     let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
     ImpactDocument {
-        schema: Kind::Impact.schema().to_owned(),
+        schema: DocumentKind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
-        parameters: Parameters::of(
+        parameters: Parameters::new(
             setup,
             [impact.equilibrium, impact.turning_point],
             impact.free_swing.as_ref().map(|law| law.order),
@@ -534,9 +535,9 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             sign: flight.sign,
             frequency: flight.motion.frequency(),
         }),
-        phases: phases(Reading::Paper),
-        energy_phases: phases(Reading::Energy),
-        derived_phases: phases(Reading::Derived),
+        phases: phases(PhaseReading::Paper),
+        energy_phases: phases(PhaseReading::Energy),
+        derived_phases: phases(PhaseReading::Derived),
         contact: Contact { speed, penetration, duration },
         contact_damping: contact_damping(impact),
         contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
@@ -618,7 +619,7 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
 impl Parameters {
     /// The numbers of a setup whose swing has this equilibrium and turns at this point and whose
     /// contact has this damping, and the order of `law`.
-    pub(super) fn of(
+    pub(super) fn new(
         setup: &Setup,
         [equilibrium, turning_point]: [f64; 2],
         order: Option<u32>,
@@ -669,7 +670,7 @@ fn law_names() -> Vec<&'static str> {
 }
 
 impl ContactLawRow {
-    fn of(row: &ContactRow) -> Self {
+    fn from_row(row: &ContactRow) -> Self {
         let judged = |of: &dyn Fn(&ContactMotion, &ContactErrors) -> [f64; 2]| {
             let (motion, errors) = row.outcome.as_ref().ok()?;
             let [value, error] = of(motion, errors);
@@ -706,9 +707,10 @@ fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
     })
 }
 
-const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derived];
+const READINGS: [PhaseReading; 3] =
+    [PhaseReading::Paper, PhaseReading::Energy, PhaseReading::Derived];
 
-fn quantity(impact: &Impact, quantity: &impact::Quantity) -> Quantity {
+fn quantity(impact: &Impact, quantity: &impact::ImpactQuantity) -> Quantity {
     let errors: Vec<f64> = quantity.errors().collect();
     let found = |reading| {
         let index = impact.columns.iter().position(|column| column.reading == reading);
@@ -742,9 +744,9 @@ impl PhaseName {
 }
 
 impl Phase {
-    fn of(phase: &impact::Phase) -> Self {
+    fn from_phase(phase: &impact::MotionPhase) -> Self {
         let state = |time: f64| {
-            let (x, velocity) = phase.at(time);
+            let (x, velocity) = phase.phase_point_at(time);
             State { x, velocity }
         };
         Self {
@@ -795,8 +797,8 @@ impl Phase {
     }
 
     /// The phase that the document describes.
-    pub fn read(&self) -> impact::Phase {
-        impact::Phase {
+    pub fn read(&self) -> impact::MotionPhase {
+        impact::MotionPhase {
             name: self.name.name(),
             start: self.start,
             end: self.end,
@@ -850,8 +852,8 @@ impl ImpactDocument {
     ///
     /// # Errors
     /// A document of another kind.
-    pub fn read_phases(&self) -> Result<Vec<impact::Phase>, JsonError> {
-        check_kind(&self.schema, Kind::Impact)?;
+    pub fn read_phases(&self) -> Result<Vec<impact::MotionPhase>, JsonError> {
+        check_kind(&self.schema, DocumentKind::Impact)?;
         let phases = match self.phases.is_empty() {
             false => &self.phases,
             true => &self.derived_phases,

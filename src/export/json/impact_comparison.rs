@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::impact::{Judged, Parameters};
 use crate::impact::{ImpactComparison, ImpactRow};
 use crate::solution::Degrees;
@@ -107,9 +107,9 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
         verdict: None,
     });
     ImpactComparisonDocument {
-        schema: Kind::ImpactComparison.schema().to_owned(),
+        schema: DocumentKind::ImpactComparison.schema().to_owned(),
         equation: table.equation.clone(),
-        parameters: Parameters::of(
+        parameters: Parameters::new(
             &table.setup,
             [table.equilibrium, table.turning_point],
             None,

@@ -4,10 +4,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Map, named, text, texts};
 use crate::audit::paper::Finding;
-use crate::mechanics::{self, MechanismStudy, Place, RestStudy};
+use crate::mechanics::{self, MechanismStudy, RestPosition, RestStudy};
 
 /// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless
 /// groups on which its motion depends. Formulas are text of the grammar; `q'` is the velocity of
@@ -125,9 +125,9 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     let zero = |left: &crate::expr::Expr| format!("{left} = 0");
     let accelerations = study.equations.accelerations().unwrap_or_default();
     let equilibrium = |rest: &RestStudy| {
-        let place = |place: &Place| match place {
-            Place::At(place) => Some(place.to_string()),
-            Place::Anywhere => None,
+        let place = |place: &RestPosition| match place {
+            RestPosition::At(place) => Some(place.to_string()),
+            RestPosition::Anywhere => None,
         };
         let places = rest.rest.places.iter().map(place);
         Equilibrium {
@@ -146,7 +146,7 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
         known.map(|modes| modes.iter().map(mode).collect()).unwrap_or_default()
     };
     LagrangianDocument {
-        schema: Kind::Lagrangian.schema().to_owned(),
+        schema: DocumentKind::Lagrangian.schema().to_owned(),
         coordinates: texts(coordinates),
         kinetic: mechanism.kinetic.to_string(),
         potential: mechanism.potential.to_string(),

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::text;
 use super::simulation::{Barrier, Dissipation, ROUTES};
 use crate::impact::{self, ContactDamping, FirstContact, MaterialStudy, Parameter};
@@ -178,7 +178,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     let design = &study.question.case.design;
     let settings = &study.question.settings;
     MaterialsDocument {
-        schema: Kind::Materials.schema().to_owned(),
+        schema: DocumentKind::Materials.schema().to_owned(),
         parameters: MaterialsParameters {
             barrier: Barrier { left: study.model.left, right: study.model.right },
             start: study.start.x,

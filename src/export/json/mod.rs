@@ -10,8 +10,8 @@
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
 //! ```
 //!
-//! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What
-//! has no value is null: a key is never left out.
+//! The documentation of a field is its description in the schema, [`DocumentKind::json_schema`]. A
+//! missing value is null: a key is never left out.
 
 pub mod audit;
 pub mod catalog;
@@ -59,13 +59,13 @@ pub use number::{Constant, Map, Polynomial, Term};
 pub use optimization::{OptimizationDocument, optimization};
 pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep};
 pub use response::{ResponseDocument, response};
-pub use schema::Kind;
+pub use schema::DocumentKind;
 pub use simulation::{SimulationDocument, simulation};
 pub use solution::{SolutionDocument, solution};
 pub use stability::{StabilityDocument, stability};
 pub use sweep::{SweepDocument, sweep};
 
-use crate::impact::Phase;
+use crate::impact::MotionPhase;
 use crate::solution::Solution;
 use schema::check_kind;
 
@@ -88,7 +88,7 @@ fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
 /// Writes a document as text of several lines, with a line end.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -137,6 +137,6 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
 /// assert_eq!(phases.iter().map(|phase| phase.name).collect::<Vec<_>>(), ["approach", "contact", "return"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
+pub fn read_phases(document: &Value) -> Result<Vec<MotionPhase>, JsonError> {
     ImpactDocument::deserialize(document)?.read_phases()
 }

@@ -4,12 +4,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Map, named, texts};
 use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
-use crate::system::{End, Integrator};
-use crate::trajectory::{Course, Crossing, Section, in_words};
+use crate::system::{Integrator, PathEnd};
+use crate::trajectory::{Crossing, PoincareSection, TrajectoryRequest, in_words};
 
 /// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
 /// are those of the values given.
@@ -65,12 +65,12 @@ pub struct MotionSample {
 }
 
 /// Coordinates and velocities by their names.
-fn states(course: &Course, state: &[f64]) -> Map<f64> {
+fn states(course: &TrajectoryRequest, state: &[f64]) -> Map<f64> {
     named(course.rates.states.iter().zip(state.iter().copied()))
 }
 
 impl MotionSample {
-    fn of(course: &Course, t: f64, state: &[f64]) -> Self {
+    fn new(course: &TrajectoryRequest, t: f64, state: &[f64]) -> Self {
         Self { t, state: states(course, state) }
     }
 }
@@ -114,9 +114,9 @@ pub struct EnergyAccount {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let document = lindstedt::export::json::motion(&TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None });
@@ -126,10 +126,10 @@ pub struct EnergyAccount {
 pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     let motion = report.motion;
     let course = &motion.course;
-    let sample = |t: f64| Some(MotionSample::of(course, t, &motion.at(t)?));
-    let start = MotionSample::of(course, 0.0, &course.start);
+    let sample = |t: f64| Some(MotionSample::new(course, t, &motion.states_at(t)?));
+    let start = MotionSample::new(course, 0.0, &course.start);
     MotionDocument {
-        schema: Kind::Motion.schema().to_owned(),
+        schema: DocumentKind::Motion.schema().to_owned(),
         coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
         parameters: named(course.values.iter().map(|(name, value)| (name, *value))),
@@ -153,22 +153,22 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),
         known_until: report.known_until,
-        held: motion.held().collect(),
+        held: motion.sticking_intervals().collect(),
         stopped: in_words(motion.reason()).to_owned(),
         complete: report.is_complete(),
     }
 }
 
 fn section_document(
-    course: &Course,
-    section: &Section,
+    course: &TrajectoryRequest,
+    section: &PoincareSection,
     (crossings, touches): (&[Crossing], &[f64]),
 ) -> SectionDocument {
     let [every, rising] = match section {
-        Section::Every(period) => [Some(period.to_string()), None],
-        Section::Rising(expression) => [None, Some(expression.to_string())],
+        PoincareSection::Every(period) => [Some(period.to_string()), None],
+        PoincareSection::Rising(expression) => [None, Some(expression.to_string())],
     };
-    let state = |crossing: &Crossing| MotionSample::of(course, crossing.time, &crossing.state);
+    let state = |crossing: &Crossing| MotionSample::new(course, crossing.time, &crossing.state);
     SectionDocument {
         every,
         rising,
@@ -230,17 +230,17 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     };
     let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
         values: named(sweep.names.iter().zip(motion.values.iter().copied())),
-        final_state: MotionSample::of(course, motion.end, &motion.state),
+        final_state: MotionSample::new(course, motion.end, &motion.state),
         extremes: named(course.coordinates.iter().zip(motion.extremes.iter().copied())),
         section: course
             .section
             .as_ref()
             .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
         stopped: in_words(motion.reason).to_owned(),
-        complete: motion.reason == End::Reached,
+        complete: motion.reason == PathEnd::Reached,
     });
     MotionSweepDocument {
-        schema: Kind::MotionSweep.schema().to_owned(),
+        schema: DocumentKind::MotionSweep.schema().to_owned(),
         coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
         parameters: rest(named(course.values.iter().map(|(name, value)| (name, *value)))),

@@ -13,10 +13,10 @@ use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
-use crate::symbol::letters::Letters;
+use crate::symbol::letters::ResultSymbols;
 use crate::values::Values;
 
-/// What stands under names that the equation or the program chose, in their order.
+/// Values under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
 
 /// Whether there is nothing of what is counted, so that it is left out.
@@ -58,7 +58,7 @@ pub struct Term {
 
 impl Constant {
     /// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
-    pub fn of(value: &Expr) -> Self {
+    pub fn from_expr(value: &Expr) -> Self {
         let decimal = value.as_number().map(to_f64).or_else(|| value.evaluate(&[].into()).ok());
         Self { exact: value.to_string(), value: finite(decimal) }
     }
@@ -74,7 +74,7 @@ impl Constant {
 
 impl Polynomial {
     /// A polynomial of a solution, lowest order in its small parameters first.
-    pub fn of(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
+    pub fn from_polynomial(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
         Self::of_sum(&solution.ordered(polynomial))
     }
 
@@ -138,7 +138,7 @@ pub(super) fn named<N: ToString, T>(entries: impl IntoIterator<Item = (N, T)>) -
 
 /// Exact values under their names.
 pub(super) fn constants(values: &Values) -> Map<Constant> {
-    named(values.iter().map(|(name, value)| (name, Constant::of(value))))
+    named(values.iter().map(|(name, value)| (name, Constant::from_expr(value))))
 }
 
 /// The meaning of each symbol.
@@ -146,24 +146,24 @@ pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
     named(definitions.iter().map(|own| (own.symbol, own.meaning.to_string())))
 }
 
-/// What the names in a document stand for: the letters of an answer give way to the names of its
+/// The meaning of the names in a document: the letters of an answer give way to the names of its
 /// equation.
-pub(super) struct Names {
+pub(super) struct DocumentNames {
     own: Vec<Symbol>,
-    letters: Letters,
+    letters: ResultSymbols,
 }
 
-impl Names {
-    /// Those beside the names of an equation, driven or not.
-    pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
+impl DocumentNames {
+    /// The names that avoid those of an equation, driven or not.
+    pub fn avoiding(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
-        let letters = Letters::beside(&own, driven);
-        let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
+        let letters = ResultSymbols::avoiding(&own, driven);
+        let clash = |name: &Symbol| letters.renamed().any(|(usual, _)| usual.name() == name.name());
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
         Self { own: own.into_iter().map(apart).collect(), letters }
     }
 
-    /// How the frequency is written.
+    /// The name of the frequency.
     pub fn frequency(&self) -> &'static str {
         self.letters.frequency.name()
     }
@@ -174,12 +174,12 @@ impl Names {
     }
 
     fn changed(&self, name: Symbol) -> Symbol {
-        let changed = self.letters.meant(name.coordinate(), &self.own);
+        let changed = self.letters.resolve(name.coordinate(), &self.own);
         (0..name.primes()).fold(changed, |name, _| name.derivative())
     }
 
     fn are_usual(&self) -> bool {
-        self.letters.unusual().next().is_none()
+        self.letters.renamed().next().is_none()
     }
 
     /// An expression with the symbols of its names.

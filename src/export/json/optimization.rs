@@ -12,10 +12,12 @@ use serde_json::Value;
 
 use super::number::{Map, finite, text};
 use super::simulation::Barrier;
-use super::{JsonError, Kind};
-use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
+use super::{DocumentKind, JsonError};
+use crate::genetic::{Coding, Crossover, GeneticStop, Mutation, Penalty, StallTest};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
-use crate::optimize::{self, Found, Objective, Question, Role, SearchRun, Study, WITHIN};
+use crate::optimize::{
+    self, Found, Objective, OptimizationProblem, SearchRun, Study, VariableRole, WITHIN,
+};
 use crate::report::optimization_sentences;
 
 /// A search for the best damper. Angles are in radians, everything else in SI units, unless another
@@ -257,7 +259,7 @@ pub struct Run {
     /// constraints.
     pub integrated: usize,
     /// Why it ended.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Stop::ALL.map(Stop::name))))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = GeneticStop::ALL.map(GeneticStop::name))))]
     pub stop: String,
 }
 
@@ -386,26 +388,26 @@ pub struct Sensitivity {
     pub range: Option<[f64; 2]>,
     /// What follows: every value is as good, a limit decides, a constraint does, or something is
     /// lost on either side.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Role::ALL.map(Role::name))))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = VariableRole::ALL.map(VariableRole::name))))]
     pub role: String,
 }
 
 /// The document of kind `optimization`.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 1, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 1, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// let document = lindstedt::export::json::optimization(&study);
 /// assert_eq!(document.asked.variables[2].name, "length");
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
 /// ```
 pub fn optimization(study: &Study) -> OptimizationDocument {
     OptimizationDocument {
-        schema: Kind::Optimization.schema().to_owned(),
-        asked: Asked::of(&study.question),
+        schema: DocumentKind::Optimization.schema().to_owned(),
+        asked: Asked::from_problem(&study.question),
         complete: study.complete,
-        runs: study.runs.iter().map(Run::of).collect(),
+        runs: study.runs.iter().map(Run::from_run).collect(),
         searches: searches(study),
         median_curve: match study.question.objectives.len() {
             1 => study.median_curve().into_iter().map(|value| finite(Some(value))).collect(),
@@ -432,17 +434,19 @@ fn searches(study: &Study) -> Vec<Search> {
     if study.question.objectives.len() > 1 {
         return vec![];
     }
-    let search =
-        |name: &str, evaluations: f64, found: usize, spread: Option<optimize::Spread>| Search {
-            name: name.to_owned(),
-            evaluations,
-            found,
-            best: spread.map(|spread| spread.best),
-            lower_quartile: spread.map(|spread| spread.lower_quartile),
-            median: spread.map(|spread| spread.median),
-            upper_quartile: spread.map(|spread| spread.upper_quartile),
-            worst: spread.map(|spread| spread.worst),
-        };
+    let search = |name: &str,
+                  evaluations: f64,
+                  found: usize,
+                  spread: Option<optimize::FiveNumberSummary>| Search {
+        name: name.to_owned(),
+        evaluations,
+        found,
+        best: spread.map(|spread| spread.best),
+        lower_quartile: spread.map(|spread| spread.lower_quartile),
+        median: spread.map(|spread| spread.median),
+        upper_quartile: spread.map(|spread| spread.upper_quartile),
+        worst: spread.map(|spread| spread.worst),
+    };
     let (evaluations, _) = study.evaluations();
     let each = evaluations as f64 / study.runs.len().max(1) as f64;
     let own = search("genetic algorithm", each, study.values().len(), study.spread());
@@ -453,7 +457,7 @@ fn searches(study: &Study) -> Vec<Search> {
     std::iter::once(own).chain(rivals).collect()
 }
 
-fn design(study: &Study, design: &optimize::Design) -> Design {
+fn design(study: &Study, design: &optimize::EvaluatedDesign) -> Design {
     let variables = study.question.variables.iter().zip(&design.point);
     let material = design.material.and_then(|number| study.question.materials.get(number));
     Design {
@@ -498,8 +502,8 @@ fn decision(decision: &optimize::Decision) -> Decision {
 }
 
 impl Asked {
-    /// What a question asks.
-    pub fn of(question: &Question) -> Self {
+    /// The request of an optimisation problem.
+    pub fn from_problem(question: &OptimizationProblem) -> Self {
         Self {
             objectives: question
                 .objectives
@@ -519,7 +523,7 @@ impl Asked {
             materials: question
                 .materials
                 .iter()
-                .map(|material| SearchMaterial::of(material, question.case.speed_unit))
+                .map(|material| SearchMaterial::from_material(material, question.case.speed_unit))
                 .collect(),
             limits: question
                 .limits
@@ -541,13 +545,13 @@ impl Asked {
                 displacement: of.displacement,
                 speed: of.speed,
             }),
-            held_fixed: SearchHeldFixed::of(question),
+            held_fixed: SearchHeldFixed::from_problem(question),
             defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
             step_tolerance: question.settings.relative_tolerance,
             step_limit: question.settings.maximum_steps,
-            genetic: Genetic::of(question),
+            genetic: Genetic::from_problem(question),
             runs: question.runs,
             seed: question.seed,
         }
@@ -555,7 +559,7 @@ impl Asked {
 }
 
 impl ContactForm {
-    fn of(damping: ContactDamping, at_speed: Option<f64>, unit: SpeedUnit) -> Self {
+    fn new(damping: ContactDamping, at_speed: Option<f64>, unit: SpeedUnit) -> Self {
         Self {
             form: damping.form().name().to_owned(),
             value: damping.value(),
@@ -566,19 +570,19 @@ impl ContactForm {
 }
 
 impl SearchMaterial {
-    fn of(material: &impact::Material, unit: SpeedUnit) -> Self {
+    fn from_material(material: &impact::Material, unit: SpeedUnit) -> Self {
         let damping = material.damping;
         Self {
             name: material.name.clone(),
             modulus: material.modulus.value(),
             yield_limit: material.yield_limit,
-            damping: damping.map(|damping| ContactForm::of(damping, material.at_speed, unit)),
+            damping: damping.map(|damping| ContactForm::new(damping, material.at_speed, unit)),
         }
     }
 }
 
 impl SearchHeldFixed {
-    fn of(question: &Question) -> Self {
+    fn from_problem(question: &OptimizationProblem) -> Self {
         let case = &question.case;
         let fixed = |parameter: Parameter| {
             let mut variables = question.variables.iter();
@@ -593,7 +597,7 @@ impl SearchHeldFixed {
             barrier: Barrier { left: case.left, right: case.right },
             contact: question
                 .holds_contact_damping()
-                .then(|| ContactForm::of(case.contact_damping, case.at_speed, case.speed_unit)),
+                .then(|| ContactForm::new(case.contact_damping, case.at_speed, case.speed_unit)),
             zeta: case.get(Parameter::Zeta),
             viscous: case.viscous,
             alpha: case.get(Parameter::Alpha),
@@ -612,7 +616,7 @@ impl SearchHeldFixed {
 }
 
 impl Genetic {
-    fn of(question: &Question) -> Self {
+    fn from_problem(question: &OptimizationProblem) -> Self {
         let options = &question.genetic;
         let (coding, bits) = match options.coding {
             Coding::Real => ("real", None),
@@ -661,7 +665,7 @@ impl Genetic {
 }
 
 impl Run {
-    fn of(run: &SearchRun) -> Self {
+    fn from_run(run: &SearchRun) -> Self {
         Self {
             number: run.number,
             found: run.found.clone(),
@@ -681,7 +685,7 @@ impl Run {
             generations: self.generations,
             evaluations: self.evaluations,
             integrated: self.integrated,
-            stop: Stop::from_name(&self.stop)?,
+            stop: GeneticStop::from_name(&self.stop)?,
         })
     }
 }
@@ -699,18 +703,18 @@ struct Head {
 /// The first line of the record of a search, with its line end.
 ///
 /// # Errors
-/// What the writer says.
-pub fn record_head(question: &Question) -> Result<String, JsonError> {
-    let head = Head { schema: RECORD.to_owned(), asked: asked(question)? };
+/// The errors of the writer.
+pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> {
+    let head = Head { schema: RECORD.to_owned(), asked: request_value(question)? };
     line(&head)
 }
 
 /// The line of a run, with its line end.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 pub fn record_line(run: &SearchRun) -> Result<String, JsonError> {
-    line(&Run::of(run))
+    line(&Run::from_run(run))
 }
 
 fn unwritable(error: serde_json::Error) -> JsonError {
@@ -728,8 +732,8 @@ fn line(of: &impl Serialize) -> Result<String, JsonError> {
     Ok(text + "\n")
 }
 
-fn asked(question: &Question) -> Result<Value, JsonError> {
-    serde_json::to_value(Asked::of(question)).map_err(unwritable)
+fn request_value(question: &OptimizationProblem) -> Result<Value, JsonError> {
+    serde_json::to_value(Asked::from_problem(question)).map_err(unwritable)
 }
 
 /// The runs of a record of the same search, and how many bytes of it are whole lines.
@@ -739,17 +743,20 @@ fn asked(question: &Question) -> Result<Value, JsonError> {
 ///
 /// ```
 /// use lindstedt::export::json::optimization::{read_record, record_head, record_line};
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let question = Question { runs: 2, ..Question::default() };
-/// let study = optimize(question.clone(), vec![], &Watch::default())?;
+/// let question = OptimizationProblem { runs: 2, ..OptimizationProblem::default() };
+/// let study = optimize(question.clone(), vec![], &StudyObserver::default())?;
 /// let text = record_head(&question)? + &record_line(&study.runs[1])? + "{\"number\": 0, \"fou";
 /// let (runs, whole) = read_record(&text, &question)?;
 /// assert_eq!((&runs[..], whole), (&study.runs[1..], text.len() - 18));
-/// assert_eq!(optimize(question, runs, &Watch::default())?, study);
+/// assert_eq!(optimize(question, runs, &StudyObserver::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, usize), JsonError> {
+pub fn read_record(
+    text: &str,
+    question: &OptimizationProblem,
+) -> Result<(Vec<SearchRun>, usize), JsonError> {
     let whole = text.rfind('\n').map_or(0, |place| place + 1);
     let mut lines = text[..whole].lines();
     let first = lines.next().ok_or_else(no_record)?;
@@ -757,7 +764,7 @@ pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, u
     if head.schema != RECORD {
         return Err(no_record());
     }
-    if let Some(key) = difference(&head.asked, &asked(question)?) {
+    if let Some(key) = difference(&head.asked, &request_value(question)?) {
         return Err(JsonError(format!(
             "it is the record of another search: `{key}` differs; only `runs` may"
         )));

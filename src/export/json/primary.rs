@@ -4,11 +4,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::sweep::Axis;
 use crate::impact::Units;
 use crate::impact::primary::{
-    Alone, Others, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop,
+    Alone, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop, UndampedAndLocked,
 };
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
@@ -171,7 +171,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     let case = &motion.case;
     let (own, model) = (&case.primary, &case.model);
     let sample = |t: f64| {
-        let state = motion.at(t)?;
+        let state = motion.state_at(t)?;
         Some(PrimarySample {
             t,
             x: state.x,
@@ -182,11 +182,11 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     };
     let [x, velocity, y, speed] = case.start;
     let start = PrimarySample { t: 0.0, x, velocity, y, speed };
-    let others = own.others();
+    let others = own.undamped_and_locked();
     let driven = own.force != 0.0;
     let rest = motion.rest_time();
     PrimaryDocument {
-        schema: Kind::Primary.schema().to_owned(),
+        schema: DocumentKind::Primary.schema().to_owned(),
         parameters: PrimaryParameters {
             mass: own.mass,
             stiffness: own.stiffness,
@@ -240,7 +240,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
 /// ```
 pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
     let row = |(number, (row, units)): (usize, (&PrimaryRow, &Units))| {
-        let Others { locked, without } = row.others;
+        let UndampedAndLocked { locked, without } = row.others;
         let begun = row.is_begun();
         PrimarySweepRow {
             values: report.values(number),
@@ -265,7 +265,7 @@ pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
         rows.iter().all(|row| unit(row) == first).then_some(first)
     };
     PrimarySweepDocument {
-        schema: Kind::PrimarySweep.schema().to_owned(),
+        schema: DocumentKind::PrimarySweep.schema().to_owned(),
         axes: report.axes.iter().map(Axis::from).collect(),
         time_unit: common(|row| row.time_unit),
         length_unit: common(|row| row.length_unit),

@@ -5,11 +5,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::motion_frequency;
 use crate::response::slow::SlowResponse;
-use crate::response::{self, Response};
+use crate::response::{self, ResponseDiagram};
 use crate::verify::Verdict;
 
 /// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those
@@ -164,7 +164,7 @@ pub struct ResponseVerification {
     pub verdict: String,
 }
 
-fn point(point: &response::Point) -> ResponsePoint {
+fn point(point: &response::SteadyMotion) -> ResponsePoint {
     ResponsePoint {
         parameter: point.parameter,
         frequency: point.frequency,
@@ -189,17 +189,17 @@ fn stuck(branch: &response::Branch) -> Vec<f64> {
 /// The document of kind `response`.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let document = lindstedt::export::json::response(&respond(&question)?);
 /// assert!(document.branches.len() == 1 && document.verification.verdict == "pass");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn response(response: &Response) -> ResponseDocument {
+pub fn response(response: &ResponseDiagram) -> ResponseDocument {
     let asked = &response.question;
     ResponseDocument {
-        schema: Kind::Response.schema().to_owned(),
+        schema: DocumentKind::Response.schema().to_owned(),
         equation: asked.oscillator.equation().to_string(),
         parameters: constants(&asked.values),
         parameter: asked.parameter.to_string(),

@@ -4,7 +4,7 @@ use super::{JsonError, unexpected};
 
 /// A kind of document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum DocumentKind {
     /// `derive`.
     Solution,
     /// `compare`.
@@ -45,7 +45,7 @@ pub enum Kind {
     Certificate,
 }
 
-impl Kind {
+impl DocumentKind {
     /// Every kind.
     pub const ALL: [Self; 19] = [
         Self::Solution,
@@ -124,9 +124,9 @@ impl Kind {
     /// the types that write and read the documents.
     ///
     /// ```
-    /// use lindstedt::export::json::Kind;
+    /// use lindstedt::export::json::DocumentKind;
     ///
-    /// let kind = Kind::from_name("impact").ok_or("no such kind")?;
+    /// let kind = DocumentKind::from_name("impact").ok_or("no such kind")?;
     /// let schema: serde_json::Value = serde_json::from_str(kind.json_schema())?;
     /// assert_eq!(schema["title"], "lindstedt/impact/1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -137,7 +137,7 @@ impl Kind {
 }
 
 /// Refuses a document of another kind.
-pub(super) fn check_kind(schema: &str, kind: Kind) -> Result<(), JsonError> {
+pub(super) fn check_kind(schema: &str, kind: DocumentKind) -> Result<(), JsonError> {
     match schema == kind.schema() {
         true => Ok(()),
         false => unexpected("schema", kind.schema()),

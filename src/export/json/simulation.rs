@@ -4,11 +4,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::text;
 use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
 use crate::impact::{
-    self, ClosedForm, ContactDeviation, Friction, Geometry, Integrator, Piece, Regime, Side,
+    self, ClosedForm, ContactDeviation, Friction, Geometry, Integrator, PathSegment, Regime, Side,
 };
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of
@@ -422,11 +422,11 @@ pub fn simulation(report: &Report) -> SimulationDocument {
     let book = motion.energy();
     let rest = motion.rest();
     let sample = |&t: &f64| {
-        let (x, velocity) = motion.path.at(t).unzip();
+        let (x, velocity) = motion.path.phase_point_at(t).unzip();
         Sample { t, x, velocity }
     };
     SimulationDocument {
-        schema: Kind::Simulation.schema().to_owned(),
+        schema: DocumentKind::Simulation.schema().to_owned(),
         parameters: Parameters {
             barrier: Barrier { left: model.left, right: model.right },
             start: motion.start.x,
@@ -492,7 +492,7 @@ fn impacts(report: &Report) -> Vec<Impact> {
     impacts.map(|(contact, error)| Impact { error, ..impact(contact) }).collect()
 }
 
-fn phase(piece: &Piece) -> ChainPhase {
+fn phase(piece: &PathSegment) -> ChainPhase {
     let form = piece.closed_form();
     let empty = ChainPhase {
         name: match piece.regime {
@@ -521,7 +521,7 @@ fn phase(piece: &Piece) -> ChainPhase {
     }
 }
 
-fn impact(impact: &impact::Contact) -> Impact {
+fn impact(impact: &impact::ContactRecord) -> Impact {
     Impact {
         entry_time: impact.entry_time,
         exit_time: impact.exit_time,

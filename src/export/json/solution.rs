@@ -5,10 +5,10 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{Names, meanings, named, text, texts};
+use super::number::{DocumentNames, meanings, named, text, texts};
 use super::verification::{Verification, verification as judged};
-use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
-use crate::derivation::Line;
+use super::{Constant, DocumentKind, JsonError, Map, Polynomial, check_kind, unexpected};
+use crate::derivation::DerivationLine;
 use crate::exact::{self, Monomial, POLYNOMIALS, Polynomials};
 use crate::expr::{Equation, parse_equation};
 use crate::series::FourierSeries;
@@ -27,7 +27,7 @@ use crate::verify;
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct SolutionDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Solution.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
     /// in radians per unit of it.
@@ -143,7 +143,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    fn of(estimate: &singularity::Estimate) -> Self {
+    fn from_estimate(estimate: &singularity::Estimate) -> Self {
         Self {
             exact: estimate.value.to_string(),
             value: exact::to_f64(&estimate.value),
@@ -160,22 +160,22 @@ impl Estimate {
 }
 
 impl Convergence {
-    fn of(convergence: &solution::Convergence) -> Self {
+    fn from_convergence(convergence: &solution::Convergence) -> Self {
         let nearest = &convergence.nearest;
-        let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
+        let [real, imaginary] = nearest.place.each_ref().map(Estimate::from_estimate);
         let powers = convergence.variable.factors().iter();
         Self {
             variable: named(powers.map(|(name, power)| (name, *power))),
             highest: convergence.highest,
-            radius: Estimate::of(&nearest.radius),
-            angle: Estimate::of(&nearest.angle),
+            radius: Estimate::from_estimate(&nearest.radius),
+            angle: Estimate::from_estimate(&nearest.angle),
             real,
             imaginary,
-            exponent: nearest.exponent.as_ref().map(Estimate::of),
+            exponent: nearest.exponent.as_ref().map(Estimate::from_estimate),
         }
     }
 
-    fn read(&self, names: &Names) -> Result<solution::Convergence, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Convergence, JsonError> {
         let powers = self.variable.iter();
         Ok(solution::Convergence {
             variable: powers.fold(Monomial::one(), |product, (name, power)| {
@@ -206,8 +206,8 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct Displacement {
-    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta
-    /// = omega t + `verification.phase`, in radians.
+    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own:
+    /// theta = omega t + `verification.phase`, in radians.
     #[cfg_attr(feature = "schema", schemars(extend("pattern" = "^(theta|phi_*)$")))]
     pub variable: String,
     /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the
@@ -403,9 +403,10 @@ pub fn solution(
     verification: Option<&verify::Verification>,
 ) -> SolutionDocument {
     let _letters = solution.letters().in_force();
-    let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
+    let optional =
+        |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::from_polynomial(law, solution));
     SolutionDocument {
-        schema: Kind::Solution.schema().to_owned(),
+        schema: DocumentKind::Solution.schema().to_owned(),
         equation: solution.equation.to_string(),
         method: solution.method.name().to_owned(),
         order: solution.order,
@@ -414,7 +415,7 @@ pub fn solution(
         amplitude: solution.amplitude.name().to_owned(),
         parameters: texts(&solution.parameters),
         definitions: meanings(&solution.definitions),
-        equilibrium: Constant::of(&solution.equilibrium),
+        equilibrium: Constant::from_expr(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
         frequency_squared: optional(solution.law.frequency_squared()),
         relation: optional(solution.law.relation()),
@@ -431,7 +432,7 @@ pub fn solution(
         response: solution.response.as_ref().map(|response| self::response(response, solution)),
         numerical: solution.numerical,
         validity: texts(&solution.validity),
-        convergence: solution.convergence.as_ref().map(Convergence::of),
+        convergence: solution.convergence.as_ref().map(Convergence::from_convergence),
         derivation: None,
         verification: verification.map(judged),
     }
@@ -442,8 +443,8 @@ fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Dis
     let harmonic =
         |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
             harmonic,
-            cos: Polynomial::of(&cosine, solution),
-            sin: Polynomial::of(&sine, solution),
+            cos: Polynomial::from_polynomial(&cosine, solution),
+            sin: Polynomial::from_polynomial(&sine, solution),
         };
     Displacement {
         variable: solution.phase().to_string(),
@@ -454,7 +455,7 @@ fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Dis
 /// The cycle of the solution and, to leading order, all of its equation.
 fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle {
     LimitCycle {
-        amplitude: Polynomial::of(&cycle.amplitude, solution),
+        amplitude: Polynomial::from_polynomial(&cycle.amplitude, solution),
         number: cycle.number,
         cycles: cycle.cycles.iter().map(self::cycle).collect(),
         small_with: texts(&cycle.small_with),
@@ -464,7 +465,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
 /// An amplitude that stays, with its stability.
 fn cycle(leading: &LeadingCycle) -> Cycle {
     Cycle {
-        amplitude: Constant::of(&leading.amplitude),
+        amplitude: Constant::from_expr(&leading.amplitude),
         attracts_where_positive: text(leading.attracts_where.as_ref()),
         stability: leading.stability(),
     }
@@ -502,7 +503,7 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
 
 /// The steady motions of a driven equation in symbols.
 fn response(response: &solution::Response, solution: &Solution) -> Response {
-    let polynomial = |value: &exact::Polynomial| Polynomial::of(value, solution);
+    let polynomial = |value: &exact::Polynomial| Polynomial::from_polynomial(value, solution);
     Response {
         motion: response.motion.to_string(),
         relation: response.relation.as_ref().map(polynomial),
@@ -549,7 +550,7 @@ fn all<T, U>(
     found.iter().map(read).collect()
 }
 
-fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
+fn symbols(texts: &[String], names: &DocumentNames) -> Vec<Symbol> {
     texts.iter().map(|text| names.symbol(text)).collect()
 }
 
@@ -560,7 +561,7 @@ impl SolutionDocument {
     /// # Errors
     /// A document of another kind; a name, a fraction or an expression that is none.
     pub fn read(&self) -> Result<Solution, JsonError> {
-        check_kind(&self.schema, Kind::Solution)?;
+        check_kind(&self.schema, DocumentKind::Solution)?;
         let method = Method::from_name(&self.method);
         let amplitude = AmplitudeConvention::from_name(&self.amplitude);
         let (Some(method), Some(amplitude)) = (method, amplitude) else {
@@ -574,7 +575,7 @@ impl SolutionDocument {
         let time = Symbol::new("t");
         let own = self.parameters.iter().map(|name| Symbol::new(name));
         let driven = equation.left.contains(time) || equation.right.contains(time);
-        let names = &Names::beside(own.chain([equation.coordinate]), driven);
+        let names = &DocumentNames::avoiding(own.chain([equation.coordinate]), driven);
         let definition = |(name, meaning): (&String, &String)| {
             Ok(Definition { symbol: names.symbol(name), meaning: names.expression(meaning, name)? })
         };
@@ -587,7 +588,7 @@ impl SolutionDocument {
             },
             method,
             order: self.order,
-            degrees: match self.degrees.as_deref().map(Degrees::of) {
+            degrees: match self.degrees.as_deref().map(Degrees::from_list) {
                 Some(None) => return unexpected("degrees", "those of an approximant"),
                 degrees => degrees.flatten(),
             },
@@ -615,7 +616,7 @@ impl SolutionDocument {
     }
 
     /// The law, of whose kinds a document holds one.
-    fn law(&self, names: &Names) -> Result<Law, JsonError> {
+    fn law(&self, names: &DocumentNames) -> Result<Law, JsonError> {
         let optional = |law: &Option<Polynomial>, key| some(law, |law| names.polynomial(law, key));
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
@@ -632,14 +633,14 @@ impl SolutionDocument {
             (None, None, None, None, Some(system)) => Law::System(system),
             (None, None, None, None, None) => {
                 let lines = self.by_quadrature.as_deref().map(|text| text.split("; "));
-                Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
+                Law::Quadrature(lines.into_iter().flatten().map(DerivationLine::words).collect())
             }
         })
     }
 }
 
 /// `omega = ...` or `omega^2 = ...`.
-fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
+fn closed_form(text: &str, names: &DocumentNames) -> Result<ClosedForm, JsonError> {
     let (squared, value) = match text.split_once(" = ") {
         Some((name, value)) if name == names.frequency() => (false, value),
         Some((name, value)) if name.strip_suffix("^2") == Some(names.frequency()) => (true, value),
@@ -650,8 +651,8 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 }
 
 impl System {
-    fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        Ok(solution::System {
+    fn read(&self, names: &DocumentNames) -> Result<solution::AlgebraicSystem, JsonError> {
+        Ok(solution::AlgebraicSystem {
             unknowns: symbols(&self.unknowns, names),
             equations: all(&self.equations, |text| names.expression(text, "equations"))?,
         })
@@ -659,7 +660,7 @@ impl System {
 }
 
 impl LimitCycle {
-    fn read(&self, names: &Names) -> Result<solution::LimitCycle, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::LimitCycle, JsonError> {
         Ok(solution::LimitCycle {
             amplitude: names.polynomial(&self.amplitude, "limit_cycle")?,
             number: self.number,
@@ -670,7 +671,7 @@ impl LimitCycle {
 }
 
 impl Cycle {
-    fn read(&self, names: &Names) -> Result<LeadingCycle, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<LeadingCycle, JsonError> {
         Ok(LeadingCycle {
             amplitude: names.expression(&self.amplitude.exact, "amplitude")?,
             attracts_where: some(&self.attracts_where_positive, |text| {
@@ -681,7 +682,7 @@ impl Cycle {
 }
 
 impl Response {
-    fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Response, JsonError> {
         let polynomial = |value: &Polynomial, key| names.polynomial(value, key);
         let both = |[u, v]: &[Polynomial; 2], key| Ok([polynomial(u, key)?, polynomial(v, key)?]);
         let expression = |text: &String, key| names.expression(text, key);
@@ -717,7 +718,7 @@ impl Response {
 }
 
 impl Modulation {
-    fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Modulation, JsonError> {
         let expression = |text: &String, key| names.expression(text, key);
         Ok(solution::Modulation {
             amplitude: names.symbol(&self.amplitude),
@@ -757,8 +758,8 @@ impl Modulation {
 }
 
 impl Displacement {
-    fn read(&self, names: &Names) -> Result<FourierSeries<Polynomials>, JsonError> {
-        /// No document of ours comes near it; a hostile one must not fill the memory.
+    fn read(&self, names: &DocumentNames) -> Result<FourierSeries<Polynomials>, JsonError> {
+        /// Largest number of a harmonic in a document: a hostile one must not fill the memory.
         const HIGHEST_HARMONIC: usize = 100_000;
         let length = self
             .harmonics

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Constant, Map, Polynomial, constants, finite, texts};
 use crate::expr::Expr;
 use crate::report::StabilityReport;
@@ -93,11 +93,11 @@ fn verdict(passes: bool) -> String {
 ///
 /// ```
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 /// use lindstedt::report::StabilityReport;
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let report = StabilityReport { curves: &curves, judged: None, tolerance: 0.01 };
 /// assert_eq!(lindstedt::export::json::stability(&report).curves[1].name, "a1");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -107,7 +107,7 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
     let polynomial = |polynomial| Polynomial::of_sum(&curves.ordered(polynomial));
     let unknown = curves.unknown.symbol().to_string();
     StabilityDocument {
-        schema: Kind::Stability.schema().to_owned(),
+        schema: DocumentKind::Stability.schema().to_owned(),
         equation: curves.equation.to_string(),
         gives: Expr::from(&curves.unknown.given()).to_string(),
         unknown,

@@ -6,7 +6,7 @@ use std::io;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::Kind;
+use super::DocumentKind;
 use super::simulation::State;
 use crate::export::simulation::{Column, SweepReport, columns};
 use crate::impact::sweep::{Spacing, Summary};
@@ -106,7 +106,7 @@ impl Serialize for Streamed<'_> {
 /// Writes the document of kind `sweep`, a row at a time.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::{json, simulation::SweepReport};
@@ -125,7 +125,7 @@ impl Serialize for Streamed<'_> {
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     let document = SweepDocument {
-        schema: Kind::Sweep.schema().to_owned(),
+        schema: DocumentKind::Sweep.schema().to_owned(),
         axes: report.axes.iter().map(Axis::from).collect(),
         columns: columns(report.axes, report.has_baseline()),
         rows: Streamed(report),

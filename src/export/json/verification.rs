@@ -1,5 +1,5 @@
-//! What the judge says of a formula, inside the documents of kind `solution`: frequencies and
-//! errors at the values given, the steady or the followed motion, the range, the verdict.
+//! The verification of a formula, inside the documents of kind `solution`: frequencies and errors
+//! at the given values, the steady or the transient motion, the range, the verdict.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;

@@ -1,11 +1,11 @@
 //! The blocks of a comparison as LaTeX.
 
-use super::table::{self, Table};
+use super::table::{self, LatexTable};
 use super::{constant, expression, scientific, scientific_text, sum, symbol};
 use crate::decimal::{decimal, significant};
 use crate::expr::{Equation, Expr};
 use crate::report::MethodRow;
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
@@ -19,7 +19,7 @@ pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> Str
 }
 
 /// The table, a formula at the end of each row.
-pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
+pub(super) fn methods(rows: &[MethodRow], at: &Values) -> LatexTable {
     let at = at.iter();
     let at: Vec<String> =
         at.map(|(name, value)| format!("{} = {}", symbol(name), expression(value))).collect();
@@ -28,7 +28,7 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
         false => format!(" at ${}$", at.join(", ")),
     };
     let omega = format!("${}${place}", symbol(FREQUENCY));
-    Table {
+    LatexTable {
         places: "lrrrl".to_owned(),
         head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
         rows: rows.iter().map(row).collect(),
@@ -70,7 +70,7 @@ pub(in crate::export) fn with_hbar(method: &MethodRow) -> String {
     }
 }
 
-/// The law in one line, with the definitions it needs; in words where it is no formula.
+/// The law in one line, with the definitions it needs; in words where it is not a formula.
 fn formula(method: &MethodRow) -> Result<String, &'static str> {
     let ordered = |law| sum(&method.row.solution.ordered(law));
     let slow = method.row.solution.slow();
@@ -86,18 +86,22 @@ fn formula(method: &MethodRow) -> Result<String, &'static str> {
             });
             rates.unwrap_or_default()
         }
-        Shown::Squared(squared) => format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared)),
-        Shown::Closed(_) if method.row.solution.numerical => {
+        DisplayedLaw::Squared(squared) => {
+            format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared))
+        }
+        DisplayedLaw::Closed(_) if method.row.solution.numerical => {
             return Err("closed form, rounded coefficients");
         }
-        Shown::Closed(form) => {
+        DisplayedLaw::Closed(form) => {
             let omega = symbol(FREQUENCY);
             let name = if form.squared { omega + "^{2}" } else { omega };
             format!("{name} = {}", expression(&form.value))
         }
-        Shown::Frequency(frequency) => format!("{} = {}", symbol(FREQUENCY), ordered(frequency)),
-        Shown::Relation(relation) => format!("0 = {}", ordered(relation)),
-        Shown::Quadrature(_) | Shown::System(_) => return Err("by numbers"),
+        DisplayedLaw::Frequency(frequency) => {
+            format!("{} = {}", symbol(FREQUENCY), ordered(frequency))
+        }
+        DisplayedLaw::Relation(relation) => format!("0 = {}", ordered(relation)),
+        DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_) => return Err("by numbers"),
     };
     let definitions = method.definitions.iter().map(|definition| {
         let meaning = constant(&definition.meaning);

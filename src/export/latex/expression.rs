@@ -16,63 +16,65 @@ use crate::symbol::{GREEK, Symbol};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn expression(expression: &Expr) -> String {
-    written(expression, Place::Free)
+    written(expression, LatexContext::Free)
 }
 
 /// As it stands in parentheses or below a root, which the caller writes.
 pub fn inside(expression: &Expr) -> String {
-    written(expression, Place::Inside)
+    written(expression, LatexContext::Inside)
 }
 
-fn written(expression: &Expr, place: Place) -> String {
+fn written(expression: &Expr, place: LatexContext) -> String {
     let mut text = String::new();
-    let mut open = vec![Piece::Expr(expression.clone(), place)];
+    let mut open = vec![LatexItem::Expr(expression.clone(), place)];
     while let Some(piece) = open.pop() {
         match piece {
-            Piece::Text(piece) => text.push_str(&piece),
-            Piece::Expr(expr, place) => open.extend(pieces(&expr, place).into_iter().rev()),
+            LatexItem::Text(piece) => text.push_str(&piece),
+            LatexItem::Expr(expr, place) => open.extend(pieces(&expr, place).into_iter().rev()),
         }
     }
     text
 }
 
-enum Piece {
+enum LatexItem {
     Text(String),
-    Expr(Expr, Place),
+    Expr(Expr, LatexContext),
 }
 
-/// What surrounds an expression, and with it what needs parentheses.
+/// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
-    /// Alone.
+enum LatexContext {
+    /// The whole expression.
     Free,
     /// An argument, or between braces or parentheses already.
     Inside,
     /// A term after its sign has been written: the sign is left out.
     Unsigned,
-    /// The same for a single term, whose minus has gone into a difference above the line.
+    /// A single term whose minus has gone into a difference above the fraction bar.
     Turned,
     /// A factor that needs no sign between itself and its neighbours.
     Factor,
 }
 
-fn text(text: impl Into<String>) -> Piece {
-    Piece::Text(text.into())
+fn text(text: impl Into<String>) -> LatexItem {
+    LatexItem::Text(text.into())
 }
 
 /// One level of an expression, in reading order.
-fn pieces(expr: &Expr, place: Place) -> Vec<Piece> {
+fn pieces(expr: &Expr, place: LatexContext) -> Vec<LatexItem> {
     let is_negative = |term: &Expr| term.factors().0.is_negative();
     match place {
-        Place::Factor => factor(expr),
-        Place::Unsigned => term(expr, false),
-        Place::Turned => term(expr, true),
-        Place::Free | Place::Inside if is_negative(expr) && difference(expr).is_some() => {
-            vec![Piece::Expr(expr.clone(), Place::Turned)]
+        LatexContext::Factor => factor(expr),
+        LatexContext::Unsigned => term(expr, false),
+        LatexContext::Turned => term(expr, true),
+        LatexContext::Free | LatexContext::Inside
+            if is_negative(expr) && difference(expr).is_some() =>
+        {
+            vec![LatexItem::Expr(expr.clone(), LatexContext::Turned)]
         }
-        Place::Free | Place::Inside => {
+        LatexContext::Free | LatexContext::Inside => {
             let terms: Vec<&Expr> = match place {
-                Place::Inside => expr.terms_inside().collect(),
+                LatexContext::Inside => expr.terms_inside().collect(),
                 _ => expr.terms().iter().collect(),
             };
             let signed = terms.into_iter().enumerate().flat_map(|(index, term)| {
@@ -82,7 +84,7 @@ fn pieces(expr: &Expr, place: Place) -> Vec<Piece> {
                     (_, false) => " + ",
                     (_, true) => " - ",
                 };
-                [text(sign), Piece::Expr(term.clone(), Place::Unsigned)]
+                [text(sign), LatexItem::Expr(term.clone(), LatexContext::Unsigned)]
             });
             signed.collect()
         }
@@ -98,7 +100,7 @@ fn difference(product: &Expr) -> Option<(usize, Expr)> {
 
 /// One term without its sign, as a fraction where there is a denominator; with its first difference
 /// turned round, if so asked.
-fn term(term: &Expr, turn: bool) -> Vec<Piece> {
+fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
     let (coefficient, factors) = term.factors();
     let (mut above, mut below) = (vec![], vec![]);
     let turned = if turn { difference(term) } else { None };
@@ -122,15 +124,15 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
     let above = match above.as_slice() {
         // As what is alone under it.
         [(base, exponent)] if is_fraction && numerator == "1" && exponent.is_one() => {
-            vec![Piece::Expr(base.clone(), Place::Inside)]
+            vec![LatexItem::Expr(base.clone(), LatexContext::Inside)]
         }
         _ => row((numerator != "1" || above.is_empty()).then_some(numerator), &above),
     };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
-        // What is alone under the line stands between braces already.
+        // A single factor in the denominator is between braces already.
         [(base, exponent)] if denominator.is_one() && exponent.is_one() => {
-            vec![Piece::Expr(base.clone(), Place::Inside)]
+            vec![LatexItem::Expr(base.clone(), LatexContext::Inside)]
         }
         _ => row((!denominator.is_one()).then(|| denominator.to_string()), &below),
     };
@@ -139,7 +141,7 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
 }
 
 /// A number and powers, side by side.
-fn row(number: Option<String>, factors: &[(Expr, Expr)]) -> Vec<Piece> {
+fn row(number: Option<String>, factors: &[(Expr, Expr)]) -> Vec<LatexItem> {
     let number = number.map(|number| vec![text(number)]);
     let powers = factors.iter().map(|(base, exponent)| power(base, exponent));
     let mut row = Vec::new();
@@ -152,17 +154,23 @@ fn row(number: Option<String>, factors: &[(Expr, Expr)]) -> Vec<Piece> {
     row
 }
 
-fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
+fn power(base: &Expr, exponent: &Expr) -> Vec<LatexItem> {
     let half = Rational::new(1.into(), 2.into());
     let exponent = match exponent.as_number() {
-        Some(number) if number.is_one() => return vec![Piece::Expr(base.clone(), Place::Factor)],
+        Some(number) if number.is_one() => {
+            return vec![LatexItem::Expr(base.clone(), LatexContext::Factor)];
+        }
         Some(number) if *number == half => {
-            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Inside), text("}")];
+            return vec![
+                text("\\sqrt{"),
+                LatexItem::Expr(base.clone(), LatexContext::Inside),
+                text("}"),
+            ];
         }
         Some(number) if !number.is_integer() => {
             text(format!("{}/{}", number.numer(), number.denom()))
         }
-        _ => Piece::Expr(exponent.clone(), Place::Inside),
+        _ => LatexItem::Expr(exponent.clone(), LatexContext::Inside),
     };
     // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative
     // needs braces around its primes.
@@ -171,18 +179,18 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
             vec![text(format!("{{{}}}", self::symbol(*symbol)))]
         }
         Node::Function(..) | Node::Power(..) => in_parentheses(base),
-        _ => vec![Piece::Expr(base.clone(), Place::Factor)],
+        _ => vec![LatexItem::Expr(base.clone(), LatexContext::Factor)],
     };
     power.extend([text("^{"), exponent, text("}")]);
     power
 }
 
-fn in_parentheses(expr: &Expr) -> Vec<Piece> {
-    vec![text("\\left("), Piece::Expr(expr.clone(), Place::Inside), text("\\right)")]
+fn in_parentheses(expr: &Expr) -> Vec<LatexItem> {
+    vec![text("\\left("), LatexItem::Expr(expr.clone(), LatexContext::Inside), text("\\right)")]
 }
 
 /// A factor that needs no sign between itself and its neighbours.
-fn factor(factor: &Expr) -> Vec<Piece> {
+fn factor(factor: &Expr) -> Vec<LatexItem> {
     match factor.node() {
         Node::Number(number) if number.is_integer() && !number.is_negative() => {
             vec![text(number.to_string())]
@@ -195,7 +203,7 @@ fn factor(factor: &Expr) -> Vec<Piece> {
     }
 }
 
-fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
+fn call(function: Function, arguments: &[Expr]) -> Vec<LatexItem> {
     let name = match function {
         Function::Absolute => "",
         Function::Asin => "\\arcsin",
@@ -233,7 +241,7 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         if index > 0 {
             call.push(text(", "));
         }
-        call.push(Piece::Expr(argument.clone(), Place::Inside));
+        call.push(LatexItem::Expr(argument.clone(), LatexContext::Inside));
     }
     call.push(text(close));
     call

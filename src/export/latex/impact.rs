@@ -1,18 +1,21 @@
 //! The blocks of an impact as LaTeX.
 
-use super::table::{self, Table};
+use super::table::{self, LatexTable};
 use super::{scientific, scientific_text};
 use crate::decimal::significant;
 use crate::export::latex::{symbol, typed};
 use crate::impact::contact::ContactRow;
-use crate::impact::{FittedLine, Form, ImpactRow, Letters, Phase, Quantity, Reading, Rule, Term};
+use crate::impact::{
+    FittedLine, Form, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+    TimeFunction,
+};
 
-/// Of what the phases that follow are.
-pub(super) fn reading(reading: Reading) -> String {
+/// The head of the phases of a version.
+pub(super) fn reading(reading: PhaseReading) -> String {
     let words = match reading {
-        Reading::Paper => "contact speed from the one-term motion",
-        Reading::Energy => "contact speed from the energy",
-        Reading::Derived => "derived motion with all harmonics",
+        PhaseReading::Paper => "contact speed from the one-term motion",
+        PhaseReading::Energy => "contact speed from the energy",
+        PhaseReading::Derived => "derived motion with all harmonics",
     };
     format!("&\\text{{{words}:}}")
 }
@@ -22,7 +25,7 @@ pub(super) fn fitted(
     fitted: &FittedLine,
     barrier: f64,
     rule: Rule,
-    letters: Letters,
+    letters: ImpactSymbols,
     per_stiffness: bool,
 ) -> String {
     let line = format!(
@@ -42,9 +45,9 @@ pub(super) fn fitted(
 }
 
 /// A table: Runge-Kutta, and by every column the number and its error.
-pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> Table {
+pub(super) fn quantities(columns: &[PhaseReading], rows: &[ImpactQuantity]) -> LatexTable {
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
-    let row = |row: &Quantity| {
+    let row = |row: &ImpactQuantity| {
         let cells = row.closed_forms.iter().zip(row.errors());
         let first = [row.name.to_owned(), number(row.runge_kutta)];
         let rest = cells.flat_map(|(value, error)| [number(*value), percent(error)]);
@@ -52,7 +55,7 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity]) -> Table {
     };
     let names = columns.iter().flat_map(|column| [column.name(), "error"]);
     let head: Vec<&str> = ["", "Runge--Kutta"].into_iter().chain(names).collect();
-    Table::of_numbers(table::head(&head), rows.iter().map(row).collect())
+    LatexTable::of_numbers(table::head(&head), rows.iter().map(row).collect())
 }
 
 fn number(value: f64) -> String {
@@ -78,8 +81,11 @@ fn upright(unit: &str) -> String {
 }
 
 /// A table in SI units: Runge-Kutta and every column.
-pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> Table {
-    let row = |(row, unit): &(Quantity, &str)| {
+pub(super) fn si_quantities(
+    columns: &[PhaseReading],
+    rows: &[(ImpactQuantity, &str)],
+) -> LatexTable {
+    let row = |(row, unit): &(ImpactQuantity, &str)| {
         let name = match *unit {
             "" => row.name.to_owned(),
             unit => format!("{}, ${}$", row.name, upright(unit)),
@@ -89,11 +95,11 @@ pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> T
     };
     let names = columns.iter().map(|column| column.name());
     let head: Vec<&str> = ["", "Runge--Kutta"].into_iter().chain(names).collect();
-    Table::of_numbers(table::head(&head), rows.iter().map(row).collect())
+    LatexTable::of_numbers(table::head(&head), rows.iter().map(row).collect())
 }
 
 /// A table of laws: the numbers of each and their errors in percent.
-pub(super) fn contact_laws(rows: &[ContactRow]) -> Table {
+pub(super) fn contact_laws(rows: &[ContactRow]) -> LatexTable {
     let percent = |error: f64| number((1e5 * error).round() / 1e3);
     let row = |row: &ContactRow| -> Option<Vec<String>> {
         let (motion, errors) = row.outcome.as_ref().ok()?;
@@ -108,11 +114,11 @@ pub(super) fn contact_laws(rows: &[ContactRow]) -> Table {
         Some(cells.chain([last]).collect())
     };
     let head = ["law", "duration", "\\%", "penetration", "\\%", "peak force", "\\%", "motion, \\%"];
-    Table::of_numbers(table::head(&head), rows.iter().filter_map(row).collect())
+    LatexTable::of_numbers(table::head(&head), rows.iter().filter_map(row).collect())
 }
 
 /// A table of methods: the errors of each in percent.
-pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
+pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> LatexTable {
     let percent = |value: f64| match value.abs() < 1e-9 {
         true => "$< 10^{-7}$".to_owned(),
         false => format!("${}$", scientific_text(&significant(100.0 * value, 3))),
@@ -136,7 +142,7 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
         "return",
     ];
     let rows = std::iter::once(known).chain(rows.iter().map(row)).collect();
-    Table::of_numbers(table::head(&head), rows)
+    LatexTable::of_numbers(table::head(&head), rows)
 }
 
 fn signed(value: f64) -> String {
@@ -144,7 +150,7 @@ fn signed(value: f64) -> String {
 }
 
 /// The name of a phase and when it is, and its closed form: a few waves to a row.
-pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
+pub(super) fn phase(phase: &MotionPhase, letters: ImpactSymbols) -> Vec<String> {
     const WAVES_IN_A_ROW: usize = 3;
     let clock = match phase.joined_at() {
         Some(join) => format!("(t - t_{{{join}}})"),
@@ -173,9 +179,9 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
             for (term, value) in phase.form.felt_terms() {
                 let size = if waves.is_empty() { scientific(value) } else { signed(value) };
                 waves.push(match term {
-                    Term::Constant => scientific_text(&significant(value, 9)),
-                    Term::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
-                    Term::Wave { function, frequency } => {
+                    TimeFunction::Constant => scientific_text(&significant(value, 9)),
+                    TimeFunction::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
+                    TimeFunction::Wave { function, frequency } => {
                         format!(
                             "{size} \\{function}\\left({}\\,{clock}\\right)",
                             scientific(frequency)

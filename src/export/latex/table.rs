@@ -5,10 +5,10 @@ use super::{formula_in_words, scientific_text, words};
 use crate::report::{Heading, are_names};
 
 /// A table whose cells are LaTeX already.
-pub(in crate::export) struct Table {
-    /// Where each column stands: `l`, `r`.
+pub(in crate::export) struct LatexTable {
+    /// The alignment of each column: `l`, `r`.
     pub(in crate::export) places: String,
-    /// What stands above each column.
+    /// The heading of each column.
     pub(in crate::export) head: Vec<String>,
     /// A cell for each column.
     pub(in crate::export) rows: Vec<Vec<String>>,
@@ -16,7 +16,7 @@ pub(in crate::export) struct Table {
     pub(in crate::export) framed: bool,
 }
 
-impl Table {
+impl LatexTable {
     /// A table whose first column stands on the left and every other one on the right.
     pub(super) fn of_numbers(head: Vec<String>, rows: Vec<Vec<String>>) -> Self {
         Self {
@@ -114,7 +114,7 @@ pub(super) fn head(names: &[&str]) -> Vec<String> {
 }
 
 /// A table of numbers and words.
-pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
+pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> LatexTable {
     let cell = |cell: &String| match cell.parse::<f64>() {
         Ok(_) => format!("${}$", scientific_text(cell)),
         Err(_) => {
@@ -125,7 +125,7 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     if are_names(rows) {
         places.replace_range(..1, "l");
     }
-    Table {
+    LatexTable {
         places,
         head: head.iter().map(|heading| heading.latex.to_owned()).collect(),
         rows: rows.iter().map(|row| row.iter().map(cell).collect()).collect(),

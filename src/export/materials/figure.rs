@@ -3,7 +3,7 @@
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
-    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::{
     ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, Simulation,
@@ -87,7 +87,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         sides.iter().map(|held| ["Swing", "Decay"].map(|what| title(what, held))).collect();
     let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
     let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| {
-        let guides = barriers.iter().map(|barrier| Guide::Y(*barrier, "barrier x_c")).collect();
+        let guides = barriers.iter().map(|barrier| GuideLine::Y(*barrier, "barrier x_c")).collect();
         let labels = ["time t (s)", "displacement x (rad)"];
         panel(title, labels, of_materials(study, swings), guides)
     });
@@ -96,14 +96,14 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         let beside = beside.map(|(label, points, style)| curve(label, points, *style));
         let labels = ["time t (s)", "amplitude (% of the first swing)"];
         let curves = beside.chain(of_materials(study, decays)).collect();
-        let guides = vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")];
+        let guides = vec![GuideLine::Y(100.0 * REST_FRACTION, "rest, 10 %")];
         Panel { y_scale: Scale::Logarithmic, ..panel(title, labels, curves, guides) }
     });
     let panels: Vec<Panel> = swings.chain(decays).collect();
     figure(&panels, &caption(study, contrast, drawn))
 }
 
-/// When the last of them rests; the end of the run where one does not.
+/// The time at which the last of them rests; the end of the run where one does not.
 fn last_rest(study: &MaterialStudy) -> f64 {
     let of_rows = study.rows.iter().map(|row| row.course.rest_time);
     let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());
@@ -112,7 +112,7 @@ fn last_rest(study: &MaterialStudy) -> f64 {
     longest.unwrap_or(study.question.settings.duration)
 }
 
-/// Of the forms that are not as good as the given one the first: mu beside lambda, lambda beside
+/// The first of the forms that are worse than the given one: mu compared with lambda, lambda with
 /// mu.
 fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
     let by_mu = |damping: ContactDamping| {
@@ -133,7 +133,7 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
 /// The displacement in this window of time, the time in seconds.
 fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
     let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| Some((t * second, motion.path.at(t)?.0))).collect()
+    times.filter_map(|t| Some((t * second, motion.path.phase_point_at(t)?.0))).collect()
 }
 
 /// The amplitude at the turning points of the envelope, in percent of the first, the time in

@@ -7,9 +7,9 @@ use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 /// integration. A first line of comment has the units; what has no value is empty.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 2, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 2, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// assert_eq!(lindstedt::export::optimization::csv(&study).lines().count(), 4);
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
 /// ```
@@ -26,7 +26,7 @@ pub fn optimization(study: &Study) -> String {
 }
 
 /// Name and unit of each column.
-fn columns(question: &Question) -> Vec<(String, String)> {
+fn columns(question: &OptimizationProblem) -> Vec<(String, String)> {
     let column = |name: &str, unit: &str| {
         let unit = if unit.is_empty() { "1" } else { unit };
         (name.to_owned(), unit.to_owned())
@@ -52,15 +52,15 @@ fn columns(question: &Question) -> Vec<(String, String)> {
 }
 
 /// The variables that have a column of their own: the mass may be an objective, which has one.
-fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
+fn own_variables(question: &OptimizationProblem) -> impl Iterator<Item = usize> {
     let is_objective =
         |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
     (0..question.variables.len())
         .filter(move |&index| !is_objective(question.variables[index].parameter.name()))
 }
 
-/// What is known of a design beside what was made small, and what varies.
-fn others(question: &Question) -> impl Iterator<Item = Objective> {
+/// The quantities of a design beside the objectives and the variables.
+fn others(question: &OptimizationProblem) -> impl Iterator<Item = Objective> {
     let varies = |name: &str| {
         let mut variables = question.variables.iter();
         variables.any(|variable| variable.parameter.name() == name)
@@ -73,7 +73,7 @@ fn others(question: &Question) -> impl Iterator<Item = Objective> {
 }
 
 /// The best design of a run for one objective, and how the run went.
-fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
+fn best_of(run: &SearchRun, question: &OptimizationProblem) -> Vec<String> {
     let found = run.found.first();
     let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];
     fields
@@ -92,7 +92,7 @@ fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
 }
 
 /// A design of the front of several objectives.
-fn compromise(finalist: &Finalist, question: &Question) -> Vec<String> {
+fn compromise(finalist: &Finalist, question: &OptimizationProblem) -> Vec<String> {
     let design = &finalist.design;
     let mut fields = vec![finalist.run.to_string()];
     fields.extend(finalist.values.iter().map(|value| number(Some(*value))));
@@ -108,7 +108,7 @@ fn number(value: Option<f64>) -> String {
     cell(value.filter(|value| value.is_finite()))
 }
 
-fn name_of(material: Option<usize>, question: &Question) -> String {
+fn name_of(material: Option<usize>, question: &OptimizationProblem) -> String {
     let material = material.and_then(|number| question.materials.get(number));
     quoted(material.map_or("", |material| &material.name))
 }

@@ -1,27 +1,27 @@
-//! How the runs of a search come down, where in the box the good designs lie, and the front of
-//! several objectives.
+//! The convergence of the runs of a search, the good designs in the box, and the front of several
+//! objectives.
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
-    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::optimize::{Objective, Study, Variable, WITHIN};
 
 /// The most runs that are drawn.
 const DRAWN: usize = 200;
 
-/// For one objective the convergence of all runs beside the searches it is measured by, and the
-/// designs within 1 % of the best in the box, with the best of the runs and the paper's Table 5;
-/// for several the front, the first objective against each other one.
+/// The picture of a search: for one objective the convergence of all runs and of the baselines, and
+/// the designs within 1 % of the best in the box, with the best of the runs and the paper's Table
+/// 5; for several the front, the first objective against each other one.
 ///
 /// # Errors
 /// As [`figure`].
 ///
 /// ```
 /// use lindstedt::export::optimization::figure;
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 3, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 3, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// assert!(figure::optimization(&study)?.contains("Convergence"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -46,8 +46,8 @@ fn axis(objective: Objective) -> &'static str {
 
 fn search(study: &Study) -> Result<String, FigureError> {
     let objective = study.objective();
-    let convergence = Convergence::of(study);
-    let designs = Designs::of(study);
+    let convergence = SearchConvergence::from_study(study);
+    let designs = Designs::from_study(study);
     let curves = convergence.curves(study);
     let mut panels = Vec::new();
     if !curves.is_empty() {
@@ -71,15 +71,15 @@ fn search(study: &Study) -> Result<String, FigureError> {
     figure(&panels, &caption)
 }
 
-/// What each search has after so many evaluations.
-struct Convergence {
+/// The best value of each search against the number of evaluations.
+struct SearchConvergence {
     runs: Vec<Points>,
     median: Points,
     rivals: Vec<Points>,
 }
 
-impl Convergence {
-    fn of(study: &Study) -> Self {
+impl SearchConvergence {
+    fn from_study(study: &Study) -> Self {
         let population = study.question.genetic.population as f64;
         let (crossed, mutated) = study.question.genetic.children();
         let born = (crossed + mutated) as f64;
@@ -117,17 +117,18 @@ impl Convergence {
     }
 }
 
-/// Where designs lie in the box, two variables at a time.
+/// The designs in the box, two variables at a time.
 struct Designs {
     pairs: Vec<[usize; 2]>,
     labels: Vec<String>,
     within: String,
-    /// For each pair: those near the best, the best of each run, the paper's.
+    /// The points of each pair: the designs near the best, the best of each run, those of the
+    /// paper.
     points: Vec<[Points; 3]>,
 }
 
 impl Designs {
-    fn of(study: &Study) -> Self {
+    fn from_study(study: &Study) -> Self {
         let variables = &study.question.variables;
         // Every variable once, two by two; the last one alone beside the first.
         let pairs = (0..variables.len()).step_by(2);
@@ -182,9 +183,9 @@ impl Designs {
                 y_scale: scale(pair[1]),
                 curves,
                 guides: x
-                    .map(|at| Guide::X(at, "limits"))
+                    .map(|at| GuideLine::X(at, "limits"))
                     .into_iter()
-                    .chain(y.map(|at| Guide::Y(at, "limits")))
+                    .chain(y.map(|at| GuideLine::Y(at, "limits")))
                     .collect(),
             })
         };

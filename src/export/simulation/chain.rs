@@ -1,17 +1,18 @@
-//! What a chain of closed forms says beyond a simulation: its formulas.
+//! The chain of closed forms: the formulas that it adds to a simulation.
 
 use std::fmt::Write as _;
 
 use super::text::LISTED;
 use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
-use crate::impact::{NoRest, Piece, Regime, Simulation};
+use crate::impact::{NoRest, PathSegment, Regime, Simulation};
 
 /// The phases of a chain: steps of an integration that follow each other are one, which has no
 /// formula.
-pub(in crate::export) fn phases(motion: &Simulation) -> Vec<Piece> {
-    let integrated = |piece: &Piece| piece.closed_form().is_none() && piece.regime != Regime::Stuck;
-    let mut phases: Vec<Piece> = Vec::new();
+pub(in crate::export) fn phases(motion: &Simulation) -> Vec<PathSegment> {
+    let integrated =
+        |piece: &PathSegment| piece.closed_form().is_none() && piece.regime != Regime::Stuck;
+    let mut phases: Vec<PathSegment> = Vec::new();
     for piece in motion.path.pieces() {
         match phases.last_mut() {
             Some(last) if integrated(last) && integrated(piece) => last.end = piece.end,
@@ -50,7 +51,7 @@ pub(super) fn formulas(text: &mut String, motion: &Simulation) {
 }
 
 /// The formula of one phase, or what takes its place.
-pub(super) fn formula(piece: &Piece) -> String {
+pub(super) fn formula(piece: &PathSegment) -> String {
     match (piece.closed_form(), piece.regime) {
         (Some(form), _) => format!("x(t) = {form}"),
         (None, Regime::Stuck) => "at rest".to_owned(),
@@ -59,7 +60,10 @@ pub(super) fn formula(piece: &Piece) -> String {
 }
 
 /// A rest time beside that of the chain.
-pub(super) fn beside(chain: Result<f64, NoRest>, integrated: Result<f64, NoRest>) -> String {
+pub(super) fn rest_time_comparison(
+    chain: Result<f64, NoRest>,
+    integrated: Result<f64, NoRest>,
+) -> String {
     match (chain, integrated) {
         (Ok(chain), Ok(truth)) => {
             format!("{}, by which the chain errs {}", decimal(truth), percent(chain / truth - 1.0))

@@ -39,7 +39,7 @@ const RESULTS: [(&str, Option<&str>, &str); 10] = [
     ("stopped", None, "why the run ended"),
 ];
 
-/// What stands after the rest time where the baseline was asked for.
+/// The columns behind the rest time if the baseline was asked for.
 const BASELINE: [(&str, Option<&str>, &str); 2] = [
     (
         "rest_no_barrier",

@@ -48,7 +48,7 @@ pub fn simulation(report: &Report) -> String {
         }
     } else {
         for &t in report.samples {
-            if let Some((x, velocity)) = motion.path.at(t) {
+            if let Some((x, velocity)) = motion.path.phase_point_at(t) {
                 line(t, x, velocity);
             }
         }
@@ -65,7 +65,7 @@ pub fn simulation(report: &Report) -> String {
 /// told to skip; the second has the names.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, sweep_csv};

@@ -5,7 +5,7 @@ use super::heat_map::heat_map;
 use super::{Report, SweepReport};
 use crate::decimal::decimal;
 use crate::export::figure::{
-    CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::sweep::{Axis, Spacing, Summary};
 use crate::impact::{Integrator, Simulation};
@@ -29,7 +29,7 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
     times.dedup();
     times
         .into_iter()
-        .filter_map(|t| motion.path.at(t).map(|(x, velocity)| (t, x, velocity)))
+        .filter_map(|t| motion.path.phase_point_at(t).map(|(x, velocity)| (t, x, velocity)))
         .collect()
 }
 
@@ -59,18 +59,18 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         Integrator::Chain => "integration",
         Integrator::Taylor | Integrator::RungeKutta => "Runge-Kutta",
     };
-    let own = Drawn::of(own_name, motion);
-    let judge = report.judge.map(|judge| Drawn::of(judge_name, judge));
+    let own = DrawnMotion::new(own_name, motion);
+    let judge = report.judge.map(|judge| DrawnMotion::new(judge_name, judge));
     let style = match judge {
         Some(_) => CurveStyle::FORMULA,
         None => CurveStyle::DIFFERENCE,
     };
-    let curves = |of: fn(&Drawn) -> &Points| {
+    let curves = |of: fn(&DrawnMotion) -> &Points| {
         let judge = judge.as_ref();
         let judge = judge.map(|judge| curve(judge.name, of(judge), CurveStyle::RUNGE_KUTTA));
         judge.into_iter().chain([curve(own.name, of(&own), style)]).collect()
     };
-    let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
+    let guides = |guide: fn(f64, &'static str) -> GuideLine<'static>| -> Vec<GuideLine<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
         let right = model.right.map(|at| guide(at, "barrier x_c"));
         // A barrier out of reach would leave no room for the motion.
@@ -86,13 +86,13 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
             "Motion in time",
             [TIME, "displacement x (rad)"],
             curves(|drawn| &drawn.time),
-            guides(Guide::Y),
+            guides(GuideLine::Y),
         ),
         panel(
             "Phase plane",
             ["displacement x (rad)", "velocity x′"],
             curves(|drawn| &drawn.phase),
-            guides(Guide::X),
+            guides(GuideLine::X),
         ),
         panel("Energy", [TIME, "energy (units of m g L)"], energies.collect(), vec![]),
     ];
@@ -110,7 +110,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
 }
 
 /// A motion as it is drawn.
-struct Drawn {
+struct DrawnMotion {
     name: &'static str,
     /// x against t.
     time: Points,
@@ -118,8 +118,8 @@ struct Drawn {
     phase: Points,
 }
 
-impl Drawn {
-    fn of(name: &'static str, motion: &Simulation) -> Self {
+impl DrawnMotion {
+    fn new(name: &'static str, motion: &Simulation) -> Self {
         let points = points(motion);
         Self {
             name,
@@ -155,34 +155,34 @@ fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
 const TIME: &str = "time t (units of 1/ω)";
 
 /// A quantity of a sweep.
-pub(super) struct Quantity {
+pub(super) struct SweepQuantity {
     pub(super) title: &'static str,
     pub(super) label: &'static str,
-    /// What a motion without it lacks.
+    /// The name of the quantity, for a motion that has none.
     name: &'static str,
     value: fn(&Summary) -> Option<f64>,
 }
 
-pub(super) const QUANTITIES: [Quantity; 4] = [
-    Quantity {
+pub(super) const QUANTITIES: [SweepQuantity; 4] = [
+    SweepQuantity {
         title: "Rest time",
         label: "rest time (units of 1/ω)",
         name: "rest time",
         value: |summary| summary.rest_time.ok(),
     },
-    Quantity {
+    SweepQuantity {
         title: "Impacts",
         label: "number of impacts",
         name: "impacts",
         value: |summary| summary.is_begun().then_some(summary.impacts as f64),
     },
-    Quantity {
+    SweepQuantity {
         title: "Deepest penetration",
         label: "penetration (rad)",
         name: "penetration",
         value: |summary| summary.is_begun().then_some(summary.deepest),
     },
-    Quantity {
+    SweepQuantity {
         title: "Energy lost in contact",
         label: "energy (units of m g L)",
         name: "energy",
@@ -190,8 +190,7 @@ pub(super) const QUANTITIES: [Quantity; 4] = [
     },
 ];
 
-/// How a swept parameter is written at an axis and in a caption: what it is with its unit, and its
-/// symbol.
+/// The label of a swept parameter at an axis, with its unit, and its symbol in a caption.
 fn parameter(name: &str) -> [&str; 2] {
     match name {
         "amplitude" => ["amplitude A (rad)", "A"],
@@ -220,7 +219,7 @@ fn parameter(name: &str) -> [&str; 2] {
     }
 }
 
-/// From where to where: `ζ from 0.01 to 0.05`.
+/// The range of an axis in words: `ζ from 0.01 to 0.05`.
 fn range(axis: &Axis) -> String {
     let [_, symbol] = parameter(axis.name());
     let [from, to] = axis.ends().map(decimal);
@@ -234,7 +233,7 @@ fn range(axis: &Axis) -> String {
     }
 }
 
-/// What is written at an axis: on a logarithmic one of negative values stand their sizes.
+/// The label of an axis: a logarithmic one of negative values shows their sizes.
 pub(super) fn axis_label(axis: &Axis) -> String {
     let [label, _] = parameter(axis.name());
     match axis.spacing() {
@@ -276,7 +275,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
             let x_label = axis_label(one);
             // A motion without the quantity interrupts the curve: nothing is drawn across what is
             // not there, and one point alone is no curve.
-            let runs = |quantity: &Quantity| -> Vec<Points> {
+            let runs = |quantity: &SweepQuantity| -> Vec<Points> {
                 let found: Vec<Option<(f64, f64)>> = order
                     .iter()
                     .map(|&index| Some((values[index], (quantity.value)(report.rows.get(index)?)?)))
@@ -284,7 +283,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
                 unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
             };
-            let drawn: Vec<(&Quantity, Vec<Points>)> = QUANTITIES
+            let drawn: Vec<(&SweepQuantity, Vec<Points>)> = QUANTITIES
                 .iter()
                 .map(|quantity| (quantity, runs(quantity)))
                 .filter(|(_, runs)| !runs.is_empty())
@@ -337,6 +336,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
 }
 
 #[cfg(not(feature = "plot"))]
-fn heat_map(_: &[Vec<f64>], _: [&Axis; 2], _: &Quantity, _: &str) -> Result<String, FigureError> {
+fn heat_map(
+    _: &[Vec<f64>],
+    _: [&Axis; 2],
+    _: &SweepQuantity,
+    _: &str,
+) -> Result<String, FigureError> {
     Err(FigureError::LeftOut)
 }

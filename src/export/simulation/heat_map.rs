@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, TickFormat};
 use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
-use super::figure::{Quantity, axis_label};
+use super::figure::{SweepQuantity, axis_label};
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{FigureError, power_of_ten, written};
 use crate::impact::sweep::{Axis, Spacing};
@@ -23,19 +23,19 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
     rows
 }
 
-/// Where the values of an axis stand on a map, at equal distances: at themselves, at their
-/// exponents, or one after the other.
+/// The positions of the values of an axis on a map, at equal distances: the values themselves,
+/// their exponents, or their indices.
 struct Ruler {
     /// The places of the first value and the last.
     ends: [f64; 2],
-    /// What is written at a place.
+    /// The text of a tick.
     ticks: TickFormat,
     /// The distance of the places with something written; the library's choice where there is none.
     step: Option<f64>,
 }
 
 impl Ruler {
-    fn of(axis: &Axis) -> Self {
+    fn from_axis(axis: &Axis) -> Self {
         /// Steps between the exponents that are written.
         const STEPS: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
         let ends = axis.ends();
@@ -74,7 +74,7 @@ impl Ruler {
         self.ends[1] >= self.ends[0]
     }
 
-    /// From the edge of the first cell to that of the last, upwards, where there are so many.
+    /// The range from the edge of the first cell to that of the last, upwards.
     fn range(&self, count: usize) -> (f64, f64) {
         let [from, to] = self.ends;
         let half = 0.5 * (to - from) / (count.max(2) - 1) as f64;
@@ -86,15 +86,15 @@ impl Ruler {
 /// The colour of a cell without a value.
 const MISSING: &str = "#c8c8c8";
 
-/// A cell for each motion, grey where its value is no number, with the quantity and its unit at the
-/// scale of colours.
+/// A cell for each motion, grey where its value is not a number, with the quantity and its unit at
+/// the scale of colours.
 pub(super) fn heat_map(
     grid: &[Vec<f64>],
     [down, across]: [&Axis; 2],
-    quantity: &Quantity,
+    quantity: &SweepQuantity,
     caption: &str,
 ) -> Result<String, FigureError> {
-    let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));
+    let (down_ruler, across_ruler) = (Ruler::from_axis(down), Ruler::from_axis(across));
     let (x, y) = (across_ruler.range(across.values().len()), down_ruler.range(down.values().len()));
     let map = Heatmap::new()
         .with_data(rising(grid, down_ruler.rises(), across_ruler.rises()))
@@ -138,7 +138,7 @@ mod tests {
     use super::super::figure::QUANTITIES;
     use super::*;
 
-    /// Where the one hot cell stands in the picture: left or right, above or below.
+    /// The position of the one hot cell in the picture: left or right, above or below.
     #[test]
     fn cells_stand_at_their_values() {
         let axis = |from, to| Axis::linear("a", from, to, 2).expect("an axis");

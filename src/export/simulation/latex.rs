@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use super::{Report, chain};
 use crate::decimal::significant;
-use crate::export::latex::{Table, scientific};
-use crate::impact::{ClosedForm, Contact, Piece};
+use crate::export::latex::{LatexTable, scientific};
+use crate::impact::{ClosedForm, ContactRecord, PathSegment};
 
 /// Lines of a block of formulas: a page takes no more, and a block does not break.
 const LINES: usize = 24;
@@ -52,7 +52,7 @@ fn impacts(report: &Report) -> String {
     let judged = !errors.is_empty();
     let number = |value: f64| format!("${}$", scientific(value));
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
-    let row = |(index, impact): (usize, &Contact)| {
+    let row = |(index, impact): (usize, &ContactRecord)| {
         let error = errors.get(index).copied().flatten();
         let cells = [
             (impact.entry_time, error.map(|e| number((1e6 * e.entry_time).round() / 1e6))),
@@ -67,7 +67,7 @@ fn impacts(report: &Report) -> String {
     let head = ["impact", "$t$", "error", "speed in", "error", "penetration", "error"].into_iter();
     let head: Vec<String> =
         head.filter(|name| judged || *name != "error").map(str::to_owned).collect();
-    let table = Table {
+    let table = LatexTable {
         places: "r".repeat(head.len()),
         head,
         rows: motion.impacts.iter().enumerate().map(row).collect(),
@@ -76,7 +76,7 @@ fn impacts(report: &Report) -> String {
     table.written()
 }
 
-fn phase(piece: &Piece) -> String {
+fn phase(piece: &PathSegment) -> String {
     let span = format!(
         "&{} \\le t_0 + t \\le {}: & ",
         significant(piece.start, 6),

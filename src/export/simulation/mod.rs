@@ -26,14 +26,14 @@ use crate::impact::sweep::{Axis, Summary, grid_values};
 use crate::impact::{Baseline, Dissipation, Friction, Simulation, Units};
 use crate::trajectory::DISPLACEMENT;
 
-/// What is handed on of one run.
+/// The data of a report on one run.
 #[derive(Debug, Clone, Copy)]
 pub struct Report<'a> {
     /// The motion.
     pub motion: &'a Simulation,
-    /// The same by the other integrator, where both were asked for.
+    /// The run by the other integrator, if both were asked for.
     pub judge: Option<&'a Simulation>,
-    /// Where gamma and mu come from.
+    /// The sources of gamma and mu.
     pub sources: [&'a str; 2],
     /// The tolerance that was asked for; the steps of the integrator get a part of it.
     pub tolerance: f64,
@@ -42,16 +42,16 @@ pub struct Report<'a> {
     /// The rest times of the same swing without a barrier and with a lossless one, where there is
     /// something to compare.
     pub baseline: Option<&'a Baseline>,
-    /// What damps it, in every form, where that is known.
+    /// The damping in every form, if known.
     pub dissipation: Option<&'a Dissipation>,
     /// The pendulum in SI units, where they are known.
     pub units: Option<&'a Units>,
-    /// Until when it is known to six digits, if not to the end
+    /// The time until which the motion is known to six digits, if that is not its end
     /// ([`known_until`](crate::impact::known_until)).
     pub known_until: Option<f64>,
 }
 
-/// What is handed on of a sweep.
+/// The data of a report on a sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct SweepReport<'a> {
     /// The parameters; the last varies fastest.
@@ -82,7 +82,7 @@ pub(super) fn friction(friction: Friction) -> &'static str {
     }
 }
 
-/// What should be said beside the numbers.
+/// The notes beside the numbers.
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();

@@ -8,7 +8,7 @@ use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
 use crate::impact::sweep::Axis;
 use crate::impact::{
-    Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest,
+    Baseline, ContactDamping, ContactRecord, Dissipation, Geometry, Integrator, Model, NoRest,
     Simulation, Units,
 };
 
@@ -51,7 +51,7 @@ pub fn simulation(report: &Report) -> String {
     if !report.samples.is_empty() {
         let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
         for &t in report.samples {
-            let state = match motion.path.at(t) {
+            let state = match motion.path.phase_point_at(t) {
                 Some((x, velocity)) => {
                     format!("{:>16}  {:>16}", significant(x, 10), significant(velocity, 10))
                 }
@@ -177,7 +177,7 @@ fn header(report: &Report) -> String {
     text
 }
 
-/// What damps, in every form, and which form is held fixed.
+/// The damping in every form, and the form that is held fixed.
 fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) -> String {
     let &Dissipation {
         mu, mu_over_gamma, lambda, coefficient, zeta, viscous, alpha, torque, ..
@@ -268,7 +268,7 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
             optional(impact.restitution),
         ];
         if !judged {
-            // What is lost in an elastic contact is rounding.
+            // The loss in an elastic contact is rounding.
             cells.push(optional(impact.energy_lost.map(|lost| {
                 let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
                 if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
@@ -301,9 +301,9 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
     text
 }
 
-/// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter
+/// Duration of an impact, to the accuracy of its two times: with a very stiff barrier it is shorter
 /// than their last digit.
-fn duration(impact: &Contact) -> String {
+fn duration(impact: &ContactRecord) -> String {
     let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
     match impact.exit_time.map(|exit| exit - impact.entry_time) {
         None => "-".to_owned(),
@@ -336,7 +336,11 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };
     if let (Integrator::Chain, Some(judge)) = (report.motion.integrator, report.judge) {
-        let _ = writeln!(text, "  integrated     {}", chain::beside(rest.time, judge.rest().time));
+        let _ = writeln!(
+            text,
+            "  integrated     {}",
+            chain::rest_time_comparison(rest.time, judge.rest().time)
+        );
     }
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));
@@ -403,7 +407,7 @@ fn energy(text: &mut String, motion: &Simulation) {
 /// make a block.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, sweep_text};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Page, percent, size_in_percent};
+use super::{TextLayout, percent, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::report::{Block, Document, MethodRow};
@@ -10,8 +10,8 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 use crate::verify::Verdict;
-use crate::verify::comparison::{Refused, Row};
-use crate::verify::validity::Reach;
+use crate::verify::comparison::{ComparisonRow, Refused};
+use crate::verify::validity::AmplitudeReach;
 
 /// The length of the longest name of a method in the tables and lists of a document.
 pub(super) fn longest_title(document: &Document) -> usize {
@@ -45,7 +45,7 @@ pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, Str
 }
 
 /// The table, and the formulas below it where it has no room for them.
-pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &Page) -> String {
+pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &TextLayout) -> String {
     let cells = cells(rows, tolerance);
     let formulas: Vec<String> = rows.iter().map(formula).collect();
     let widths = widths(&cells);
@@ -76,7 +76,11 @@ pub(in crate::export) fn grouped(
 }
 
 /// Names and what is said of each, those of which the same is said together.
-fn reasons(heading: &str, entries: impl Iterator<Item = (String, String)>, page: &Page) -> String {
+fn reasons(
+    heading: &str,
+    entries: impl Iterator<Item = (String, String)>,
+    page: &TextLayout,
+) -> String {
     let groups = grouped(entries);
     let groups = groups.iter().map(|(names, words)| match names.as_slice() {
         [name] => entry(name, words, page.longest_title, page.width),
@@ -89,13 +93,13 @@ fn reasons(heading: &str, entries: impl Iterator<Item = (String, String)>, page:
 }
 
 /// Names and what is said of each.
-pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &Page) -> String {
+pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &TextLayout) -> String {
     let entries =
         entries.iter().map(|(name, words)| entry(name, words, page.longest_title, page.width));
     format!("{heading}\n") + &entries.collect::<String>()
 }
 
-pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
+pub(super) fn refused(refused: &[Refused], page: &TextLayout) -> String {
     let named = |refused: &Refused| {
         let reason = refused.reason.without_title(refused.method);
         (refused.method.title().to_owned(), reason)
@@ -111,7 +115,7 @@ pub(super) fn true_motion(lines: &[String], width: usize) -> String {
 /// Header and rows, without the formulas.
 pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
     let over_several_wells =
-        rows.iter().any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
+        rows.iter().any(|row| matches!(row.row.reach, Some(AmplitudeReach::Between { .. })));
     let range = if over_several_wells { "for" } else { "up to" };
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
     let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within]
@@ -211,8 +215,8 @@ pub(super) fn wrapped(text: &str, width: usize, first: &str, next: &str) -> Stri
     lines.join("\n")
 }
 
-/// What stands in the place of a frequency.
-fn without_number(row: &Row) -> &'static str {
+/// The text in place of a frequency.
+fn without_number(row: &ComparisonRow) -> &'static str {
     match &row.reason {
         Some(reason) if reason.is_not_real() => "not real",
         _ => "none",
@@ -225,17 +229,19 @@ fn formula(row: &MethodRow) -> String {
     row.row.solution.formula() + &value.unwrap_or_default()
 }
 
-fn reach(reach: Option<(Reach, Symbol)>) -> String {
+fn reach(reach: Option<(AmplitudeReach, Symbol)>) -> String {
     match reach {
         None => "-".to_owned(),
-        Some((Reach::Nowhere, _)) => "nowhere".to_owned(),
-        Some((Reach::UpTo(end), amplitude)) => format!("{amplitude} = {}", significant(end, 3)),
-        Some((Reach::Between { from, to, open }, amplitude)) => {
+        Some((AmplitudeReach::Nowhere, _)) => "nowhere".to_owned(),
+        Some((AmplitudeReach::UpTo(end), amplitude)) => {
+            format!("{amplitude} = {}", significant(end, 3))
+        }
+        Some((AmplitudeReach::Between { from, to, open }, amplitude)) => {
             let [from, to] = [from, to].map(|end| significant(end, 3));
             let past = if open { "past " } else { "" };
             format!("{amplitude} = {from} to {past}{to}")
         }
-        Some((Reach::Everywhere(searched), amplitude)) => {
+        Some((AmplitudeReach::Everywhere(searched), amplitude)) => {
             format!("past {amplitude} = {}", significant(searched, 3))
         }
     }

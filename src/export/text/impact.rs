@@ -4,7 +4,9 @@ use super::comparison::wrapped;
 use super::percent;
 use crate::decimal::{decimal, significant};
 use crate::impact::contact::{ContactLaw, ContactRow};
-use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
+use crate::impact::{
+    FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+};
 use crate::verify::Verdict;
 
 /// The line in place of the force of the barrier.
@@ -12,7 +14,7 @@ pub(super) fn fitted(
     fitted: &FittedLine,
     barrier: f64,
     rule: Rule,
-    letters: Letters,
+    letters: ImpactSymbols,
     per_stiffness: bool,
 ) -> String {
     let constant = fitted.line.q(barrier);
@@ -30,7 +32,7 @@ pub(super) fn fitted(
     format!("  elastic force {force}, fitted by {rule} over the depth {}\n", decimal(fitted.depth))
 }
 
-pub(super) fn phase(phase: &Phase, letters: Letters, release: &str) -> String {
+pub(super) fn phase(phase: &MotionPhase, letters: ImpactSymbols, release: &str) -> String {
     let (x, barrier) = (letters.coordinate, letters.barrier);
     let way = match phase.name {
         "approach" => format!("{x} = {release} to {x} = {barrier}"),
@@ -47,8 +49,8 @@ pub(super) fn phase(phase: &Phase, letters: Letters, release: &str) -> String {
 
 /// A table: Runge-Kutta and every column, and below each number its error.
 pub(super) fn quantities(
-    columns: &[Reading],
-    rows: &[Quantity],
+    columns: &[PhaseReading],
+    rows: &[ImpactQuantity],
     deviations: &[f64],
     shapes: &[[f64; 3]],
 ) -> String {
@@ -166,7 +168,7 @@ pub(super) fn si_value(
 }
 
 /// A table in SI units: Runge-Kutta and every column.
-pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> String {
+pub(super) fn si_quantities(columns: &[PhaseReading], rows: &[(ImpactQuantity, &str)]) -> String {
     let line = |name: &str, cells: &mut dyn Iterator<Item = String>| {
         let cells: String = cells.map(|cell| format!("{cell:>13}")).collect();
         format!("  {name:<24}{cells}\n")
@@ -184,7 +186,7 @@ pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> S
     text
 }
 
-pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> String {
+pub(super) fn verdicts(verdicts: &[(PhaseReading, Verdict)], tolerance: f64) -> String {
     let each: Vec<String> = verdicts
         .iter()
         .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))

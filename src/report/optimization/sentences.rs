@@ -1,12 +1,12 @@
-//! What the numbers of a search say, in sentences: what decides, how its optimum compares with the
-//! paper's design and with other searches.
+//! The results of a search, in sentences: its limits, and its optimum compared with the paper's
+//! design and with other searches.
 
 use super::super::materials::percent;
 use super::{closed_forms_off, with_unit};
 use crate::decimal::{decimal, significant};
-use crate::genetic::Stop;
+use crate::genetic::GeneticStop;
 use crate::impact::Parameter;
-use crate::optimize::{DEFAULT_BOX, Decision, Objective, Role, Sensitivity, Study, WITHIN};
+use crate::optimize::{DEFAULT_BOX, Decision, Objective, Sensitivity, Study, VariableRole, WITHIN};
 
 /// `mass, radius and modulus`
 fn listed(names: &[&str]) -> String {
@@ -17,12 +17,13 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// What the numbers of a search say, in sentences.
+/// The results of a search, in sentences.
 pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
         let (done, all) = (study.runs.len(), study.question.runs);
-        let cut_short = study.runs.iter().filter(|run| run.stop == Stop::Interrupted).count();
+        let cut_short =
+            study.runs.iter().filter(|run| run.stop == GeneticStop::Interrupted).count();
         let of_these = match cut_short {
             0 => String::new(),
             number => format!(", {number} of them cut short"),
@@ -49,7 +50,7 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     sentences
 }
 
-/// The part by which a value lies above another one; `None` where that is zero and this is not.
+/// The part by which a value lies above another one; `None` if that is zero and this is not.
 fn apart(value: f64, reference: f64) -> Option<f64> {
     let apart = match value == reference {
         true => 0.0,
@@ -61,8 +62,8 @@ fn apart(value: f64, reference: f64) -> Option<f64> {
 /// A search that finds a design better by this part has shown that the best one here is no optimum.
 const BETTER: f64 = 1e-3;
 
-/// Who found a better design than the best one of the study, and by which part it is better; `None`
-/// where nobody did.
+/// The search that found a better design than the best one of the study, and the relative
+/// improvement; `None` if there is none.
 fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let own = study.spread()?.best;
     let rivals = study.rivals.iter();
@@ -71,7 +72,7 @@ fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let alone =
         apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
     let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
-    // What closed forms are off decides nothing.
+    // Differences within the error of the closed forms decide nothing.
     best.filter(|(_, better)| *better > BETTER.max(closed_forms_off(study)))
 }
 
@@ -80,7 +81,7 @@ fn what_decides(study: &Study) -> Vec<String> {
         return vec![];
     };
     let objective = study.objective().meaning();
-    let of = |role: Role| {
+    let of = |role: VariableRole| {
         let found =
             decision.sensitivities.iter().filter(move |sensitivity| sensitivity.role == role);
         found.collect::<Vec<_>>()
@@ -106,11 +107,12 @@ fn what_decides(study: &Study) -> Vec<String> {
             percent(off)
         ));
     }
-    let ends: Vec<String> = [(of(Role::Lower), "lower"), (of(Role::Upper), "upper")]
-        .into_iter()
-        .filter(|(found, _)| !found.is_empty())
-        .map(|(found, end)| format!("{} at the {end} limit", names(&found)))
-        .collect();
+    let ends: Vec<String> =
+        [(of(VariableRole::Lower), "lower"), (of(VariableRole::Upper), "upper")]
+            .into_iter()
+            .filter(|(found, _)| !found.is_empty())
+            .map(|(found, end)| format!("{} at the {end} limit", names(&found)))
+            .collect();
     if !ends.is_empty() {
         sentences.push(match better {
             None if off <= WITHIN => format!(
@@ -120,7 +122,7 @@ fn what_decides(study: &Study) -> Vec<String> {
             _ => format!("Moved alone, the best are {}.", ends.join(", ")),
         });
     }
-    let flat = of(Role::Flat);
+    let flat = of(VariableRole::Flat);
     if !flat.is_empty() {
         sentences.push(flat_directions(&flat, objective));
     }
@@ -129,7 +131,7 @@ fn what_decides(study: &Study) -> Vec<String> {
         least >= decision.value * (1.0 - BETTER)
     };
     let (trade, elsewhere): (Vec<_>, Vec<_>) =
-        of(Role::Trade).into_iter().partition(is_worse_everywhere);
+        of(VariableRole::Trade).into_iter().partition(is_worse_everywhere);
     if !trade.is_empty() {
         sentences.push(format!(
             "A trade: {} between the limits, {objective} is worse on either side.",
@@ -148,7 +150,8 @@ fn what_decides(study: &Study) -> Vec<String> {
             .range
             .is_some_and(|[least, _]| least < decision.least.min(decision.value) * (1.0 - BETTER))
     };
-    let (relieved, held): (Vec<_>, Vec<_>) = of(Role::Limit).into_iter().partition(relieved);
+    let (relieved, held): (Vec<_>, Vec<_>) =
+        of(VariableRole::Limit).into_iter().partition(relieved);
     if !relieved.is_empty() {
         sentences.push(format!(
             "A constraint stops {}: without it {objective} would be less.",
@@ -348,11 +351,11 @@ fn the_generations(study: &Study) -> Option<String> {
     let stalled: Vec<usize> = study
         .runs
         .iter()
-        .filter(|run| run.stop == Stop::Stalled)
+        .filter(|run| run.stop == GeneticStop::Stalled)
         .map(|run| run.generations)
         .collect();
     let at_once = stalled.iter().filter(|generations| **generations == earliest).count();
-    let settled = study.settled(1e-3)?;
+    let settled = study.generation_of_convergence(1e-3)?;
     let when = match settled {
         0 => "already in its random population".to_owned(),
         generation => format!("from generation {generation} on"),

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{AmplitudeConvention, Degrees, Method};
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::{Verdict, judge};
 use lindstedt::{Oscillator, Symbol};
 
@@ -293,13 +293,14 @@ fn dry_friction_takes_its_work_from_turn_to_turn() {
         notes.iter().any(|note| note.contains("cos(a_m) - cos(a_n) = alpha*(a_n + a_m)")),
         "{notes:?}"
     );
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an equation"));
+    let mut course =
+        TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an equation"));
     course.values.insert("alpha".into(), 0.02);
     course.duration = 60.0;
     course.tolerance = 1e-12;
     course.begin("x".into(), 1.5).expect("a state");
     let motion = course.follow().expect("a motion");
-    let state = |t: f64| motion.at(t).expect("a state");
+    let state = |t: f64| motion.states_at(t).expect("a state");
     let (mut turns, mut before) = (vec![1.5], 0.01);
     for k in 1..6000 {
         let t = f64::from(k) * 0.01;

@@ -4,7 +4,7 @@ use lindstedt::Oscillator;
 use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::Options;
-use lindstedt::numeric::period::{Force, conservative_period};
+use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::verify::comparison::compare;
 
@@ -208,7 +208,8 @@ fn exact_frequencies() {
                 }
                 _ => {
                     std::f64::consts::TAU
-                        / conservative_period(&Force::smooth(&force), 0.0, amplitude).unwrap()
+                        / conservative_period(&PiecewiseForce::smooth(&force), 0.0, amplitude)
+                            .unwrap()
                 }
             };
             // The cube root has no smooth force at the middle: the quadrature is good to less

@@ -4,7 +4,7 @@
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::method::{Options, Reason, solve};
-use lindstedt::response::{Point, Question, respond};
+use lindstedt::response::{ResponseRequest, SteadyMotion, respond};
 use lindstedt::solution::{Method, Note, Solution};
 use lindstedt::{Oscillator, Symbol, Values, judge};
 
@@ -227,13 +227,14 @@ fn a_middle_motion_has_a_truth_of_its_own() {
         judged.sort_by(|one, other| one.0.total_cmp(&other.0));
         let middle: f64 = omega.parse().expect("a number");
         let range = [middle - 0.002, middle + 0.002];
-        let question = Question::new(equation, "Omega", range, "F = 0.3").expect("a question");
+        let question =
+            ResponseRequest::new(equation, "Omega", range, "F = 0.3").expect("a question");
         let response = respond(&question).expect("a response");
         let mut followed: Vec<(f64, bool)> = response
             .branches
             .iter()
             .map(|branch| {
-                let distance = |point: &Point| (point.parameter - middle).abs();
+                let distance = |point: &SteadyMotion| (point.parameter - middle).abs();
                 let points = branch.points.iter();
                 let nearest = points.min_by(|one, other| distance(one).total_cmp(&distance(other)));
                 let nearest = nearest.expect("a point");

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers;
-use lindstedt::method::{Force as AtNumbers, Options, solve};
+use lindstedt::method::{CentredForce as AtNumbers, Options, solve};
 use lindstedt::solution::Method;
 use lindstedt::verify::Well;
 use lindstedt::{Oscillator, Symbol};

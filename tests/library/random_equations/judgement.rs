@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use lindstedt::Oscillator;
 use lindstedt::Values;
 use lindstedt::solution::Method;
-use lindstedt::verify::Reach;
+use lindstedt::verify::AmplitudeReach;
 use lindstedt::verify::Verdict;
-use lindstedt::verify::comparison::{Comparison as Table, Row, compare};
+use lindstedt::verify::comparison::{Comparison as Table, ComparisonRow, compare};
 
 use super::Comparison;
 use super::definitions::{Answer, Question};
@@ -62,7 +62,7 @@ pub fn judgement(
 
 /// Errors and verdicts that do not follow from the frequencies beside them.
 fn verdicts(table: &Table) -> Option<String> {
-    let wrong = |row: &&Row| {
+    let wrong = |row: &&ComparisonRow| {
         let error = row
             .frequency
             .zip(table.true_frequency)
@@ -128,7 +128,7 @@ fn deviations(
 }
 
 /// A range that skips a failure, or ends before one.
-fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
+fn range(question: &Question, row: &ComparisonRow, unit: f64) -> Option<String> {
     let definition = |question: &Question| match row.solution.method {
         Method::Hamiltonian | Method::VariationalIteration | Method::MaxMin => {
             question.shared_integral()
@@ -155,10 +155,12 @@ fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
     let title = row.solution.title();
     let (end, last) = match row.reach? {
         // These families swing about bottoms.
-        Reach::Between { .. } => return Some("a range that does not begin at rest".to_owned()),
-        Reach::Everywhere(searched) => (searched / unit, true),
-        Reach::UpTo(end) => (end / unit, false),
-        Reach::Nowhere => {
+        AmplitudeReach::Between { .. } => {
+            return Some("a range that does not begin at rest".to_owned());
+        }
+        AmplitudeReach::Everywhere(searched) => (searched / unit, true),
+        AmplitudeReach::UpTo(end) => (end / unit, false),
+        AmplitudeReach::Nowhere => {
             let small = 1e-3 * question.amplitude.abs();
             let error = good(small).filter(|error| error.abs() < 0.5 * TOLERANCE)?;
             return Some(format!(

@@ -16,12 +16,12 @@ use std::f64::consts::PI;
 
 use lindstedt::Values;
 use lindstedt::expr::Expr;
-use lindstedt::method::Force;
+use lindstedt::method::CentredForce;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
 use lindstedt::verify::judge;
 use lindstedt::verify::nearest_singularity;
-use lindstedt::verify::{End, Well};
+use lindstedt::verify::{Well, WellEnd};
 use lindstedt::{Oscillator, Symbol};
 
 use super::quadrature::bisect;
@@ -31,11 +31,11 @@ use super::random::Random;
 const EACH: u64 = 12;
 
 /// The amplitudes at which the well ends on either side, asked from an amplitude inside.
-fn ends(text: &str, equilibrium: &str, amplitude: f64) -> Option<[Option<End>; 2]> {
+fn ends(text: &str, equilibrium: &str, amplitude: f64) -> Option<[Option<WellEnd>; 2]> {
     let [force, equilibrium]: [Expr; 2] =
         [text, equilibrium].map(|text| text.parse().expect("an expression"));
-    let force =
-        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).expect("a force");
+    let force = CentredForce::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude)
+        .expect("a force");
     let well = Well::new(&force, amplitude)?;
     Some([well.low, well.high])
 }

@@ -1,6 +1,6 @@
 //! Whatever the parameters: energy, impacts and pieces add up.
 
-use lindstedt::impact::{Friction, Model, Start, Stop};
+use lindstedt::impact::{Friction, Model, SimulationStop, Start};
 use proptest::prelude::*;
 
 use super::taylor;
@@ -32,7 +32,7 @@ proptest! {
             right: Some(right),
         };
         let motion = taylor(&model, Start { x, velocity }, 1e-10, 20.0);
-        prop_assert_eq!(motion.stop, Stop::Duration);
+        prop_assert_eq!(motion.stop, SimulationStop::Duration);
         let book = motion.energy();
         prop_assert!(book.residual < 1e-9, "{:?}", book);
         prop_assert!(book.viscous <= 0.0 && book.friction <= 0.0 && book.contact <= 1e-12);

@@ -2,8 +2,8 @@
 //! what it cannot break.
 
 use lindstedt::impact::{
-    ContactDeviation, Integrator, Model, Settings, Simulation, Start, Stop, baseline, chain,
-    simulate,
+    ContactDeviation, Integrator, Model, Settings, Simulation, SimulationStop, Start, baseline,
+    chain, simulate,
 };
 use proptest::prelude::*;
 
@@ -64,7 +64,7 @@ fn stopping_at_rest_changes_no_rest_time() {
                 let settings = Settings { stop_at_rest, ..to_rest(400.0) };
                 simulate(&model, Start::default(), integrator, &settings).expect("a motion")
             });
-            assert_eq!(short.stop, Stop::AtRest, "{model:?}");
+            assert_eq!(short.stop, SimulationStop::AtRest, "{model:?}");
             assert!(short.end_time < long.end_time);
             let [short, long] = [short, long].map(|motion| motion.rest().time.expect("it rests"));
             assert!((short - long).abs() < 1e-9, "{short} {long} {model:?}");
@@ -89,7 +89,7 @@ fn a_caged_pendulum_is_said_to_be_one() {
     let [found, truth] =
         [Integrator::Chain, Integrator::Taylor].map(|route| motion(&caged(1e-4), route));
     assert!(found.is_caged() && truth.is_caged());
-    assert_eq!((found.stop, found.impacts.len()), (Stop::AtRest, truth.impacts.len()));
+    assert_eq!((found.stop, found.impacts.len()), (SimulationStop::AtRest, truth.impacts.len()));
     assert!(baseline(&truth).expect("motions").expect("a baseline").geometry.is_none());
     assert!(!motion(&caged(0.2), Integrator::Chain).is_caged());
 }
@@ -252,7 +252,7 @@ fn a_start_on_the_barrier_begins_with_its_contact() {
     for velocity in [0.0, 1e-12] {
         let start = Start { x: 0.323, velocity };
         let found = chain(&model, start, &Settings::default()).expect("a chain");
-        assert!(found.end_x.is_finite() && found.stop == Stop::Duration, "{found:?}");
+        assert!(found.end_x.is_finite() && found.stop == SimulationStop::Duration, "{found:?}");
     }
 }
 
@@ -291,7 +291,7 @@ fn a_pendulum_that_leans_on_its_barrier_is_handed_to_the_integration() {
     let pieces = found.path.pieces();
     let closed = pieces.iter().take_while(|piece| piece.closed_form().is_some()).count();
     assert!(closed > 10 && closed < pieces.len(), "{closed} of {}", pieces.len());
-    assert_eq!(found.stop, Stop::Duration);
+    assert_eq!(found.stop, SimulationStop::Duration);
     let truth =
         simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
     assert!((found.end_x - truth.end_x).abs() < 1e-6, "{} {}", found.end_x, truth.end_x);
@@ -302,7 +302,7 @@ fn where_the_integration_gives_up_is_told_by_the_clock_of_the_whole() {
     let model = leaning();
     let settings = Settings { duration: 700.0, maximum_steps: 300, ..Settings::default() };
     let found = chain(&model, Start::default(), &settings).expect("a chain");
-    let Stop::Steps { t } = found.stop else {
+    let SimulationStop::Steps { t } = found.stop else {
         panic!("{:?}", found.stop);
     };
     assert!((t - found.end_time).abs() < 1e-9, "{t} {}", found.end_time);
@@ -380,7 +380,7 @@ proptest! {
                 prop_assert!(impact.exit_time.is_none_or(|exit| exit >= impact.entry_time));
             }
             for index in 0..100 {
-                let at = motion.path.at(motion.end_time * f64::from(index) / 100.0);
+                let at = motion.path.phase_point_at(motion.end_time * f64::from(index) / 100.0);
                 prop_assert!(at.is_none_or(|(x, velocity)| x.is_finite() && velocity.is_finite()), "{at:?}");
             }
         }

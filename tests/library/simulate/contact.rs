@@ -1,6 +1,6 @@
 //! The contact: restitution, no pull, and motions that lean on a barrier.
 
-use lindstedt::impact::{Integrator, Model, Start, Stop};
+use lindstedt::impact::{Integrator, Model, SimulationStop, Start};
 use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, run, taylor};
@@ -54,7 +54,7 @@ fn it_settles_on_a_barrier_that_it_leans_on() {
     let model = Model { zeta: 0.05, gamma: 1e3, mu: 1e4, right: Some(-0.3), ..Model::default() };
     for start in [REST, Start { x: -0.3, velocity: 0.0 }] {
         let motion = taylor(&model, start, 1e-10, 200.0);
-        assert_eq!(motion.stop, Stop::Duration, "{}", motion.stop);
+        assert_eq!(motion.stop, SimulationStop::Duration, "{}", motion.stop);
         // Gravity against the barrier: sin(0.3 - d) = gamma d^(3/2).
         let depth =
             find_root(|d| (0.3 - d).sin() - model.gamma * d.powf(1.5), 0.0, 0.3).expect("a depth");
@@ -95,7 +95,7 @@ fn a_run_ends_on_time_next_to_a_release() {
                 let motion = taylor(&model, REST, 1e-11, duration);
                 assert_eq!(motion.end_time, duration, "{gamma} {mu} {before}");
                 assert_eq!(motion.impacts.last().expect("a contact").exit_time, None);
-                let (x, velocity) = long.path.at(duration).expect("a place");
+                let (x, velocity) = long.path.phase_point_at(duration).expect("a place");
                 assert!((motion.end_x - x).abs() < 1e-10, "{} and {x}", motion.end_x);
                 assert!(
                     (motion.end_velocity - velocity).abs() < 1e-7,

@@ -4,7 +4,7 @@
 
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::{Friction, Model, Regime, Side, Start};
-use lindstedt::system::{End, Event, Options, Path, System};
+use lindstedt::system::{Event, Path, PathEnd, System, SystemOptions};
 
 use super::taylor;
 
@@ -73,7 +73,7 @@ fn stop(text: String) -> Event {
 
 /// The motion in pieces, its contacts, and when it stuck.
 fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contact>, Option<f64>) {
-    let options = Options::default();
+    let options = SystemOptions::default();
     let (mut pieces, mut contacts) = (vec![], vec![]);
     let (mut t, mut x, mut v) = (0.0, start.x, start.velocity);
     loop {
@@ -83,15 +83,15 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         let flight = equations(model, None);
         let path = flight.solve(t, &[x, v], duration, &barriers, &options).expect("a flight");
         let (reason, to) = (path.reason(), path.end());
-        v = path.at(to).expect("an end")[1];
+        v = path.states_at(to).expect("an end")[1];
         pieces.push(Piece { from: t, to, path, contact: None });
         t = to;
         let side = match reason {
-            End::Event(0) => Side::Right,
-            End::Event(_) => Side::Left,
-            End::Sticks => return (pieces, contacts, Some(t)),
+            PathEnd::Event(0) => Side::Right,
+            PathEnd::Event(_) => Side::Left,
+            PathEnd::Sticks => return (pieces, contacts, Some(t)),
             reason => {
-                assert_eq!(reason, End::Reached);
+                assert_eq!(reason, PathEnd::Reached);
                 return (pieces, contacts, None);
             }
         };
@@ -103,18 +103,19 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         let (speed, sign) = (v.abs(), side.sign());
         let contact = equations(model, Some(side));
         let path = contact.solve(0.0, &[0.0, speed, t], 1e9, &ends, &options).expect("a contact");
-        let end = path.at(path.end()).expect("an end");
+        let end = path.states_at(path.end()).expect("an end");
         let (from, to, reason) = (t, end[2], path.reason());
         let deepest = path.occurrences().iter().find(|met| met.event == 2);
-        let depth = deepest.map_or(0.0, |met| path.at(met.time).expect("a state")[0].powi(2));
+        let depth =
+            deepest.map_or(0.0, |met| path.states_at(met.time).expect("a state")[0].powi(2));
         pieces.push(Piece { from, to, path, contact: Some(side) });
         match reason {
-            End::Event(0) => {
+            PathEnd::Event(0) => {
                 contacts.push(Contact { times: [from, to], speeds: [speed, -end[1]], depth })
             }
-            End::Sticks => return (pieces, contacts, Some(to)),
+            PathEnd::Sticks => return (pieces, contacts, Some(to)),
             reason => {
-                assert_eq!(reason, End::Event(1));
+                assert_eq!(reason, PathEnd::Event(1));
                 return (pieces, contacts, None);
             }
         }
@@ -126,19 +127,19 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
 fn at(pieces: &[Piece], model: &Model, time: f64) -> Option<[f64; 2]> {
     let piece = pieces.iter().find(|piece| (piece.from..=piece.to).contains(&time))?;
     let Some(side) = piece.contact else {
-        let state = piece.path.at(time)?;
+        let state = piece.path.states_at(time)?;
         return Some([state[0], state[1]]);
     };
     // T grows with s.
     let (mut low, mut high) = (0.0, piece.path.end());
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        match piece.path.at(middle)?[2] < time {
+        match piece.path.states_at(middle)?[2] < time {
             true => low = middle,
             false => high = middle,
         }
     }
-    let state = piece.path.at(high)?;
+    let state = piece.path.states_at(high)?;
     Some([model.barrier(side)? + side.sign() * state[0].powi(2), side.sign() * state[1]])
 }
 
@@ -207,7 +208,7 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
             let Some([x, v]) = at(&pieces, &model, time) else {
                 panic!("{model:?} has no state at {time}");
             };
-            let (special_x, special_v) = special.path.at(time).expect("a state");
+            let (special_x, special_v) = special.path.phase_point_at(time).expect("a state");
             assert!((x - special_x).abs() < 1e-11, "{model:?} at {time}: {x} {special_x}");
             // In contact the velocity changes by gamma d^(3/2) in a unit of time.
             let steep =

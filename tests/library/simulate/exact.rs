@@ -1,6 +1,6 @@
 //! Conservative motions against elliptic functions and quadrature, down to grazing contacts.
 
-use lindstedt::impact::{Model, Start, Stop};
+use lindstedt::impact::{Model, SimulationStop, Start};
 use lindstedt::numeric::ode::quadrature::integrate_smooth;
 use lindstedt::numeric::ode::root::find_root;
 
@@ -56,7 +56,7 @@ fn the_conservative_motion_is_that_of_elliptic_functions_and_quadrature() {
         let model = Model { gamma, right: Some(barrier), ..Model::default() };
         let (approach, contact, depth) = exact_cycle(1.5, barrier, gamma);
         let motion = taylor(&model, REST, 1e-10, 50.0);
-        assert_eq!(motion.stop, Stop::Duration);
+        assert_eq!(motion.stop, SimulationStop::Duration);
         let cycle = 2.0 * approach + contact;
         let expected = ((50.0 - approach) / cycle).floor() as usize + 1;
         assert_eq!(motion.impacts.len(), expected, "gamma {gamma}");
@@ -81,7 +81,7 @@ fn the_conservative_motion_is_that_of_elliptic_functions_and_quadrature() {
         let mut compared = 0;
         for index in 0..=500 {
             let t = 0.1 * f64::from(index);
-            let (x, v) = motion.path.at(t).expect("within the run");
+            let (x, v) = motion.path.phase_point_at(t).expect("within the run");
             if let Some((exact_x, exact_v)) = exact_state(1.5, barrier, gamma, t) {
                 assert!(
                     (x - exact_x).abs() < 1e-9 && (v - exact_v).abs() < 1e-9,

@@ -1,6 +1,6 @@
 //! Dry friction: what it takes, and when it holds and lets go.
 
-use lindstedt::impact::{Integrator, Model, Simulation, Start, Stop};
+use lindstedt::impact::{Integrator, Model, Simulation, SimulationStop, Start};
 
 use super::{REST, run, taylor};
 
@@ -24,7 +24,7 @@ fn coulomb_friction_takes_alpha_times_the_way_and_then_holds() {
     assert!(swings >= 10, "{amplitudes:?}");
     assert!(motion.end_x.abs().sin() <= alpha && motion.end_velocity == 0.0);
     // After rest it is still there to be asked.
-    assert_eq!(motion.path.at(99.9), Some((motion.end_x, 0.0)));
+    assert_eq!(motion.path.phase_point_at(99.9), Some((motion.end_x, 0.0)));
     assert!(motion.energy().residual < 1e-12);
 }
 
@@ -37,9 +37,9 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
     let release = (0.3_f64 / 0.5).asin() / 0.8;
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = run(&model, start, 1e-12, 60.0, integrator);
-        assert_eq!(motion.stop, Stop::Duration, "{}", motion.stop);
-        assert_eq!(motion.path.at(0.999 * release), Some((0.0, 0.0)));
-        assert!(motion.path.at(release + 0.1).expect("t").0 > 0.0);
+        assert_eq!(motion.stop, SimulationStop::Duration, "{}", motion.stop);
+        assert_eq!(motion.path.phase_point_at(0.999 * release), Some((0.0, 0.0)));
+        assert!(motion.path.phase_point_at(release + 0.1).expect("t").0 > 0.0);
         let first = motion
             .path
             .pieces()

@@ -1,7 +1,7 @@
 //! One integrator against the other, and against itself a hundred times tighter.
 
 use lindstedt::impact::{
-    Friction, Integrator, Model, Settings, Start, Stop, known_until, simulate,
+    Friction, Integrator, Model, Settings, SimulationStop, Start, known_until, simulate,
 };
 
 use super::{REST, run, taylor};
@@ -28,8 +28,8 @@ fn the_judge_agrees() {
     ] {
         let fast = taylor(&model, start, 1e-13, 40.0);
         let judge = run(&model, start, 1e-13, 40.0, Integrator::RungeKutta);
-        assert_eq!(judge.stop, Stop::Duration, "{}", judge.stop);
-        assert_eq!(fast.stop, Stop::Duration, "{}", fast.stop);
+        assert_eq!(judge.stop, SimulationStop::Duration, "{}", judge.stop);
+        assert_eq!(fast.stop, SimulationStop::Duration, "{}", fast.stop);
         assert_eq!(fast.impacts.len(), judge.impacts.len(), "{model:?}");
         for (one, other) in fast.impacts.iter().zip(&judge.impacts) {
             assert_eq!(one.side, other.side);
@@ -38,7 +38,7 @@ fn the_judge_agrees() {
         for index in 0..=400 {
             let t = 0.1 * f64::from(index);
             let ((x, v), (judge_x, judge_v)) =
-                (fast.path.at(t).expect("t"), judge.path.at(t).expect("t"));
+                (fast.path.phase_point_at(t).expect("t"), judge.path.phase_point_at(t).expect("t"));
             assert!(
                 (x - judge_x).abs() < 1e-7 && (v - judge_v).abs() < 1e-6,
                 "{model:?} {t}: {} {}",
@@ -178,11 +178,12 @@ fn a_chaotic_motion_is_known_until_the_integrators_part() {
         let known = known_until(&series).expect("a chaotic motion");
         let apart = |from: f64, to: f64| {
             let times = (0..200).map(|k| from + (to - from) * f64::from(k) / 200.0);
-            let places =
-                times.filter_map(|t| Some((series.path.at(t)?.0 - judge.path.at(t)?.0).abs()));
+            let places = times.filter_map(|t| {
+                Some((series.path.phase_point_at(t)?.0 - judge.path.phase_point_at(t)?.0).abs())
+            });
             places.fold(0.0, f64::max)
         };
-        let places = (0..400).filter_map(|t| series.path.at(f64::from(t)));
+        let places = (0..400).filter_map(|t| series.path.phase_point_at(f64::from(t)));
         let size = places.fold(0.0, |size: f64, (x, _)| size.max(x.abs()));
         let (before, after) =
             (apart(0.0, 0.8 * known) / size, apart(known, (1.6 * known).min(400.0)) / size);

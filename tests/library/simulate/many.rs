@@ -74,7 +74,7 @@ fn a_motion_that_was_never_begun_shows_nothing() {
             (model, Start::default())
         })
         .collect();
-    let settings = Settings { interrupt: Interrupt::by(&STOPPED), ..Settings::default() };
+    let settings = Settings { interrupt: Interrupt::from_flag(&STOPPED), ..Settings::default() };
     let mut rows = sweep_on(1, &motions, Integrator::Taylor, &settings, |_| ()).expect("rows");
     assert!(rows.iter().all(|row| !row.is_begun()));
     // One of them was followed to its end.

@@ -1,6 +1,8 @@
 //! What is no motion is refused, and a run that breaks off keeps what it has.
 
-use lindstedt::impact::{Integrator, Model, Settings, Start, Stop, simulate, simulate_many};
+use lindstedt::impact::{
+    Integrator, Model, Settings, SimulationStop, Start, simulate, simulate_many,
+};
 
 use super::REST;
 
@@ -44,7 +46,9 @@ fn a_run_that_breaks_off_keeps_what_it_has() {
     let options = Settings { maximum_steps: 40, ..Settings::default() };
     let motion =
         simulate(&Model::default(), REST, Integrator::Taylor, &options).expect("it begins");
-    let Stop::Steps { t } = motion.stop else { panic!("{}", motion.stop) };
+    let SimulationStop::Steps { t } = motion.stop else { panic!("{}", motion.stop) };
     assert!(t > 1.0 && t == motion.end_time && !motion.impacts.is_empty());
-    assert!(motion.path.at(1.0).is_some() && motion.path.at(t + 1e-9).is_none());
+    assert!(
+        motion.path.phase_point_at(1.0).is_some() && motion.path.phase_point_at(t + 1e-9).is_none()
+    );
 }

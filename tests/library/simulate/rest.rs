@@ -1,6 +1,6 @@
 //! Rest times by their definition, from samples of the motion and from the action.
 
-use lindstedt::impact::{Integrator, Model, NoRest, Settings, Start, Stop, simulate};
+use lindstedt::impact::{Integrator, Model, NoRest, Settings, SimulationStop, Start, simulate};
 use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, run, taylor};
@@ -42,7 +42,7 @@ fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
 fn rest_by_samples(model: &Model, place: f64, level: f64, duration: f64) -> f64 {
     const STEP: f64 = 1e-3;
     let motion = run(model, REST, 1e-11, duration, Integrator::RungeKutta);
-    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
+    let at = |k: usize| motion.path.phase_point_at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
     let crests = (1..(duration / STEP) as usize - 1).filter_map(|k| {
         let [before, here, after] = [at(k - 1), at(k), at(k + 1)];
         (here < before && here <= after).then(|| {
@@ -99,7 +99,7 @@ fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken
     let whole = taylor(&model, REST, 1e-11, 900.0);
     let rest = whole.rest();
     for t in [0.5, 1.3, 1.8] {
-        let (x, velocity) = whole.path.at(t).expect("on the way");
+        let (x, velocity) = whole.path.phase_point_at(t).expect("on the way");
         let later = taylor(&model, Start { x, velocity }, 1e-11, 900.0).rest();
         assert!((later.amplitude - rest.amplitude).abs() < 1e-10, "{later:?}");
         let (later, whole) = (later.time.expect("it rests"), rest.time.expect("it rests"));
@@ -154,7 +154,7 @@ fn a_run_ends_where_its_energy_has_died_away() {
             let calm = 0.9 * 0.6_f64.powi(k);
             let options = Settings { rest_energy: Some(calm), ..options };
             let motion = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
-            assert_eq!(motion.stop, Stop::RestEnergy);
+            assert_eq!(motion.stop, SimulationStop::RestEnergy);
             let energy = model.energy(motion.end_x, motion.end_velocity);
             assert!(energy <= calm * (1.0 + 1e-9) && motion.end_time >= last, "{energy} {calm}");
             last = motion.end_time;
@@ -164,7 +164,7 @@ fn a_run_ends_where_its_energy_has_died_away() {
                 assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
                 let judge =
                     simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
-                assert_eq!(judge.stop, Stop::RestEnergy);
+                assert_eq!(judge.stop, SimulationStop::RestEnergy);
                 assert!((judge.end_time - motion.end_time).abs() < 1e-5);
             }
         }
@@ -363,7 +363,7 @@ fn a_pendulum_held_by_its_barrier_rests_there() {
         assert!((rest.amplitude - 10.0 * level).abs() < 1e-12, "{rest:?}");
         let time = rest.time.expect("it rests");
         assert!((time - sampled).abs() < 1e-3, "{time} {sampled}");
-        assert_eq!(motion.stop == Stop::AtRest, stop_at_rest);
+        assert_eq!(motion.stop == SimulationStop::AtRest, stop_at_rest);
     }
     // Its mirror image is the same.
     let mirrored = Model { left: Some(0.2), right: None, ..model };

@@ -1,6 +1,6 @@
 //! The keys of files.
 
-use lindstedt::problem::{Reader, keys};
+use lindstedt::problem::{ReadingCommand, keys};
 
 use super::{is_refused, of_file, run};
 
@@ -144,14 +144,14 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
         let (_, word) = key.split_once("] ").unwrap_or(("", key));
         let (_, readers) = keys().find(|(known, _)| known == key).expect("a key");
         for (command, reader) in [
-            ("derive", Reader::Derive),
-            ("compare", Reader::Compare),
-            ("impact", Reader::Impact),
-            ("simulate", Reader::Simulate),
-            ("materials", Reader::Materials),
-            ("optimize", Reader::Optimize),
-            ("lagrange", Reader::Lagrange),
-            ("stability", Reader::Stability),
+            ("derive", ReadingCommand::Derive),
+            ("compare", ReadingCommand::Compare),
+            ("impact", ReadingCommand::Impact),
+            ("simulate", ReadingCommand::Simulate),
+            ("materials", ReadingCommand::Materials),
+            ("optimize", ReadingCommand::Optimize),
+            ("lagrange", ReadingCommand::Lagrange),
+            ("stability", ReadingCommand::Stability),
         ] {
             // Keys of the top stand first; those of a section that is there already stand in it.
             let (with, without) = match (key.starts_with('['), line.starts_with('[')) {
@@ -161,17 +161,21 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             };
             // An impact, a study of materials and a search take nothing of [excitation].
             let (with, without) = match (reader, key) {
-                (Reader::Impact, "[excitation] beta") => {
+                (ReadingCommand::Impact, "[excitation] beta") => {
                     ("[excitation]\nbeta = 0.25\n".to_owned(), String::new())
                 }
-                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => {
-                    ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new())
-                }
+                (
+                    ReadingCommand::Materials | ReadingCommand::Optimize,
+                    "[excitation] frequency_ratio",
+                ) => ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new()),
                 _ => (with, without),
             };
             let foreign = matches!(
                 reader,
-                Reader::Impact | Reader::Simulate | Reader::Materials | Reader::Optimize
+                ReadingCommand::Impact
+                    | ReadingCommand::Simulate
+                    | ReadingCommand::Materials
+                    | ReadingCommand::Optimize
             ) && beside.starts_with("equation");
             let (with, without) = match foreign {
                 true => (format!("{line}\n"), String::new()),
@@ -180,13 +184,15 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             // What stands beside a key of a search is no key of the others either.
             let of_search = key.starts_with("[limits]") || key.starts_with("[genetic]");
             let (with, without) = match (key.split_once(' '), line.lines().last()) {
-                (Some((section, _)), Some(line)) if of_search && reader != Reader::Optimize => {
+                (Some((section, _)), Some(line))
+                    if of_search && reader != ReadingCommand::Optimize =>
+                {
                     (format!("{section}\n{line}\n"), String::new())
                 }
                 _ => (with, without),
             };
             // A search reads a main mass where its rest counts.
-            let of_main_mass = reader == Reader::Optimize && key.starts_with("[primary]");
+            let of_main_mass = reader == ReadingCommand::Optimize && key.starts_with("[primary]");
             let wish = "[genetic]\nobjective = \"primary_rest_time\"\npopulation = 4\ngenerations = 1\nruns = 1\nelite = 1\n";
             let (with, without) = match of_main_mass {
                 true => (
@@ -199,7 +205,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 false => (with, without),
             };
             // A mechanism needs the rest of its impact, and one that is derived a mechanism.
-            let foreign = reader == Reader::Lagrange
+            let foreign = reader == ReadingCommand::Lagrange
                 && !key.starts_with("[lagrangian]")
                 && beside != MECHANISM;
             let named_otherwise = foreign && beside.starts_with('[');
@@ -208,7 +214,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 false => (with, without),
             };
             // Periodic coefficients make another equation.
-            let hill = reader == Reader::Stability && beside == FORMULA;
+            let hill = reader == ReadingCommand::Stability && beside == FORMULA;
             let (with, without) = match hill {
                 true => (with.replace(FORMULA, HILL), HILL.to_owned()),
                 false => (with, without),
@@ -301,7 +307,7 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
         }
         let answer = of_file("own", &with, &arguments);
         let (_, word) = key.split_once("] ").unwrap_or(("", key));
-        match readers.contains(&Reader::Trajectory) {
+        match readers.contains(&ReadingCommand::Trajectory) {
             false => assert!(
                 matches!(answer.0, Some(1 | 2))
                     && (answer.2.contains(word.trim_matches(['[', ']']))

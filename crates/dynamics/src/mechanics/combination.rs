@@ -16,7 +16,7 @@ use crate::symbol::{Symbol, fresh};
 pub struct Combination {
     /// Its name.
     pub name: Symbol,
-    /// What it is in the parameters: `R - r`.
+    /// Its definition in the parameters: `R - r`.
     pub meaning: Expr,
     /// The parameter that is replaced by it, and by what.
     replaced: (Symbol, Expr),

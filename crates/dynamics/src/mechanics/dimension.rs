@@ -16,7 +16,7 @@ use std::str::FromStr;
 use num_traits::{One, Zero};
 use thiserror::Error;
 
-use super::{Equations, Mechanism};
+use super::{EquationsOfMotion, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::symbol::Symbol;
@@ -45,22 +45,22 @@ const NAMED: [(&str, [i64; 3]); 12] = [
     ("N_m", [1, 2, -2]),
 ];
 
-/// Why a unit or a term cannot be taken.
+/// The reason why a unit or a term cannot be taken.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UnitError {
     /// A unit that cannot be read.
     #[error("the unit of `{name}`: {error}")]
     Parse {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
-        /// What is wrong with it.
+        /// The error of its syntax.
         error: Box<ParseError>,
     },
     /// A word that is no unit.
     #[error("the unit of `{name}`: `{unit}` is no unit that is known here")]
     Unknown {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
         /// The word.
         unit: String,
@@ -68,7 +68,7 @@ pub enum UnitError {
     /// A unit that is no product of powers.
     #[error("the unit of `{name}`: `{unit}` is no product of powers of units")]
     NoProduct {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
         /// The text.
         unit: String,
@@ -82,33 +82,33 @@ pub enum UnitError {
     /// A term that is not measured in what the others are.
     #[error("in the {part} the term `{term}` has the unit {found}, where {expected} belongs")]
     Term {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The term.
         term: Expr,
-        /// What it is measured in.
+        /// The unit of the term.
         found: String,
-        /// What it should be measured in.
+        /// The expected unit.
         expected: String,
     },
     /// Something of a unit inside a function that takes a number.
     #[error("in the {part} the function in `{term}` takes a number, not {found}")]
     Argument {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The function and its argument.
         term: Expr,
-        /// What the argument is measured in.
+        /// The unit of the argument.
         found: String,
     },
-    /// An exponent that is no number, on something of a unit; or an exponent of a unit.
+    /// An exponent that is not a number, on something of a unit; or an exponent of a unit.
     #[error("in the {part} the power `{term}` has no unit: its base is measured in {found}")]
     Power {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The power.
         term: Expr,
-        /// What the base is measured in.
+        /// The unit of the base.
         found: String,
     },
     /// A step of algebra failed.
@@ -117,7 +117,7 @@ pub enum UnitError {
 }
 
 impl UnitError {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Missing(name) => Some(format!(
@@ -132,13 +132,13 @@ impl UnitError {
 }
 
 impl Dimension {
-    /// That of a number.
+    /// The dimension of a number.
     pub fn none() -> Self {
         Self::default()
     }
 
-    /// From whole exponents of kilogram, metre and second.
-    pub fn of(exponents: [i64; 3]) -> Self {
+    /// The dimension with these whole exponents of kilogram, metre and second.
+    pub fn from_exponents(exponents: [i64; 3]) -> Self {
         Self(exponents.map(|exponent| Rational::from_integer(exponent.into())))
     }
 
@@ -147,7 +147,7 @@ impl Dimension {
         self.0.iter().all(Zero::is_zero)
     }
 
-    /// Of a product.
+    /// The dimension of a product.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let mut product = self.clone();
@@ -155,7 +155,7 @@ impl Dimension {
         product
     }
 
-    /// Of a power.
+    /// The dimension of a power.
     #[must_use]
     pub fn power(&self, exponent: &Rational) -> Self {
         let mut power = self.clone();
@@ -213,7 +213,7 @@ impl FromStr for Dimension {
             else {
                 return Err(UnitError::Unknown { name: name(), unit: symbol.name().to_owned() });
             };
-            units.insert(symbol, Self::of(*exponents));
+            units.insert(symbol, Self::from_exponents(*exponents));
         }
         let no_product = UnitError::NoProduct { name: name(), unit: text.to_owned() };
         let (number, _) = expression.factors();
@@ -225,7 +225,7 @@ impl FromStr for Dimension {
     }
 }
 
-/// What an expression is measured in, when every symbol in it has its unit.
+/// The dimension of an expression, if every symbol in it has a unit.
 ///
 /// # Errors
 /// [`UnitError`] names the term; `part` is where it stands.
@@ -273,7 +273,7 @@ pub fn dimension(
     })
 }
 
-/// What all terms are measured in; the one that most others disagree with is named.
+/// The common dimension of all terms; the error names the term that most others disagree with.
 fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimension, UnitError> {
     let votes = |dimension: &Dimension| found.iter().filter(|other| *other == dimension).count();
     let expected =
@@ -318,9 +318,9 @@ impl Mechanism {
     /// The units of parameters and coordinates with those that follow: of velocities, accelerations
     /// and time.
     pub fn all_units(&self, units: &BTreeMap<Symbol, Dimension>) -> BTreeMap<Symbol, Dimension> {
-        let per_second = Dimension::of([0, 0, -1]);
+        let per_second = Dimension::from_exponents([0, 0, -1]);
         let mut all = units.clone();
-        all.insert(Symbol::new("t"), Dimension::of([0, 0, 1]));
+        all.insert(Symbol::new("t"), Dimension::from_exponents([0, 0, 1]));
         for coordinate in &self.coordinates {
             let Some(own) = units.get(coordinate) else {
                 continue;
@@ -359,8 +359,8 @@ impl Mechanism {
             return Err(UnitError::Unused(*unused));
         }
         let all = self.all_units(units);
-        let energy = Dimension::of([1, 2, -2]);
-        let power = Dimension::of([1, 2, -3]);
+        let energy = Dimension::from_exponents([1, 2, -2]);
+        let power = Dimension::from_exponents([1, 2, -3]);
         check(&self.kinetic, &energy, &all, "kinetic energy")?;
         check(&self.potential, &energy, &all, "potential energy")?;
         check(&self.dissipation, &power, &all, "dissipation")?;
@@ -373,7 +373,7 @@ impl Mechanism {
     }
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// Checks every term of the printed equations against the others of its equation.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Where a mechanism can rest: `dV/dq_i - Q_i = 0` with every velocity zero.
+//! Equilibria of a mechanism: `dV/dq_i - Q_i = 0` with every velocity zero.
 //!
 //! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then
 //! enters linearly is solved for; of a single angle whose force is `sin(q)*(a + b*cos(q))` the
@@ -7,14 +7,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Equations, MechanicsError, trigonometry::simplified};
+use super::{EquationsOfMotion, MechanicsError, trigonometry::simplified};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// Where a coordinate rests.
+/// The equilibrium position of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
-    /// Here.
+pub enum RestPosition {
+    /// The coordinate has this value.
     At(Expr),
     /// Anywhere: nothing pulls on it.
     Anywhere,
@@ -24,7 +24,7 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// The place of each coordinate.
-    pub places: Vec<Place>,
+    pub places: Vec<RestPosition>,
     /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is
     /// none.
     pub condition: Option<Expr>,
@@ -33,9 +33,9 @@ pub struct Rest {
 impl Rest {
     /// The coordinates with their places; one that may be anywhere is put at 0.
     pub fn values(&self, coordinates: &[Symbol]) -> BTreeMap<Symbol, Expr> {
-        let place = |place: &Place| match place {
-            Place::At(place) => place.clone(),
-            Place::Anywhere => Expr::zero(),
+        let place = |place: &RestPosition| match place {
+            RestPosition::At(place) => place.clone(),
+            RestPosition::Anywhere => Expr::zero(),
         };
         coordinates.iter().copied().zip(self.places.iter().map(place)).collect()
     }
@@ -49,14 +49,14 @@ impl Rest {
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::mechanics::{Mechanism, Place, equilibria};
+/// use lindstedt::mechanics::{Mechanism, RestPosition, equilibria};
 ///
 /// let spring = Mechanism::parse(&["r", "x"], "m*(r'^2 + r^2*x'^2)/2", "k*(r - L)^2/2 - m*g*r*cos(x)")?;
 /// let found = equilibria(&spring.equations()?)?;
-/// assert_eq!(found[0].places[0], Place::At("L + g*m/k".parse()?));
+/// assert_eq!(found[0].places[0], RestPosition::At("L + g*m/k".parse()?));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
+pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsError> {
     let coordinates = &equations.coordinates;
     let forces = equations.forces_at_rest()?;
     let angles: Vec<Symbol> =
@@ -78,7 +78,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
             add(Rest { places, condition: None });
         }
     }
-    // What does not follow linearly may still rest at zero.
+    // Equations that are not linear in the coordinates may still have an equilibrium at zero.
     let zero: BTreeMap<Symbol, Expr> =
         coordinates.iter().map(|name| (*name, Expr::zero())).collect();
     let rests = |force: &Expr| force.substitute_all(&zero).and_then(|force| simplified(&force));
@@ -86,7 +86,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
         && forces.iter().all(|force| rests(force).is_ok_and(|force| force.is_zero()))
     {
         found.push(Rest {
-            places: coordinates.iter().map(|_| Place::At(Expr::zero())).collect(),
+            places: coordinates.iter().map(|_| RestPosition::At(Expr::zero())).collect(),
             condition: None,
         });
     }
@@ -96,34 +96,34 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
         }
     };
     if let ([angle], [force]) = (coordinates.as_slice(), forces.as_slice())
-        && let Some(cosine) = tilted(*angle, force)?
+        && let Some(cosine) = cosine_of_tilt(*angle, force)?
     {
         let place = Expr::function(Function::Acos, vec![cosine.clone()])?;
         for place in [place.clone(), -place] {
-            add(Rest { places: vec![Place::At(place)], condition: Some(cosine.clone()) });
+            add(Rest { places: vec![RestPosition::At(place)], condition: Some(cosine.clone()) });
         }
     }
     Ok(found)
 }
 
-/// What the terms in the time do at a place of rest of the equations without them.
+/// The effect of explicit time dependence at an equilibrium of the autonomous equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drive {
-    /// There are none.
+pub enum DriveAtRest {
+    /// No term depends on the time explicitly.
     Absent,
-    /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose
-    /// swings they change.
+    /// The time-dependent terms vanish there, as for a pendulum whose pivot is shaken upright: it
+    /// is an equilibrium, whose oscillations they change.
     Vanishes,
-    /// They act: it is no rest where they do.
+    /// The time-dependent terms act there: it is no equilibrium while they do.
     Acts,
 }
 
-impl Equations {
-    /// What the terms in the time do at a place of rest.
-    pub(super) fn drive_at(&self, rest: &Rest) -> Result<Drive, ExprError> {
-        let at = |place: &Place| match place {
-            Place::At(place) => Some(place.clone()),
-            Place::Anywhere => None,
+impl EquationsOfMotion {
+    /// Determines the effect of explicit time dependence at an equilibrium.
+    pub(super) fn drive_at(&self, rest: &Rest) -> Result<DriveAtRest, ExprError> {
+        let at = |place: &RestPosition| match place {
+            RestPosition::At(place) => Some(place.clone()),
+            RestPosition::Anywhere => None,
         };
         let names = self.coordinates.iter();
         let mut there: BTreeMap<Symbol, Expr> = names
@@ -132,7 +132,7 @@ impl Equations {
             .filter_map(|(name, place)| Some((*name, at(place)?)))
             .collect();
         there.extend(names.map(|name| (name.derivative(), Expr::zero())));
-        let mut drive = Drive::Absent;
+        let mut drive = DriveAtRest::Absent;
         for rest in self.rest.iter().filter(|rest| rest.contains(Symbol::new("t"))) {
             let written_out = rest.expand()?;
             let terms = written_out.terms().iter();
@@ -142,14 +142,15 @@ impl Equations {
             }
             let acts = driving.substitute_all(&there).and_then(|driving| simplified(&driving));
             if !acts.is_ok_and(|driving| driving.is_zero()) {
-                return Ok(Drive::Acts);
+                return Ok(DriveAtRest::Acts);
             }
-            drive = Drive::Vanishes;
+            drive = DriveAtRest::Vanishes;
         }
         Ok(drive)
     }
 
-    /// What pulls at rest, equation by equation: no velocities, no terms in the time, no contacts.
+    /// Generalised forces at rest, equation by equation: without velocities, time-dependent terms
+    /// and contacts.
     pub(super) fn forces_at_rest(&self) -> Result<Vec<Expr>, ExprError> {
         let still: BTreeMap<Symbol, Expr> =
             self.coordinates.iter().map(|name| (name.derivative(), Expr::zero())).collect();
@@ -182,13 +183,13 @@ fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
     forces.iter().any(|force| force.contains(name)) && !forces.iter().any(outside)
 }
 
-/// The places of all coordinates, with the angles where they were put; nothing where the others do
-/// not follow linearly, or a force is left over.
+/// The places of all coordinates, with the angles where they were put; `None` if the others do not
+/// follow linearly, or a force is left over.
 fn linear_places(
     coordinates: &[Symbol],
     forces: &[Expr],
     chosen: BTreeMap<Symbol, Expr>,
-) -> Result<Option<Vec<Place>>, ExprError> {
+) -> Result<Option<Vec<RestPosition>>, ExprError> {
     let mut places: BTreeMap<Symbol, Expr> = chosen;
     let mut open: Vec<Expr> = Vec::new();
     for force in forces {
@@ -230,14 +231,14 @@ fn linear_places(
         return Ok(None);
     }
     let place = |name: &Symbol| match free.contains(name) {
-        true => Place::Anywhere,
-        false => Place::At(places.get(name).cloned().unwrap_or_else(Expr::zero)),
+        true => RestPosition::Anywhere,
+        false => RestPosition::At(places.get(name).cloned().unwrap_or_else(Expr::zero)),
     };
     Ok(Some(coordinates.iter().map(place).collect()))
 }
 
 /// The cosine of the angle at which `sin(q)*(a + b*cos(q))` vanishes beside 0 and pi.
-fn tilted(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
+fn cosine_of_tilt(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
     let (sine, cosine) = (Expr::from(angle).sin()?, Expr::from(angle).cos()?);
     let mark = Symbol::new("_cosine");
     let marked: BTreeMap<Symbol, Expr> = [(angle, Expr::symbol("_angle"))].into();

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{One, Signed, Zero};
 
-use super::{Combination, Dimension, Equations, MechanicsError, Mechanism};
+use super::{Combination, Dimension, EquationsOfMotion, MechanicsError, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, fresh};
 use crate::symbol::Symbol;
@@ -51,19 +51,19 @@ pub struct Groups {
 pub struct Group {
     /// Its name in the dimensionless equations.
     pub name: Symbol,
-    /// What it is in the parameters.
+    /// Its definition in the parameters.
     pub definition: Expr,
-    /// What it does.
+    /// Its meaning in words.
     pub meaning: String,
     /// The dimension of the definition, counted from the units of the parameters; that of a number.
     pub dimension: Dimension,
 }
 
 impl Groups {
-    /// Those of a mechanism whose units have passed their check.
+    /// The dimensionless groups of a mechanism whose units have passed their check.
     ///
     /// # Errors
-    /// Nothing that has the dimension of a time; a step of algebra.
+    /// No quantity has the dimension of a time, or a step of algebra failed.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -73,14 +73,14 @@ impl Groups {
     /// pendulum.dissipation = "c*x'^2/2".parse()?;
     /// let units = [("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("c", "N*m*s"), ("x", "rad")];
     /// let units = units.map(|(name, unit)| (name.into(), unit.parse::<Dimension>().expect("a unit"))).into();
-    /// let groups = Groups::of(&pendulum, &pendulum.equations()?, &units)?;
+    /// let groups = Groups::from_mechanism(&pendulum, &pendulum.equations()?, &units)?;
     /// assert_eq!(groups.left[0].to_string(), "x'' + 2*zeta*x' + sin(x)");
     /// assert_eq!(groups.groups[0].definition.to_string(), "c/(2*sqrt(g)*L^(3/2)*m)");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn of(
+    pub fn from_mechanism(
         mechanism: &Mechanism,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
         units: &BTreeMap<Symbol, Dimension>,
     ) -> Result<Self, MechanicsError> {
         // In sums that enter as one, each with the unit of its terms.
@@ -101,7 +101,10 @@ impl Groups {
         let dimension_of = |name: Symbol| known.get(&name).cloned().unwrap_or_default();
         let inertia = combined(&equations.mass.concat())?;
         let stiffness = combined(std::slice::from_ref(&mechanism.potential))?;
-        let mut basis = Basis::of(&preferred(&inertia, &stiffness, &parameters), dimension_of);
+        let mut basis = Basis::independent_among(
+            &unit_candidates(&inertia, &stiffness, &parameters),
+            dimension_of,
+        );
         let mut sizes = Vec::new();
         for coordinate in &equations.coordinates {
             let unit = dimension_of(*coordinate);
@@ -113,7 +116,7 @@ impl Groups {
                 sizes.push((*coordinate, size));
             }
         }
-        let time = basis.express(&Dimension::of([0, 0, 1]))?;
+        let time = basis.express(&Dimension::from_exponents([0, 0, 1]))?;
         let time = time.ok_or_else(|| MechanicsError::NoTime(names(&parameters)))?;
         let mut lengths = Vec::new();
         for coordinate in &equations.coordinates {
@@ -182,7 +185,7 @@ fn names(parameters: &[Symbol]) -> String {
 
 /// The parameters in the order in which they are taken for units: those of inertia, of stiffness,
 /// all others.
-fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
+fn unit_candidates(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
     let [inertia, stiffness] = [inertia, stiffness]
         .map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
     let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {
@@ -197,7 +200,10 @@ fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec
 
 /// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is
 /// common to the terms of a sum. What has a unit is positive.
-fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr, ExprError> {
+fn positive_factors_out(
+    expression: &Expr,
+    equations: &EquationsOfMotion,
+) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| {
         let whole = expr.with_children(children)?;
         let Node::Power(base, exponent) = whole.node() else {
@@ -224,7 +230,7 @@ struct Basis {
 
 impl Basis {
     /// The first parameters that are independent.
-    fn of(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
+    fn independent_among(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
         let mut basis = Self { members: Vec::new() };
         for name in ordered {
             let dimension = dimension_of(*name);
@@ -235,7 +241,7 @@ impl Basis {
         basis
     }
 
-    /// The powers of the members whose product has this dimension; nothing where there is none.
+    /// The powers of the members whose product has this dimension; `None` if there is none.
     fn exponents(&self, dimension: &Dimension) -> Option<Vec<Rational>> {
         let width = self.members.len();
         // A row for each base unit, a column for each member, and the right side: eliminated
@@ -290,7 +296,7 @@ impl Basis {
         factors.map(|factors| Some(Expr::product(factors)))
     }
 
-    /// What is written in scaled parameters, in the parameters themselves.
+    /// Converts an expression in scaled parameters to the parameters themselves.
     fn in_parameters(
         &self,
         scaled: &Expr,
@@ -330,29 +336,29 @@ struct Scaling<'a> {
 
 impl Scaling<'_> {
     /// Names what stands before the terms, in the order in which they print: first the frequencies.
-    fn collect(&mut self, equations: &Equations) -> Result<(), ExprError> {
+    fn collect(&mut self, equations: &EquationsOfMotion) -> Result<(), ExprError> {
         let mut counted = 0;
         while let Some((product, role)) = self.next(equations) {
             let (wanted, factor, meaning) = match role {
-                Role::Frequency => (
+                GroupRole::Frequency => (
                     "eta",
                     Rational::one(),
                     "frequency of the excitation over that of the unit of time",
                 ),
-                Role::Viscous => {
+                GroupRole::Viscous => {
                     ("zeta", Rational::new(1.into(), 2.into()), "viscous damping ratio")
                 }
-                Role::Dry => ("alpha", Rational::one(), "dry friction"),
-                Role::Excitation => ("beta", Rational::one(), "excitation"),
-                Role::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
-                Role::ContactDamping => ("mu", Rational::one(), "damping of the contact"),
-                Role::Other => {
+                GroupRole::Dry => ("alpha", Rational::one(), "dry friction"),
+                GroupRole::Excitation => ("beta", Rational::one(), "excitation"),
+                GroupRole::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
+                GroupRole::ContactDamping => ("mu", Rational::one(), "damping of the contact"),
+                GroupRole::Other => {
                     counted += 1;
                     ("Pi", Rational::one(), "ratio")
                 }
             };
             let own = match role {
-                Role::Other => Symbol::new(&format!("{wanted}{counted}")),
+                GroupRole::Other => Symbol::new(&format!("{wanted}{counted}")),
                 _ => Symbol::new(wanted),
             };
             // Names of parameters that are used for units, or have been replaced, stay theirs:
@@ -366,7 +372,7 @@ impl Scaling<'_> {
                 false => fresh(own.name(), &taken),
             };
             let definition = match role {
-                Role::Other => Expr::product(product.factors().1.iter().cloned()),
+                GroupRole::Other => Expr::product(product.factors().1.iter().cloned()),
                 _ => Expr::number(factor.clone()) * &product,
             };
             self.replace(&definition, name)?;
@@ -381,7 +387,7 @@ impl Scaling<'_> {
     }
 
     /// Whether a name is a parameter that no group has replaced yet.
-    fn is_open(&self, name: Symbol, equations: &Equations) -> bool {
+    fn is_open(&self, name: Symbol, equations: &EquationsOfMotion) -> bool {
         equations.is_parameter(name)
             && !self.taken.contains(&name)
             && !self.basis.members.iter().any(|(own, _)| *own == name)
@@ -389,7 +395,7 @@ impl Scaling<'_> {
 
     /// The next product of parameters that stands before something, with its number, and what it
     /// stands before.
-    fn next(&self, equations: &Equations) -> Option<(Expr, Role)> {
+    fn next(&self, equations: &EquationsOfMotion) -> Option<(Expr, GroupRole)> {
         let open = |expression: &Expr| {
             expression.symbols().into_iter().any(|name| self.is_open(name, equations))
         };
@@ -411,7 +417,7 @@ impl Scaling<'_> {
                     [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
                 );
                 if !rest.is_empty() && is_time && open(&product) {
-                    return Some((product, Role::Frequency));
+                    return Some((product, GroupRole::Frequency));
                 }
             }
         }
@@ -423,15 +429,18 @@ impl Scaling<'_> {
                 [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
             );
             if open(&product) {
-                return Some((product, Role::of(&Expr::product(rest.into_iter().cloned()))));
+                return Some((
+                    product,
+                    GroupRole::from_factor(&Expr::product(rest.into_iter().cloned())),
+                ));
             }
         }
-        // What stands inside of something else, such as the place of a barrier, one by one.
+        // Parameters inside of other functions, such as the position of a barrier, one by one.
         let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
-        Some((Expr::from(name), Role::Other))
+        Some((Expr::from(name), GroupRole::Other))
     }
 
-    /// Puts the name in the place of its definition, by way of one of the parameters in it.
+    /// Replaces the definition of a group by its name, by way of one of the parameters in it.
     fn replace(&mut self, definition: &Expr, name: Symbol) -> Result<(), ExprError> {
         let (number, factors) = definition.factors();
         let parameter = |factor: &Expr| {
@@ -474,9 +483,9 @@ impl Scaling<'_> {
     }
 }
 
-/// What a group does, by what it stands before.
+/// The role of a group, by the factor that it multiplies.
 #[derive(Clone, Copy, PartialEq)]
-enum Role {
+enum GroupRole {
     Frequency,
     Viscous,
     Dry,
@@ -486,8 +495,8 @@ enum Role {
     Other,
 }
 
-impl Role {
-    fn of(before: &Expr) -> Self {
+impl GroupRole {
+    fn from_factor(before: &Expr) -> Self {
         let has = |function: Function| before.contains_function(function);
         let velocity = before.symbols().into_iter().any(|name| name.primes() == 1);
         let time = before.symbols().into_iter().any(|name| name.name() == "t");

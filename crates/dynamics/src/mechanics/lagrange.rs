@@ -1,4 +1,4 @@
-//! Lagrange's equations, and the form in which people print them.
+//! Lagrange's equations, and the form in which they are printed.
 //!
 //! ```text
 //! sum_j M_ij q_j'' + h_i = 0      M_ij = d2T/dq_i'dq_j'
@@ -19,23 +19,23 @@ use crate::symbol::Symbol;
 
 /// Equations of motion, one for each coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Equations {
+pub struct EquationsOfMotion {
     /// The coordinates.
     pub coordinates: Vec<Symbol>,
     /// M, the mass matrix.
     pub mass: Vec<Vec<Expr>>,
     /// h, what stands beside the accelerations on the left side.
     pub rest: Vec<Expr>,
-    /// The left sides as people print them: the factor that all terms have in common is divided
-    /// out; `x'' + ...` where the inertia is a number or a product of parameters.
+    /// The left sides in the usual form: the factor that all terms have in common is divided out;
+    /// `x'' + ...` where the inertia is a number or a product of parameters.
     pub left: Vec<Expr>,
-    /// What each was divided by; parameters are taken not to vanish.
+    /// The divisor of each equation; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
     /// The sums of parameters that enter as one; here they are written out.
     pub combinations: Vec<Combination>,
 }
 
-impl fmt::Display for Equations {
+impl fmt::Display for EquationsOfMotion {
     /// A line each.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<String> = self.left.iter().map(|left| format!("{left} = 0")).collect();
@@ -44,7 +44,7 @@ impl fmt::Display for Equations {
 }
 
 /// The equations of a mechanism that has been checked.
-pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsError> {
+pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, MechanicsError> {
     let coordinates = &mechanism.coordinates;
     let mut mass = Vec::new();
     let mut rest = Vec::new();
@@ -71,7 +71,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsErr
     let singular = || MechanicsError::Singular(mechanism.kinetic.clone());
     // Whether every acceleration follows.
     linear::solution(&mass, &rest, singular)?;
-    let mut equations = Equations {
+    let mut equations = EquationsOfMotion {
         coordinates: coordinates.clone(),
         mass,
         rest,
@@ -93,7 +93,7 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
     let steps = |expr: &Expr| {
         expr.contains_function(Function::Step) || expr.contains_function(Function::Sign)
     };
-    // What is still to be looked at, with the factors that stand beside it.
+    // The expressions still to be examined, with the factors beside them.
     let mut open: Vec<(Expr, Vec<Expr>)> = vec![(energy.clone(), vec![])];
     while let Some((expr, beside)) = open.pop() {
         match expr.node() {
@@ -152,7 +152,7 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
     positive && (same(&base) || of_wave)
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// The equations of a mechanism in these combinations, with what those are in their places.
     pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
         let entries = self.mass.iter_mut().flatten();
@@ -192,7 +192,7 @@ impl Equations {
         !self.coordinates.contains(&name.coordinate()) && name.name() != "t"
     }
 
-    /// One equation as people print it, and what it was divided by.
+    /// One equation in the usual form, and what it was divided by.
     fn printed(&self, index: usize) -> Result<(Expr, Expr), ExprError> {
         let inertia = &self.mass[index];
         let accelerations =

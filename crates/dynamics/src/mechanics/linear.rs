@@ -53,8 +53,8 @@ pub fn solution(
 /// Whether the expression has a value other than zero at a point, rounding accounted for. Costs one
 /// evaluation; to write out the quotients of an elimination takes far longer.
 fn is_surely_not_zero(expression: &Expr) -> bool {
-    // The same point on every run: fractional parts of multiples of the golden section, by the
-    // letters of the name.
+    // A point that is the same on every run: fractional parts of multiples of the golden section,
+    // by the letters of the name.
     let place = |name: Symbol| {
         let number =
             name.name().bytes().fold(7_u32, |sum, byte| (31 * sum + u32::from(byte)) % 10_007);

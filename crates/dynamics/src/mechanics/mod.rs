@@ -8,9 +8,9 @@
 //!
 //! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord
 //! Rayleigh, *The Theory of Sound*, section 81, for D.) In: a [`Mechanism`], energies as
-//! expressions with `q'` for the velocity of `q`. Out: its [`Equations`], the places where it can
-//! rest and how it swings there, and, where its parameters have units, a check of every term and
-//! the dimensionless [`Groups`] on which the motion depends.
+//! expressions with `q'` for the velocity of `q`. Out: its [`EquationsOfMotion`], the places where
+//! it can rest and how it swings there, and, where its parameters have units, a check of every term
+//! and the dimensionless [`Groups`] on which the motion depends.
 //!
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
@@ -41,7 +41,7 @@ use crate::symbol::Symbol;
 
 pub use combination::Combination;
 pub use dimension::{Dimension, UnitError};
-pub use equilibrium::{Drive, Place, Rest, equilibria};
+pub use equilibrium::{DriveAtRest, Rest, RestPosition, equilibria};
 pub use groups::{Group, Groups};
 pub use lagrange::Equations;
 pub use modes::{Mode, Modes};
@@ -73,18 +73,18 @@ pub enum MechanicsError {
     /// An energy or a force that cannot be read.
     #[error("the {part}: {error}")]
     Parse {
-        /// Which.
+        /// The part of the mechanism.
         part: String,
-        /// What is wrong with it.
+        /// The error of its syntax.
         error: Box<ParseError>,
     },
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// No coordinates, or more than can be written out.
+    /// There are no coordinates, or too many to write the equations out.
     #[error("a mechanism has 1 to {MOST_COORDINATES} coordinates, not {0}")]
     CoordinateCount(usize),
-    /// The same coordinate twice.
+    /// A coordinate that occurs twice.
     #[error("the coordinate `{0}` is listed twice")]
     Twice(Symbol),
     /// A name that cannot be a coordinate.
@@ -95,11 +95,11 @@ pub enum MechanicsError {
     /// A velocity or an acceleration where none belongs.
     #[error("the {part} contains `{name}`: {why}")]
     Derivative {
-        /// Of which part.
+        /// The part of the mechanism.
         part: String,
         /// The symbol.
         name: Symbol,
-        /// What belongs there.
+        /// The reason, and what to write instead.
         why: &'static str,
     },
     /// A coordinate that nothing accelerates.
@@ -118,7 +118,7 @@ pub enum MechanicsError {
          k*(x - a)^2*H(x - a)"
     )]
     Jump {
-        /// Which.
+        /// The part of the mechanism.
         part: String,
         /// The step or sign.
         jump: Expr,
@@ -129,7 +129,7 @@ pub enum MechanicsError {
     /// A term of a wrong unit.
     #[error(transparent)]
     Unit(#[from] UnitError),
-    /// Nothing among the parameters and the sizes of the motion has the dimension of a time.
+    /// No parameter and no size of the motion has the dimension of a time.
     #[error("no product of powers of {0} is a time: the motion has no time of its own")]
     NoTime(String),
     /// A value for a name that does not occur.
@@ -153,7 +153,7 @@ pub enum MechanicsError {
 }
 
 impl MechanicsError {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Unit(error) => error.help(),
@@ -166,7 +166,7 @@ impl Mechanism {
     /// A mechanism of these energies alone, as texts.
     ///
     /// # Errors
-    /// What cannot be read; [`Mechanism::equations`] judges what can.
+    /// A part that cannot be parsed; [`Mechanism::equations`] judges the others.
     pub fn parse(
         coordinates: &[&str],
         kinetic: &str,
@@ -205,14 +205,14 @@ impl Mechanism {
     /// assert_eq!(equations.to_string(), "s''*(M + m) + L*m*x''*cos(x) - L*m*x'^2*sin(x) = 0\ns''*cos(x) + L*x'' + g*sin(x) = 0");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn equations(&self) -> Result<Equations, MechanicsError> {
+    pub fn equations(&self) -> Result<EquationsOfMotion, MechanicsError> {
         self.check()?;
         let (own, combinations) = combination::combined(self)?;
         let equations = lagrange::equations(&own)?;
         Ok(equations.written_out(combinations)?)
     }
 
-    /// The same with something else in the place of every part.
+    /// Returns the mechanism with a function applied to every part.
     fn mapped(&self, change: impl Fn(&Expr) -> Result<Expr, ExprError>) -> Result<Self, ExprError> {
         let force = |(on, force): (&Symbol, &Expr)| Ok((*on, change(force)?));
         Ok(Self {

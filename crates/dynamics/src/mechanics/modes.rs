@@ -1,4 +1,4 @@
-//! How a mechanism swings near a place of rest.
+//! Small oscillations of a mechanism about an equilibrium.
 //!
 //! ```text
 //! M q'' + C q' + K q = 0,   q = u e^(lambda t)        C = 0, K symmetric: K u = omega^2 M u
@@ -47,8 +47,7 @@ pub struct Mode {
     pub frequency: f64,
     /// Re lambda, per unit of time: positive where it grows.
     pub growth: f64,
-    /// The coordinates in proportion, the largest 1; nothing where damping makes them move out of
-    /// step.
+    /// The coordinates in proportion, the largest 1; `None` if damping makes them move out of step.
     pub shape: Option<Vec<f64>>,
 }
 
@@ -64,11 +63,11 @@ impl Modes {
     ///
     /// let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?.equations()?;
     /// let [hanging, upright] = &equilibria(&pendulum)?[..] else { unreachable!() };
-    /// assert_eq!(Modes::at(&pendulum, hanging)?.square()?.map(|square| square.to_string()), Some("g/L".to_owned()));
-    /// assert_eq!(Modes::at(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
+    /// assert_eq!(Modes::about_rest(&pendulum, hanging)?.square()?.map(|square| square.to_string()), Some("g/L".to_owned()));
+    /// assert_eq!(Modes::about_rest(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn at(equations: &Equations, rest: &Rest) -> Result<Self, MechanicsError> {
+    pub fn about_rest(equations: &EquationsOfMotion, rest: &Rest) -> Result<Self, MechanicsError> {
         Jacobians::new(equations)?.modes_at(equations, rest)
     }
 
@@ -147,7 +146,7 @@ impl Jacobians {
     ///
     /// # Errors
     /// Derivatives too long to be written out, or without a value at rest.
-    pub(super) fn new(equations: &Equations) -> Result<Self, MechanicsError> {
+    pub(super) fn new(equations: &EquationsOfMotion) -> Result<Self, MechanicsError> {
         let coordinates = &equations.coordinates;
         let velocities = || coordinates.iter().map(|name| name.derivative());
         let still: BTreeMap<Symbol, Expr> = velocities().map(|name| (name, Expr::zero())).collect();
@@ -174,7 +173,7 @@ impl Jacobians {
     /// Entries too long to be written out, or without a value there.
     pub(super) fn modes_at(
         &self,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
         rest: &Rest,
     ) -> Result<Modes, MechanicsError> {
         let coordinates = &equations.coordinates;
@@ -182,7 +181,7 @@ impl Jacobians {
         let anywhere: Vec<Symbol> = coordinates
             .iter()
             .zip(&rest.places)
-            .filter_map(|(name, place)| (*place == Place::Anywhere).then_some(*name))
+            .filter_map(|(name, place)| (*place == RestPosition::Anywhere).then_some(*name))
             .collect();
         for name in &anywhere {
             place.remove(name);
@@ -248,7 +247,7 @@ fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>,
 /// A value that is rounding beside the largest is none.
 const ROUNDING: f64 = 1e-13;
 
-/// How far rounding splits a double zero, over the largest value.
+/// Splitting of a double zero by rounding, over the largest value.
 const SPLIT: f64 = 1e-6;
 
 /// K u = omega^2 M u by M = L L^T: symmetric in w = L^T u.
@@ -269,14 +268,15 @@ fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Ve
         Mode {
             frequency: square.max(0.0).sqrt(),
             growth: (-square).max(0.0).sqrt(),
-            shape: shape.map(|shape| shape.iter().map(|entry| tidy(entry / size)).collect()),
+            shape: shape
+                .map(|shape| shape.iter().map(|entry| without_rounding(entry / size)).collect()),
         }
     };
     (0..stiffness.nrows()).map(mode).collect()
 }
 
 /// A proportion without the noise of rounding.
-fn tidy(proportion: f64) -> f64 {
+fn without_rounding(proportion: f64) -> f64 {
     if proportion.abs() < ROUNDING { 0.0 } else { proportion }
 }
 

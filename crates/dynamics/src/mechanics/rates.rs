@@ -1,6 +1,6 @@
-//! The same equations of first order, ready to be followed.
+//! The equations of motion as first-order equations, ready to be integrated.
 
-use super::{Equations, MechanicsError};
+use super::{EquationsOfMotion, MechanicsError};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
@@ -13,7 +13,7 @@ pub struct Rates {
     pub right: Vec<Expr>,
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// The equations of first order, for [`System`](crate::system::System).
     ///
     /// # Errors
@@ -22,14 +22,14 @@ impl Equations {
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::Mechanism;
-    /// use lindstedt::system::{Options, System};
+    /// use lindstedt::system::{SystemOptions, System};
     ///
     /// let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?;
     /// let rates = pendulum.equations()?.rates()?;
     /// let numbers = [("g".into(), 9.81), ("L".into(), 0.5), ("m".into(), 2.0)].into();
     /// let system = System::new(&rates.states, "t".into(), &rates.right, &numbers)?;
-    /// let path = system.solve(0.0, &[0.1, 0.0], 1.0, &[], &Options::default())?;
-    /// assert!(path.at(1.0).is_some_and(|state| (state[0] + 0.0282).abs() < 1e-3));
+    /// let path = system.solve(0.0, &[0.1, 0.0], 1.0, &[], &SystemOptions::default())?;
+    /// assert!(path.states_at(1.0).is_some_and(|state| (state[0] + 0.0282).abs() < 1e-3));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn rates(&self) -> Result<Rates, MechanicsError> {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::symbol::Symbol;
 
-/// What is asked.
+/// A study of a mechanism: its energies, forces and values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismQuestion {
     /// The mechanism.
@@ -23,23 +23,23 @@ pub struct MechanismQuestion {
 /// Everything that follows from the energies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismStudy {
-    /// What was asked.
+    /// The question that this answers.
     pub question: MechanismQuestion,
     /// The equations of motion.
-    pub equations: Equations,
+    pub equations: EquationsOfMotion,
     /// Places of rest, and how it swings there.
     pub rests: Vec<RestStudy>,
-    /// The dimensionless form; nothing without units.
+    /// The dimensionless form; `None` without units.
     pub groups: Option<Result<Groups, MechanicsError>>,
 }
 
 /// A place of rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestStudy {
-    /// Where.
+    /// The equilibrium.
     pub rest: Rest,
-    /// What the terms in the time, which the linear equations leave out, do there.
-    pub drive: Drive,
+    /// The effect there of explicit time dependence, which the linear equations leave out.
+    pub drive: DriveAtRest,
     /// The linear equations there.
     pub modes: Modes,
     /// Their numbers; nothing where not every parameter has a value, or the place does not exist
@@ -97,6 +97,7 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, MechanicsErr
         let drive = equations.drive_at(&rest).map_err(MechanicsError::from)?;
         rests.push(RestStudy { rest, drive, modes, numbers });
     }
-    let groups = question.units.as_ref().map(|units| Groups::of(mechanism, &equations, units));
+    let groups =
+        question.units.as_ref().map(|units| Groups::from_mechanism(mechanism, &equations, units));
     Ok(MechanismStudy { equations, rests, groups, question })
 }

@@ -24,7 +24,7 @@ const MOST_TERMS: usize = 2000;
 pub(super) fn simplified(expression: &Expr) -> Result<Expr, ExprError> {
     let mut sum = without_inverses(expression)?.expand()?;
     while sum.terms().len() <= MOST_TERMS {
-        match joined(&sum)? {
+        match join_one_pair(&sum)? {
             Some(shorter) => sum = shorter.expand()?,
             None => break,
         }
@@ -48,8 +48,8 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
     })
 }
 
-/// The sum with one pair of its terms joined; nothing where there is no such pair.
-fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
+/// The sum with one pair of its terms joined; `None` if there is no such pair.
+fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     let terms = sum.terms();
     let bare: Vec<(Rational, Expr)> = terms.iter().map(without_number).collect();
     let places: HashMap<&Expr, usize> =
@@ -57,7 +57,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     for (index, (number, term)) in bare.iter().enumerate() {
         for [first, second] in pairs(term) {
             let rest = Expr::divide(term, &(&first.expression() * &second.expression()))?;
-            let partner = &rest * &(first.turned()? * second.turned()?);
+            let partner = &rest * &(first.cofunction()? * second.cofunction()?);
             let Some(&place) = places.get(&partner) else {
                 continue;
             };
@@ -69,7 +69,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
             if place == index || !(whole || first.angle == second.angle) {
                 continue;
             }
-            let Some(together) = Wave::join(&first, &second, opposite)? else {
+            let Some(together) = SineOrCosine::combine(&first, &second, opposite)? else {
                 continue;
             };
             let share = match other.abs() < number.abs() {
@@ -101,19 +101,19 @@ fn without_number(term: &Expr) -> (Rational, Expr) {
 
 /// The sine or cosine of an angle.
 #[derive(Clone, PartialEq)]
-struct Wave {
+struct SineOrCosine {
     function: Function,
     angle: Expr,
 }
 
-impl Wave {
+impl SineOrCosine {
     fn expression(&self) -> Expr {
         // A wave was read from an expression, so it can be written as one.
         Expr::function(self.function, vec![self.angle.clone()]).unwrap_or_else(|_| Expr::zero())
     }
 
     /// Sine for cosine and the other way round.
-    fn turned(&self) -> Result<Expr, ExprError> {
+    fn cofunction(&self) -> Result<Expr, ExprError> {
         let function = match self.function {
             Function::Sin => Function::Cos,
             _ => Function::Sin,
@@ -121,9 +121,9 @@ impl Wave {
         Expr::function(function, vec![self.angle.clone()])
     }
 
-    /// `first*second + turned*turned`, or their difference, as one wave; nothing where that is no
+    /// `first*second + turned*turned`, or their difference, as one wave; `None` if that is no
     /// shorter.
-    fn join(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
+    fn combine(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
         let (u, v) = (&first.angle, &second.angle);
         match (first.function, second.function, opposite) {
             (Function::Cos, Function::Cos, false) => (u - v).cos().map(Some),
@@ -136,7 +136,7 @@ impl Wave {
 }
 
 /// Every ordered pair of waves among the factors of a term; a square is a pair of itself.
-fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
+fn pairs(term: &Expr) -> Vec<[SineOrCosine; 2]> {
     let (_, factors) = term.factors();
     let mut waves = Vec::new();
     for factor in factors {
@@ -152,7 +152,7 @@ fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
             continue;
         };
         let times = if *exponent >= Rational::from_integer(2.into()) { 2 } else { 1 };
-        let wave = Wave { function: *function, angle: angle.clone() };
+        let wave = SineOrCosine { function: *function, angle: angle.clone() };
         waves.extend(std::iter::repeat_n(wave, times));
     }
     let mut pairs = Vec::new();

@@ -25,32 +25,32 @@ use super::polynomial::{first_root, value};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Argument {
     pub(super) expression: Expr,
-    pub(super) kind: Kind,
+    pub(super) kind: FunctionGrowth,
 }
 
-/// How a function answers to its argument.
+/// The behaviour of a function of large or small argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
-    /// It grows with it without bound, and is nothing far below zero: `exp`.
+pub(super) enum FunctionGrowth {
+    /// Growth without bound for large arguments, and decay to zero for small ones: `exp`.
     Growing,
-    /// It grows with its size: `sinh`, `cosh`.
+    /// Growth on both sides: `sinh`, `cosh`.
     GrowingBothWays,
-    /// It keeps still far from zero: `tanh`.
+    /// Saturation far from zero: `tanh`.
     Bounded,
-    /// It comes to rest slowly: `atan`.
+    /// Slow saturation: `atan`.
     Slow,
-    /// It changes when the argument changes by its own size over this: powers, logarithms.
+    /// A change on the scale of the argument over this exponent: powers, logarithms.
     Power(f64),
 }
 
 /// A step this many times as long as a place is wide would not see it.
 const TIMES: f64 = 16.0;
 
-/// Of the largest value of an argument: what it may be off at a place.
+/// Error of an argument over its largest value.
 const ROUNDING: f64 = 1e-13;
 
-/// So many widths away a place is nothing in double precision: from there on steps may end farther
-/// apart.
+/// Number of widths beyond which a narrow place vanishes in double precision: from there on steps
+/// may end farther apart.
 const FAR: f64 = 32.0;
 
 /// The arguments in the right sides that move with the states. Waves are to be seen everywhere,
@@ -69,7 +69,7 @@ pub(super) fn arguments(
         };
         let moves = states.iter().any(|state| argument.expression.contains(*state));
         let begins_at_guard = || {
-            let root = matches!(argument.kind, Kind::Power(_))
+            let root = matches!(argument.kind, FunctionGrowth::Power(_))
                 .then(|| root_of_square(&argument.expression, values));
             let root = root.flatten().map(|root| Guard::new(root, values));
             root.is_some_and(|root| guards.iter().any(|guard| root.ratio_to(guard).is_some()))
@@ -120,20 +120,20 @@ fn argument(node: &Expr) -> Option<Argument> {
         Node::Power(base, exponent) => match exponent.as_number() {
             Some(number) => {
                 let ordinary = number.is_integer() && number.is_positive() && to_f64(number) < HIGH;
-                (!ordinary).then(|| (base.clone(), Kind::Power(to_f64(&number.abs()))))?
+                (!ordinary).then(|| (base.clone(), FunctionGrowth::Power(to_f64(&number.abs()))))?
             }
             None => {
                 let logarithm = Expr::function(Function::Log, vec![base.clone()]).ok()?;
-                (&logarithm * exponent, Kind::Growing)
+                (&logarithm * exponent, FunctionGrowth::Growing)
             }
         },
         Node::Function(function, arguments) => {
             let kind = match function {
-                Function::Exp => Kind::Growing,
-                Function::Sinh | Function::Cosh => Kind::GrowingBothWays,
-                Function::Tanh => Kind::Bounded,
-                Function::Atan => Kind::Slow,
-                Function::Log => Kind::Power(1.0),
+                Function::Exp => FunctionGrowth::Growing,
+                Function::Sinh | Function::Cosh => FunctionGrowth::GrowingBothWays,
+                Function::Tanh => FunctionGrowth::Bounded,
+                Function::Atan => FunctionGrowth::Slow,
+                Function::Log => FunctionGrowth::Power(1.0),
                 _ => return None,
             };
             (arguments.first()?.clone(), kind)
@@ -143,11 +143,11 @@ fn argument(node: &Expr) -> Option<Argument> {
     Some(Argument { expression, kind })
 }
 
-impl Kind {
-    /// The change of the argument that matters where it is so large, give or take so much; nothing
-    /// where the function is as good as constant.
+impl FunctionGrowth {
+    /// The change of the argument that matters where it is so large, give or take so much; `None`
+    /// if the function is as good as constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
-        /// Beyond it an exponential is nothing, whatever it is multiplied by.
+        /// Argument beyond which an exponential is negligible, whatever its factor.
         const NOTHING: f64 = 150.0;
         match self {
             Self::Growing if argument + error < -NOTHING => None,
@@ -164,10 +164,9 @@ impl Kind {
     }
 }
 
-/// How far a step may go so that it ends beside the next place that is narrow for it; nothing where
-/// it may go to its end. `series` is the argument along the step, by powers of the time since its
-/// beginning.
-pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64> {
+/// Length of a step that ends beside the next narrow place of a function; `None` if it need not be
+/// shortened. `series` is the argument along the step, by powers of the time since its start.
+pub(super) fn end_of_step(kind: FunctionGrowth, series: &[f64], length: f64) -> Option<f64> {
     if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
         return None;
     }
@@ -205,19 +204,19 @@ pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Returns the end of a step in parts of that step, from the values of the argument at [`COARSE`]
 /// and, if these differ much, anywhere.
 pub(super) fn end_by_values(
-    kind: Kind,
+    kind: FunctionGrowth,
     coarse: [f64; 5],
     value: impl Fn(f64) -> f64,
 ) -> Option<f64> {
     const CELLS: usize = 32;
-    /// Of the largest value: what the search for a turn may leave of it.
+    /// Relative accuracy of the search for an extremum.
     const CLOSELY: f64 = 1e-9;
-    /// Turns of an argument beyond which so many cells do not show them.
+    /// Turns of an argument beyond which this many cells do not show them.
     const MOST_TURNS: usize = 8;
     let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
     let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
     let wide = match kind {
-        Kind::Power(exponent) => {
+        FunctionGrowth::Power(exponent) => {
             let bent =
                 coarse.windows(3).map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
             // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
@@ -286,15 +285,15 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
 }
 
 /// The time that a place takes, of the argument, give or take an error, its rate and the rate of
-/// that; nothing where the function is as good as constant.
-fn width(kind: Kind, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
+/// that; `None` if the function is as good as constant.
+fn width(kind: FunctionGrowth, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
     let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
     (width > 0.0).then_some(width)
 }
 
-/// Where to end a step of this length before a place so far away; nothing where the place is wide,
-/// or so near that it is seen.
+/// Length of a step that ends before a narrow place at this distance; `None` if the place is wide,
+/// or so near that the step resolves it.
 fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     let width = width.max(1e-13 * length);
     let near = 2.0 * width;
@@ -312,7 +311,7 @@ fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
 }
 
 /// Whether the argument changes so little along a step that nothing on it can be narrow.
-fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
+fn is_wide(kind: FunctionGrowth, series: &[f64], length: f64) -> bool {
     let (mut first, mut second) = (0.0, 0.0);
     let mut power = 1.0;
     for (order, coefficient) in series.iter().enumerate().skip(1) {
@@ -322,7 +321,7 @@ fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
         second += order as f64 * term;
     }
     match kind {
-        Kind::Power(exponent) => {
+        FunctionGrowth::Power(exponent) => {
             let size = series[0].abs();
             let monotonic = 2.0 * series.get(1).map_or(0.0, |slope| slope.abs() * length) > first;
             monotonic || first < 0.5 * size && exponent * second < TIMES * TIMES * size
@@ -372,24 +371,24 @@ mod tests {
     fn a_step_ends_beside_the_first_narrow_place() {
         // exp(-((s - 1/2)/w)^2), w = 1e-3: at 2 w, 4 w, ... before the middle.
         let series = [-0.25e6, 1e6, -1e6];
-        let end = end_of_step(Kind::Growing, &series, 1.0).expect("an end");
+        let end = end_of_step(FunctionGrowth::Growing, &series, 1.0).expect("an end");
         assert!((0.3..0.499).contains(&end), "{end}");
         let mut at = 0.0;
         for _ in 0..12 {
             let middle = 0.5 - at;
             let series = [-middle * middle * 1e6, 2e6 * middle, -1e6];
-            let Some(step) = end_of_step(Kind::Growing, &series, 1.0 - at) else {
+            let Some(step) = end_of_step(FunctionGrowth::Growing, &series, 1.0 - at) else {
                 break;
             };
             at += step;
         }
         assert!((0.5 - at - 2e-3).abs() < 1e-4, "{at}");
         // Far below zero an exponential is nothing, and what is wide is seen by itself.
-        assert_eq!(end_of_step(Kind::Growing, &[-1.25e6, 1e6, -1e6], 1.0), None);
-        assert_eq!(end_of_step(Kind::Growing, &[-0.25, 1.0, -1.0], 1.0), None);
+        assert_eq!(end_of_step(FunctionGrowth::Growing, &[-1.25e6, 1e6, -1e6], 1.0), None);
+        assert_eq!(end_of_step(FunctionGrowth::Growing, &[-0.25, 1.0, -1.0], 1.0), None);
         // A steep tanh, and a pole beside the real line.
-        assert!(end_of_step(Kind::Bounded, &[-3e4, 1e5], 1.0).is_some());
-        assert!(end_of_step(Kind::Power(1.0), &[0.25 + 1e-8, -1.0, 1.0], 1.0).is_some());
-        assert_eq!(end_of_step(Kind::Power(1.0), &[1.25, -1.0, 1.0], 1.0), None);
+        assert!(end_of_step(FunctionGrowth::Bounded, &[-3e4, 1e5], 1.0).is_some());
+        assert!(end_of_step(FunctionGrowth::Power(1.0), &[0.25 + 1e-8, -1.0, 1.0], 1.0).is_some());
+        assert_eq!(end_of_step(FunctionGrowth::Power(1.0), &[1.25, -1.0, 1.0], 1.0), None);
     }
 }

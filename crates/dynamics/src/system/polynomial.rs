@@ -2,26 +2,26 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
-/// The values at several places, each as [`value`] has it: so many sums at a time wait less on each
-/// other than one.
+/// The values at several places, each as [`value`] has it: this many sums at a time wait less on
+/// each other than one.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
-    Arch::new().dispatch(Values { series, places, into });
+    Arch::new().dispatch(EvaluatePolynomial { series, places, into });
 }
 
-struct Values<'a> {
+struct EvaluatePolynomial<'a> {
     series: &'a [f64],
     places: &'a [f64],
     into: &'a mut Vec<f64>,
 }
 
-impl WithSimd for Values<'_> {
+impl WithSimd for EvaluatePolynomial<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -72,8 +72,8 @@ fn beyond(series: &[f64], size: f64) -> [f64; 2] {
 /// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at
 /// `from` itself is not counted.
 ///
-/// By bounds: where the constant outweighs all that is added there is no root, where the slope
-/// keeps its sign there is at most one, and everything else is halved.
+/// The first root, by bounds: if the constant outweighs all other terms there is no root, if the
+/// slope keeps its sign there is at most one, and every other interval is halved.
 pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
     let [constant, slope, ..] = *series else {
         return None;
@@ -115,13 +115,13 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
             continue;
         }
         let before = |at: f64| value(series, at).signum() == at_low.signum();
-        let [_, root] = bisect(before, low, high, Until::Width(f64::EPSILON * high.abs()));
+        let [_, root] = bisect(before, low, high, BisectionStop::Width(f64::EPSILON * high.abs()));
         return Some((root, at_low < 0.0));
     }
     None
 }
 
-/// So close to where the last root was, the sign is rounding.
+/// Distance from the last root within which the sign is rounding.
 fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }
@@ -139,7 +139,7 @@ pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
     }
 }
 
-/// The same polynomial about another centre, by Horner's scheme.
+/// The polynomial about another centre, by Horner's scheme.
 fn about(series: &[f64], centre: f64) -> Vec<f64> {
     let mut shifted = series.to_vec();
     for start in 0..shifted.len() {
@@ -192,7 +192,7 @@ mod tests {
         // One at the very end, where the value is exactly zero.
         assert_eq!(first_root(&[-1.0, 1.0], 0.0, 1.0), Some((1.0, true)));
         assert_eq!(first_root(&[1.0, -1.0], 0.0, 1.0), Some((1.0, false)));
-        // What the bounds about 0 decide by themselves.
+        // Cases that the bounds about 0 decide by themselves.
         assert_eq!(first_root(&[2.0, -1.0, 0.5], 0.0, 1.0), None);
         assert_eq!(first_root(&[1e-3, 1.0, 0.1], 0.0, 1.0), None);
         assert_eq!(first_root(&[3.0], 0.0, 1.0), None);

@@ -1,5 +1,5 @@
-//! The same equations by Runge-Kutta: the right sides are evaluated, never expanded, so that it is
-//! a check of the series.
+//! Integration by Runge-Kutta: the right sides are evaluated, never expanded, so that it is a check
+//! of the series.
 //!
 //! ```text
 //! abs(u) -> s u,   sgn(u) -> sgn(s),   H(u) -> H(s),   max(u, w) -> H(s) u + H(-s) w      s = 1 or -1: the side of a corner
@@ -14,19 +14,19 @@
 
 use std::cell::RefCell;
 
-use super::narrow::{Argument, COARSE, Kind, arguments, end_by_values};
+use super::narrow::{Argument, COARSE, FunctionGrowth, arguments, end_by_values};
 use super::{
-    End, Event, LARGEST, Occurrence, Options, Path, System, SystemError, end_of_range,
+    Event, EventCrossing, LARGEST, Path, PathEnd, System, SystemError, SystemOptions, end_of_range,
     is_vanishing, taylor, within_range, without_value,
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{
-    self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through,
+    self, AcceptedFraction, Action, Point, StepLimits, StopReason, Trajectory, integrate_through,
 };
 use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
 
-/// No step can be held to less: an estimate of its error is rounding below that.
+/// Least tolerance of a step: an estimate of its error is rounding below that.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
 
 /// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is
@@ -38,14 +38,14 @@ const SAME_PLACE: f64 = 1e-10;
 
 /// A trajectory in the units of the run.
 #[derive(Clone, Debug)]
-pub(super) struct Motion {
+pub(super) struct ScaledTrajectory {
     trajectory: Trajectory<Point<Vec<f64>>>,
-    units: Units,
+    units: RunScales,
 }
 
-impl Motion {
+impl ScaledTrajectory {
     /// All states at a time within the path.
-    pub(super) fn at(&self, time: f64) -> Option<Vec<f64>> {
+    pub(super) fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let scaled = self.units.count(time).min(self.trajectory.end().t);
         let point = self.trajectory.state_at(scaled)?;
         Some(self.states(&point).collect())
@@ -70,7 +70,7 @@ impl Motion {
 
     /// The time up to which all states are within the range of numbers, where they leave it, and
     /// why it ends there.
-    fn end_of_range(&self) -> Option<(f64, End)> {
+    fn end_of_range(&self) -> Option<(f64, PathEnd)> {
         let mut before = self.trajectory.start().t;
         for knot in self.trajectory.knots() {
             if !within_range(self.states(&knot)) {
@@ -79,8 +79,10 @@ impl Motion {
                     point.is_some_and(|point| within_range(self.states(&point)))
                 };
                 return Some(match is_vanishing([before, knot.t]) {
-                    true => (before, End::Singular),
-                    false => (before + end_of_range(knot.t - before, is_within)?, End::Overflow),
+                    true => (before, PathEnd::Singular),
+                    false => {
+                        (before + end_of_range(knot.t - before, is_within)?, PathEnd::Overflow)
+                    }
                 });
             }
             before = knot.t;
@@ -89,9 +91,9 @@ impl Motion {
     }
 }
 
-/// What states and time are counted in.
+/// The units of states and time of a run.
 #[derive(Clone, Debug)]
-struct Units {
+struct RunScales {
     /// The size of every state: what it reaches on the first step of its series. One that stays
     /// zero there is taken to be as large as the smallest of the others.
     sizes: Vec<f64>,
@@ -99,14 +101,14 @@ struct Units {
     time: f64,
 }
 
-impl Units {
+impl RunScales {
     fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
         // Without a series there, the values themselves must do.
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
-        // What moves a state by next to nothing in all the time, as the rounding of a touch does,
-        // is no size to measure by.
+        // A rate that moves a state by next to nothing in all the time, as the rounding of a touch
+        // does, is no scale.
         for (right, moved) in system.right.iter().zip(sizes.clone()) {
             let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
             if let Some(size) = rate.map(|rate| &mut sizes[rate])
@@ -142,13 +144,13 @@ pub(super) fn follow(
     [start, end]: [f64; 2],
     values: &[f64],
     events: &[Event],
-    options: &Options,
+    options: &SystemOptions,
 ) -> Result<Path, SystemError> {
-    // What cannot be expanded is refused by either integrator.
+    // Equations that cannot be expanded are refused by either integrator.
     taylor::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
-    let units = Units::new(system, [start, end], values, events);
-    let scaled = Scaled {
+    let units = RunScales::new(system, [start, end], values, events);
+    let scaled = ScaledSystem {
         states: values.len(),
         scratch: RefCell::new(smooth.arguments(system)),
         smooth: &smooth,
@@ -156,20 +158,20 @@ pub(super) fn follow(
     };
     let begin = Point { t: 0.0, y: scaled.start(system, values)? };
     let watched = scaled.watched(events);
-    let settings = ode::Options {
+    let settings = ode::IntegrationOptions {
         maximum_steps: options.step_limit,
-        // What is looked for may vary faster than the motion: no more than a series of it could
-        // tell.
+        // An event function may vary faster than the motion: the step is no longer than a series of
+        // it would allow.
         maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
         interrupt: options.interrupt,
-        ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
+        ..ode::IntegrationOptions::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
     let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
     let kept = |state: &dyn Fn(f64) -> Point<Vec<f64>>| scaled.short_of_narrow(state);
-    let looks = Looks {
+    let looks = StepLimits {
         critical: &critical,
-        kept: (!smooth.narrow.is_empty()).then_some(&kept as &Kept<Point<Vec<f64>>>),
+        kept: (!smooth.narrow.is_empty()).then_some(&kept as &AcceptedFraction<Point<Vec<f64>>>),
     };
     let run = integrate_through(rates, begin, units.count(end), looks, &watched, &settings);
     let trajectory = run.map_err(|error| match error {
@@ -180,7 +182,7 @@ pub(super) fn follow(
     })?;
     drop(watched);
     let mut occurrences = occurrences(trajectory.occurrences(), &units, events.len());
-    let motion = Motion { trajectory, units };
+    let motion = ScaledTrajectory { trajectory, units };
     let last = motion.trajectory.end();
     let (end, reason) = match (motion.end_of_range(), reason(motion.trajectory.stop_reason())) {
         (Some((time, reason)), _) => {
@@ -188,30 +190,29 @@ pub(super) fn follow(
             occurrences.retain(|occurrence| occurrence.time <= time);
             (time, reason)
         }
-        (None, End::Reached) => (end, End::Reached),
-        (None, End::Singular) => {
+        (None, PathEnd::Reached) => (end, PathEnd::Reached),
+        (None, PathEnd::Singular) => {
             (motion.units.time(last.t), without_value(motion.states(&last), motion.last_step()))
         }
         (None, reason) => (motion.units.time(last.t), reason),
     };
-    Ok(Path { end, reason, occurrences, motion: super::Motion::RungeKutta(motion) })
+    Ok(Path { end, reason, occurrences, motion: super::PathRepresentation::RungeKutta(motion) })
 }
 
-/// Where the events of the user happened, each place once.
+/// Crossings of the user's events, each of them once.
 fn occurrences(
-    all: &[ode::Occurrence<Point<Vec<f64>>>],
-    units: &Units,
+    all: &[ode::EventOccurrence<Point<Vec<f64>>>],
+    units: &RunScales,
     events: usize,
-) -> Vec<Occurrence> {
-    let mut occurrences: Vec<Occurrence> = Vec::new();
+) -> Vec<EventCrossing> {
+    let mut occurrences: Vec<EventCrossing> = Vec::new();
     for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
-        // Where a corner lies at the same place, rounding may show the crossing before and behind
-        // it.
-        let same = |met: &&Occurrence| met.event == event && met.rising == rising;
+        // If a corner lies at the same place, rounding may show the crossing before and behind it.
+        let same = |met: &&EventCrossing| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
-            occurrences.push(Occurrence { event, time, rising });
+            occurrences.push(EventCrossing { event, time, rising });
         }
     }
     occurrences
@@ -219,15 +220,15 @@ fn occurrences(
 
 /// The functions of a system in the units of a run: of the states over their sizes, then the sides
 /// of the corners, then what is left over of each corner where it was crossed last.
-struct Scaled<'a> {
+struct ScaledSystem<'a> {
     states: usize,
     smooth: &'a Smooth,
-    units: &'a Units,
+    units: &'a RunScales,
     /// The arguments of every function: states, sides, time, numbers.
     scratch: RefCell<Vec<f64>>,
 }
 
-impl Scaled<'_> {
+impl ScaledSystem<'_> {
     fn corners(&self) -> usize {
         self.smooth.corners.len()
     }
@@ -274,7 +275,7 @@ impl Scaled<'_> {
         ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
     }
 
-    /// Where the run begins.
+    /// The initial state of the run in its units.
     ///
     /// # Errors
     /// A right side or an event without a value there.
@@ -353,14 +354,14 @@ impl Scaled<'_> {
     }
 }
 
-fn reason(stopped: StopReason) -> End {
+fn reason(stopped: StopReason) -> PathEnd {
     match stopped {
-        StopReason::EndReached => End::Reached,
-        StopReason::Event { event, .. } => End::Event(event),
-        StopReason::MaximumSteps { .. } => End::StepLimit,
-        StopReason::Interrupted { .. } => End::Interrupted,
-        StopReason::SwitchingStalled { .. } => End::Sticks,
-        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => End::Singular,
+        StopReason::EndReached => PathEnd::Reached,
+        StopReason::Event { event, .. } => PathEnd::Event(event),
+        StopReason::MaximumSteps { .. } => PathEnd::StepLimit,
+        StopReason::Interrupted { .. } => PathEnd::Interrupted,
+        StopReason::SwitchingStalled { .. } => PathEnd::Sticks,
+        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => PathEnd::Singular,
     }
 }
 
@@ -372,8 +373,8 @@ struct Smooth {
     rates: Vec<CompiledFunction>,
     events: Vec<CompiledFunction>,
     corners: Vec<CompiledFunction>,
-    /// What may turn faster than the motion.
-    narrow: Vec<(Kind, CompiledFunction)>,
+    /// Arguments of functions that may vary faster than the motion.
+    narrow: Vec<(FunctionGrowth, CompiledFunction)>,
 }
 
 impl Smooth {
@@ -453,7 +454,7 @@ impl Corners {
         }
     }
 
-    /// The same expression with the sides in place of the signs.
+    /// The expression with the sides in place of the signs.
     fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
             (Node::Function(Function::Absolute, _), [u]) => {

@@ -15,11 +15,11 @@
 
 use std::collections::BTreeMap;
 
-use super::narrow::{Kind, end_of_step};
+use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{first_root, powers, sign_at_start, value, values};
 use super::{
-    End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing,
-    within_range, without_value,
+    Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
+    end_of_range, is_vanishing, within_range, without_value,
 };
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
@@ -27,7 +27,7 @@ use crate::symbol::Symbol;
 
 /// One step: the Taylor polynomials of all states about its beginning.
 #[derive(Clone, Debug)]
-pub(super) struct Step {
+pub(super) struct TaylorStep {
     /// Since the start of the path.
     start: f64,
     order: usize,
@@ -36,7 +36,7 @@ pub(super) struct Step {
 }
 
 /// All states at a time since the start, before the end of the last step; `None` before the first.
-pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
+pub(super) fn states_at(steps: &[TaylorStep], time: f64) -> Option<Vec<f64>> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let polynomials = step.coefficients.chunks(step.order + 1);
@@ -44,7 +44,7 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
 }
 
 /// One state at such a time.
-pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
+pub(super) fn state_at(steps: &[TaylorStep], time: f64, state: usize) -> Option<f64> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let series = step.coefficients.chunks(step.order + 1).nth(state)?;
@@ -52,7 +52,7 @@ pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
 }
 
 /// The first states, a column each, at such times in increasing order.
-pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]) {
+pub(super) fn sample(steps: &[TaylorStep], mut times: &[f64], columns: &mut [Vec<f64>]) {
     let mut places = Vec::new();
     let mut following = steps.iter().skip(1).peekable();
     let Some(mut step) = steps.first() else {
@@ -77,7 +77,7 @@ pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]
 /// Whether there are recurrences for the right sides of a system and these events.
 ///
 /// # Errors
-/// What there is none for.
+/// A function without a recurrence.
 pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceError> {
     const ANY: f64 = 0.1;
     expansion(system, events, ANY).map(drop)
@@ -89,7 +89,7 @@ pub(super) fn expansion(
     system: &System,
     events: &[Event],
     tolerance: f64,
-) -> Result<Expansion, RecurrenceError> {
+) -> Result<SystemSeries, RecurrenceError> {
     /// An argument need be known to this part of itself only.
     const CLOSELY: f64 = 1e-9;
     let order = order(tolerance);
@@ -100,14 +100,14 @@ pub(super) fn expansion(
     let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
     let outputs =
         outputs.chain(narrow).map(|output| recurrences.add(output)).collect::<Result<_, _>>()?;
-    Ok(Expansion {
+    Ok(SystemSeries {
         tape: recurrences.into_tape(),
         states: system.state.len(),
         events: events.len(),
         order,
         outputs,
         narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
-        powers: Powers::new(order),
+        powers: PowerTable::new(order),
         of_steps: Allowance::new(tolerance, order),
         of_arguments: Allowance::new(CLOSELY, order),
     })
@@ -118,8 +118,8 @@ fn order(tolerance: f64) -> usize {
     (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
 }
 
-/// How far the first series reaches, and how large every state becomes on the way, within so much
-/// time; `None` where there is none.
+/// The reach of the first series, and the size of every state on the way, within this time; `None`
+/// if there is no series.
 pub(super) fn first_step(
     system: &System,
     [start, end]: [f64; 2],
@@ -148,7 +148,7 @@ pub(super) fn first_step(
 pub const LANES: usize = 8;
 
 /// The path of a run.
-pub(super) fn follow(mut run: Run) -> Result<Path, SystemError> {
+pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     loop {
         if let Some(reason) = run.before_step() {
             return Ok(run.finish(reason));
@@ -162,11 +162,11 @@ pub(super) fn follow(mut run: Run) -> Result<Path, SystemError> {
 
 /// The paths of several runs of the same recurrences, in their order: eight of them side by side,
 /// each bit for bit what it is alone.
-pub(super) fn follow_together(mut runs: Vec<Run>) -> Vec<Result<Path, SystemError>> {
+pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
     let Some(first) = runs.first() else { return vec![] };
     let mut tape: Tape<LANES> = first.expansion.tape.side_by_side();
     let rates = first.expansion.rates().to_vec();
-    let mut ends: Vec<Option<Result<End, SystemError>>> = runs.iter().map(|_| None).collect();
+    let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
     for (runs, ends) in runs.chunks_mut(LANES).zip(ends.chunks_mut(LANES)) {
         loop {
             for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
@@ -187,16 +187,17 @@ pub(super) fn follow_together(mut runs: Vec<Run>) -> Vec<Result<Path, SystemErro
             }
         }
     }
-    let finished = |(run, end): (Run, Result<End, SystemError>)| end.map(|end| run.finish(end));
+    let finished =
+        |(run, end): (TaylorRun, Result<PathEnd, SystemError>)| end.map(|end| run.finish(end));
     runs.into_iter().zip(ends.into_iter().flatten()).map(finished).collect()
 }
 
 /// A run on its way.
-pub(super) struct Run<'a> {
+pub(super) struct TaylorRun<'a> {
     system: &'a System,
     events: &'a [Event],
-    options: &'a Options,
-    expansion: Expansion,
+    options: &'a SystemOptions,
+    expansion: SystemSeries,
     start: f64,
     end: f64,
     duration: f64,
@@ -205,38 +206,38 @@ pub(super) struct Run<'a> {
     values: Vec<f64>,
     /// The signs of the events behind the last step.
     signs: Vec<f64>,
-    steps: Vec<Step>,
-    occurrences: Vec<Occurrence>,
-    /// How often in a row it was back on a corner at once.
+    steps: Vec<TaylorStep>,
+    occurrences: Vec<EventCrossing>,
+    /// Number of consecutive steps that were back on a corner at once.
     stuck: usize,
     /// The corner that the last step ended on, and how fast its argument changed there.
     met: Option<(usize, f64)>,
     /// The last step, where it ended by itself and may be taken back.
-    last: Option<Last>,
-    /// How often in a row a step from here was taken back.
+    last: Option<StepUndo>,
+    /// Number of consecutive halvings of the step from here.
     halvings: i32,
 }
 
-/// So often a step is taken back for half of it.
+/// Largest number of consecutive halvings of a step.
 const MOST_HALVINGS: i32 = 12;
 
-/// What it takes to take a step back.
-struct Last {
+/// The values that are restored if a step is taken back.
+struct StepUndo {
     length: f64,
     signs: Vec<f64>,
     sides: Vec<f64>,
     occurrences: usize,
 }
 
-impl<'a> Run<'a> {
+impl<'a> TaylorRun<'a> {
     /// A run between two times from these values, with the expansion of these events.
     pub(super) fn new(
         system: &'a System,
         [start, end]: [f64; 2],
         values: &[f64],
         events: &'a [Event],
-        options: &'a Options,
-        mut expansion: Expansion,
+        options: &'a SystemOptions,
+        mut expansion: SystemSeries,
     ) -> Self {
         expansion.begin(start, values);
         Self {
@@ -260,35 +261,34 @@ impl<'a> Run<'a> {
     }
 
     /// Whether it may go side by side with an expansion.
-    pub(super) fn is_like(&self, expansion: &Expansion) -> bool {
+    pub(super) fn is_like(&self, expansion: &SystemSeries) -> bool {
         self.expansion.tape.is_like(&expansion.tape)
     }
 
     /// The path of a run that has ended.
-    fn finish(mut self, reason: End) -> Path {
+    fn finish(mut self, reason: PathEnd) -> Path {
         if self.steps.is_empty() {
             // Nowhere to go: where it starts it is all the same.
-            self.steps.push(Step { start: 0.0, order: 0, coefficients: self.values });
+            self.steps.push(TaylorStep { start: 0.0, order: 0, coefficients: self.values });
         }
         Path {
-            end: if reason == End::Reached { self.end } else { self.start + self.time },
-            motion: Motion::Taylor { steps: self.steps, start: self.start },
+            end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
+            motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,
             occurrences: self.occurrences,
         }
     }
 
-    /// Puts the expansion where the next step begins, for it to be computed; answers why the run
-    /// ends there, if it does.
-    fn before_step(&mut self) -> Option<End> {
+    /// Sets the expansion at the start of the next step; returns the reason if the run ends there.
+    fn before_step(&mut self) -> Option<PathEnd> {
         let over = self.time >= self.duration;
         if !over && self.steps.len() >= self.options.step_limit {
-            return Some(End::StepLimit);
+            return Some(PathEnd::StepLimit);
         }
         if !over && self.options.interrupt.is_requested() {
-            return Some(End::Interrupted);
+            return Some(PathEnd::Interrupted);
         }
-        self.expansion.put(self.start + self.time, &self.values);
+        self.expansion.expand_about(self.start + self.time, &self.values);
         None
     }
 
@@ -297,7 +297,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// A state or an event without a value where the run begins.
-    fn step(&mut self) -> Result<Option<End>, SystemError> {
+    fn step(&mut self) -> Result<Option<PathEnd>, SystemError> {
         let over = self.time >= self.duration;
         let now = self.start + self.time;
         let defined = self.defined();
@@ -312,24 +312,24 @@ impl<'a> Run<'a> {
             self.halvings = 0;
         }
         match defined {
-            Err(_) if over => return Ok(Some(End::Reached)),
+            Err(_) if over => return Ok(Some(PathEnd::Reached)),
             Err(error) if self.steps.is_empty() => return Err(error),
             Err(_) => return Ok(Some(self.without_value())),
             Ok(()) => {}
         }
         if over {
-            return Ok(Some(End::Reached));
+            return Ok(Some(PathEnd::Reached));
         }
-        let reach = self.reach(now);
+        let reach = self.step_length(now);
         if reach.is_nan() || reach <= 0.0 || now + reach == now {
-            return Ok(Some(End::Singular));
+            return Ok(Some(PathEnd::Singular));
         }
         let met = self.met.take();
         if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
         {
-            return Ok(Some(End::Sticks));
+            return Ok(Some(PathEnd::Sticks));
         }
-        Ok(self.go(reach))
+        Ok(self.advance(reach))
     }
 
     /// Whether everything has a series here.
@@ -337,7 +337,7 @@ impl<'a> Run<'a> {
     /// # Errors
     /// The first state or event without one.
     fn defined(&mut self) -> Result<(), SystemError> {
-        let settled = self.expansion.settle();
+        let settled = self.expansion.switch_corners();
         settled.map_err(|state| SystemError::Start(self.system.state[state]))?;
         let is_undefined =
             |event: &usize| !self.expansion.event(*event).iter().all(|value| value.is_finite());
@@ -347,14 +347,15 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Why it ends here, where there is no series.
-    fn without_value(&self) -> End {
+    /// The reason why it ends here, where there is no series.
+    fn without_value(&self) -> PathEnd {
         let before = self.steps.last().map_or(self.time, |step| step.start);
         without_value(self.values.iter().copied(), [before, self.time])
     }
 
-    /// How far the series reach from here, and nothing is stepped over.
-    fn reach(&mut self, now: f64) -> f64 {
+    /// The length of the next step: the reach of the series here, shortened so that no critical
+    /// time and no narrow place is stepped over.
+    fn step_length(&mut self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
@@ -362,9 +363,9 @@ impl<'a> Run<'a> {
         reach * 0.5_f64.powi(self.halvings)
     }
 
-    /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if
-    /// it does.
-    fn go(&mut self, reach: f64) -> Option<End> {
+    /// Advances by this time, or to the first corner or event that stops; returns the reason if the
+    /// run ends there.
+    fn advance(&mut self, reach: f64) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
@@ -375,7 +376,7 @@ impl<'a> Run<'a> {
         if let Some(end) = range {
             (corner, length) = (None, end);
         }
-        let last = Last {
+        let last = StepUndo {
             length,
             signs: self.signs.clone(),
             sides: self.expansion.sides(),
@@ -390,7 +391,7 @@ impl<'a> Run<'a> {
             met[index].0
         });
         let (start, time) = (self.start, self.time);
-        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| Occurrence {
+        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| EventCrossing {
             event,
             time: start + (time + place),
             rising,
@@ -403,18 +404,18 @@ impl<'a> Run<'a> {
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);
         }
-        self.steps.push(Step { start: time, order, coefficients });
+        self.steps.push(TaylorStep { start: time, order, coefficients });
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
         let at_end = time + length >= self.duration && whole;
         self.time = if at_end { self.duration } else { time + length };
         if let Some(event) = stop {
-            return Some(End::Event(event));
+            return Some(PathEnd::Event(event));
         }
         if range.is_some() {
             return Some(match is_vanishing([time, time + length]) {
-                true => End::Singular,
-                false => End::Overflow,
+                true => PathEnd::Singular,
+                false => PathEnd::Overflow,
             });
         }
         let (corner, _) = corner?;
@@ -425,13 +426,13 @@ impl<'a> Run<'a> {
         const OFTEN: usize = 20;
         let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * self.time;
         self.stuck = if at_once { self.stuck + 1 } else { 0 };
-        (self.stuck > OFTEN).then_some(End::Sticks)
+        (self.stuck > OFTEN).then_some(PathEnd::Sticks)
     }
 
     /// Whether the rates where a step has come to are others than its series says: a wall, say,
     /// that could not be seen from its beginning.
-    fn has_missed_something(&mut self, last: &Last, now: f64) -> bool {
-        /// Of the size of a state on the step: what its rate there may be off, times the step.
+    fn has_missed_something(&mut self, last: &StepUndo, now: f64) -> bool {
+        /// Largest error of a rate times the step, over the size of the state on it.
         const ASTRAY: f64 = 1e-8;
         // The terms that are left out are within the tolerance, their slopes within as many times
         // it as the next order says.
@@ -481,12 +482,12 @@ impl<'a> Run<'a> {
     }
 
     /// Back to where the last step began, from where half of it is to be gone.
-    fn take_back(&mut self, last: Last) {
+    fn take_back(&mut self, last: StepUndo) {
         let Some(step) = self.steps.pop() else { return };
         self.time = step.start;
         self.values = step.coefficients.chunks(step.order + 1).map(|series| series[0]).collect();
         self.signs = last.signs;
-        self.expansion.take(&last.sides);
+        self.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
         self.halvings += 1;
     }
@@ -500,7 +501,7 @@ fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
 
 /// Right sides and events, with their series.
 #[derive(Clone, Debug)]
-pub(super) struct Expansion {
+pub(super) struct SystemSeries {
     /// Its variables are the states, then time.
     tape: Tape,
     states: usize,
@@ -508,17 +509,17 @@ pub(super) struct Expansion {
     order: usize,
     /// The places of the rates, then of the events, then of what may turn faster than the motion.
     outputs: Vec<usize>,
-    narrow: Vec<Kind>,
-    powers: Powers,
-    /// What the last terms of states, events and corners may be.
+    narrow: Vec<FunctionGrowth>,
+    powers: PowerTable,
+    /// Bounds of the last terms of states, events and corners.
     of_steps: Allowance,
-    /// Those of arguments of what is narrow.
+    /// Bounds of the last terms of the arguments of narrow functions.
     of_arguments: Allowance,
 }
 
-impl Expansion {
-    /// This expansion takes other numbers for the letters; it has none where other numbers make
-    /// other recurrences.
+impl SystemSeries {
+    /// This expansion with other numbers for the parameters; `None` if other numbers make other
+    /// recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
@@ -526,7 +527,7 @@ impl Expansion {
 
     /// Takes the side of every corner on which this point lies, or to which it is going.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
-        self.put(time, values);
+        self.expand_about(time, values);
         let corners = self.tape.corners().count();
         // The argument of one corner may depend on the side of another.
         for _ in 0..if corners > 0 { corners + 1 } else { 0 } {
@@ -541,23 +542,23 @@ impl Expansion {
     /// The coefficients of everything about a point.
     ///
     /// # Errors
-    /// As [`Self::settle`].
+    /// As [`Self::switch_corners`].
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
-        self.put(time, values);
+        self.expand_about(time, values);
         self.compute();
-        self.settle()
+        self.switch_corners()
     }
 
     /// The coefficients of everything about a point, on these sides of the corners; whether there
     /// are any.
     fn expand_once(&mut self, time: f64, values: &[f64]) -> bool {
-        self.put(time, values);
+        self.expand_about(time, values);
         self.compute();
         self.check().is_ok()
     }
 
-    /// Puts the variables where everything is to be expanded.
-    fn put(&mut self, time: f64, values: &[f64]) {
+    /// Sets the variables about which everything is expanded.
+    fn expand_about(&mut self, time: f64, values: &[f64]) {
         for (variable, value) in values.iter().chain([&time]).enumerate() {
             self.tape.set(variable, 0, *value);
         }
@@ -574,7 +575,7 @@ impl Expansion {
     /// Takes what was computed for it in a lane.
     fn take_from(&mut self, tape: &Tape<LANES>, lane: usize) {
         let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
-        tape.unload(lane, places, &mut self.tape);
+        tape.copy_lane_to(lane, places, &mut self.tape);
     }
 
     /// The places of the rates.
@@ -582,13 +583,13 @@ impl Expansion {
         &self.outputs[..self.states]
     }
 
-    /// Goes over to the other side of corners that were left behind together with another: the
-    /// motion is beyond them and going on.
+    /// Switches to the other side of corners that were passed together with another one: the motion
+    /// is beyond them and moving away.
     ///
     /// # Errors
     /// The first state whose series has no finite value, or the first of all where a corner has
     /// none.
-    fn settle(&mut self) -> Result<(), usize> {
+    fn switch_corners(&mut self) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
             let left = self.tape.corners().position(|(series, side)| {
                 let slope = series.get(1).copied().unwrap_or(0.0);
@@ -636,11 +637,11 @@ impl Expansion {
         let followed = (0..self.states).map(|state| self.tape.series(state));
         let events = self.outputs.iter().skip(self.states).take(self.events);
         let events = events.map(|output| self.tape.series(*output));
-        // What a side has no value for is not looked at.
+        // A corner whose argument has no value is left out.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
         followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
-            self.of_steps.reach(series, longest, &mut self.powers)
+            self.of_steps.longest_step(series, longest, &mut self.powers)
         })
     }
 
@@ -655,7 +656,7 @@ impl Expansion {
                 continue;
             }
             // Beyond its own reach the series of the argument says nothing.
-            length = self.of_arguments.reach(series, length, &mut self.powers);
+            length = self.of_arguments.longest_step(series, length, &mut self.powers);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -668,7 +669,7 @@ impl Expansion {
     /// between two steps is one at the beginning of the second.
     fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
         let mut met = Vec::new();
-        // Where no time passes, a sign would be rounding.
+        // In a step of length zero the sign would be rounding.
         if length == 0.0 {
             return met;
         }
@@ -718,13 +719,13 @@ impl Expansion {
             }
             None
         };
-        // What a side has no value for is not looked at.
+        // A corner whose argument has no value is left out.
         let corners = self.tape.corners().enumerate();
         let found = corners.filter(|(_, (series, _))| series[0].is_finite()).filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// How fast the argument of a corner changes behind so much time.
+    /// Speed at which the argument of a corner changes after this time.
     fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
         let (series, _) = self.tape.corners().nth(corner)?;
         let terms = series.iter().enumerate().skip(1).rev();
@@ -737,7 +738,7 @@ impl Expansion {
     /// has changed by so much before. One that is zero altogether is no corner to stay on: the
     /// motion goes on.
     fn stays_on(&self, corner: usize, change: f64, length: f64) -> bool {
-        /// Of the change on the other side.
+        /// Ratio to the change on the other side below which a value is rounding.
         const ROUNDING: f64 = 1e-12;
         let Some((series, _)) = self.tape.corners().nth(corner) else {
             return false;
@@ -751,8 +752,8 @@ impl Expansion {
         self.tape.corners().map(|(_, side)| side).collect()
     }
 
-    /// Goes to these sides.
-    fn take(&mut self, sides: &[f64]) {
+    /// Sets the sides of all corners.
+    fn set_sides(&mut self, sides: &[f64]) {
         for (corner, side) in sides.iter().enumerate() {
             if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
                 self.cross(corner);
@@ -760,23 +761,23 @@ impl Expansion {
         }
     }
 
-    /// Goes to the other side of a corner.
+    /// Switches to the other side of a corner.
     pub(super) fn cross(&mut self, corner: usize) {
         self.tape.cross(corner);
     }
 }
 
-/// So many of the last terms of a series are looked at: symmetry may leave some of them zero.
+/// Number of last terms of a series that are examined: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
 /// The factor by which a step that is too long for the tolerance is shortened.
 const SHORTER: f64 = 0.9;
 
-/// What the last terms of a series may be, of its size on the step.
+/// Bounds of the last terms of a series, in parts of its size on the step.
 #[derive(Clone, Debug)]
 struct Allowance {
     order: usize,
-    /// For the orders from [`Self::first`] on.
+    /// The bounds for the orders from [`Self::first`] on.
     parts: [f64; LAST],
 }
 
@@ -798,7 +799,7 @@ impl Allowance {
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are
     /// within the tolerance.
-    fn reach(&self, series: &[f64], longest: f64, powers: &mut Powers) -> f64 {
+    fn longest_step(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {
@@ -806,7 +807,7 @@ impl Allowance {
         };
         // The root test; from there shorter until the last terms are small enough.
         let mut h = longest;
-        let of_longest = powers.of(longest);
+        let of_longest = powers.powers(longest);
         for k in Self::first(order).max(lead + 1)..=order {
             let (size, power) = (series[k].abs(), of_longest[k - lead]);
             // A root is drawn only where it may come out shorter.
@@ -817,16 +818,16 @@ impl Allowance {
             }
         }
         let in_vain = match h.is_finite() {
-            true => self.trials_in_vain(series, lead, powers.of(h)).min(TRIALS),
+            true => self.trials_in_vain(series, lead, powers.powers(h)).min(TRIALS),
             false => 0,
         };
         let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
-        // Where powers underflow the trials say something else.
-        let is_known = powers.of(first_trial)[order] >= f64::MIN_POSITIVE;
+        // If powers underflow, the trials give another result.
+        let is_known = powers.powers(first_trial)[order] >= f64::MIN_POSITIVE;
         let (mut h, trials) =
             if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
         for _ in trials {
-            if h.is_infinite() || self.is_within(series, lead, powers.of(h)) {
+            if h.is_infinite() || self.is_within(series, lead, powers.powers(h)) {
                 break;
             }
             h *= SHORTER;
@@ -834,8 +835,8 @@ impl Allowance {
         h
     }
 
-    /// How many trials from the place with these powers on are certain to fail: the size of a
-    /// series falls with the place, so that the last terms have to fall to what they may be of the
+    /// Number of trials, from the point with these powers on, that are certain to fail: the size of
+    /// a series falls with the step, so that the last terms have to fall to their bounds of the
     /// size here.
     fn trials_in_vain(&self, series: &[f64], lead: usize, powers: &[f64]) -> usize {
         let size = self.size(series, lead, powers);
@@ -848,7 +849,7 @@ impl Allowance {
         (trials.fold(0.0, f64::max) - 1e-6) as usize
     }
 
-    /// How large the leading terms of a series are at the place with these powers.
+    /// Size of the leading terms of a series at the point with these powers.
     fn size(&self, series: &[f64], lead: usize, powers: &[f64]) -> f64 {
         let leading = lead..lead.max(self.order / 2) + 1;
         leading.fold(0.0, |size, k| size.max(series[k].abs() * powers[k]))
@@ -873,22 +874,22 @@ impl Allowance {
 /// The powers of one number after the other: most of the series of a step are looked at in the same
 /// place.
 #[derive(Clone, Debug)]
-struct Powers {
-    of: f64,
+struct PowerTable {
+    base: f64,
     table: Vec<f64>,
 }
 
-impl Powers {
+impl PowerTable {
     /// Room for this order and those below it.
     fn new(order: usize) -> Self {
-        Self { of: f64::NAN, table: vec![0.0; order + 1] }
+        Self { base: f64::NAN, table: vec![0.0; order + 1] }
     }
 
     /// `h^0, h^1, ...`
-    fn of(&mut self, h: f64) -> &[f64] {
-        if h != self.of {
+    fn powers(&mut self, h: f64) -> &[f64] {
+        if h != self.base {
             powers(h, &mut self.table);
-            self.of = h;
+            self.base = h;
         }
         &self.table
     }

@@ -22,7 +22,7 @@ use super::rational::Rational;
 pub struct Ball {
     /// In units of `2^-bits`.
     pub middle: Integer,
-    /// In the unit of the number.
+    /// The radius, in the unit of the number.
     pub radius: Bound,
 }
 
@@ -111,7 +111,7 @@ impl Balls {
         super::rational::to_f64(&self.middle(ball))
     }
 
-    /// No number of the ball is larger.
+    /// An upper bound of the size of all numbers of the ball.
     pub fn magnitude(self, ball: &Ball) -> Bound {
         self.size(&ball.middle) + ball.radius
     }
@@ -170,7 +170,7 @@ impl Balls {
         Ball { middle, radius: if rest.is_zero() { radius } else { radius + self.unit() } }
     }
 
-    /// `left / right`; `None` where zero may be among the divisors.
+    /// `left / right`; `None` if zero may be among the divisors.
     pub fn quotient(self, left: &Ball, right: &Ball) -> Option<Ball> {
         let distance = self.distance_from_zero(right);
         (distance > 0.0).then(|| {
@@ -184,7 +184,7 @@ impl Balls {
         })
     }
 
-    /// The positive `degree`-th root; `None` where not all numbers are positive.
+    /// The positive `degree`-th root; `None` if not all numbers are positive.
     pub fn root(self, ball: &Ball, degree: u32) -> Option<Ball> {
         let distance = self.distance_from_zero(ball);
         if ball.middle.is_negative() || distance <= 0.0 || degree == 0 {

@@ -48,7 +48,7 @@ impl BigFloat {
         self.0.to_f64().value()
     }
 
-    /// How many binary digits it keeps.
+    /// Number of bits of the significand.
     pub fn bits(&self) -> usize {
         self.0.precision()
     }
@@ -146,7 +146,7 @@ impl Mul for &BigFloat {
     }
 }
 
-/// Over zero anything is zero.
+/// Division; anything over zero is zero.
 impl Div for &BigFloat {
     type Output = BigFloat;
 

@@ -2,8 +2,8 @@
 //!
 //! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products
 //! and quotients. An operation of IEEE 754 is within half a unit in the last place, so that the
-//! next double above what it gives is a bound; what is no number bounds nothing and becomes
-//! infinity, which no comparison with a finite number takes for small.
+//! next double above what it gives is a bound; NaN bounds nothing and becomes infinity, which no
+//! comparison with a finite number takes for small.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul};
@@ -15,9 +15,9 @@ use super::rational::{Rational, from_f64, to_f64};
 pub struct Bound(f64);
 
 impl Bound {
-    /// Of what is zero.
+    /// The bound of zero.
     pub const ZERO: Self = Self(0.0);
-    /// Of what nothing is known of.
+    /// The bound of an unknown size.
     pub const UNKNOWN: Self = Self(f64::INFINITY);
 
     /// A double that is a bound as it is: exact, or rounded up already.
@@ -28,7 +28,7 @@ impl Bound {
         }
     }
 
-    /// Of a nearest double: the one above it.
+    /// A bound of a number of which this is the nearest double.
     pub const fn of_nearest(value: f64) -> Self {
         match value >= 0.0 {
             true => Self(value.next_up()),
@@ -44,7 +44,7 @@ impl Bound {
         }
     }
 
-    /// Of the size of a fraction.
+    /// A bound of the size of a fraction.
     pub fn of_fraction(value: &Rational) -> Self {
         let nearest = to_f64(value).abs();
         match from_f64(nearest) {
@@ -111,7 +111,7 @@ impl Mul for Bound {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        // What a product with an unknown size is, is not known, whatever the other.
+        // A product with an unknown size is unknown, whatever the other factor.
         match (self == Self::ZERO || other == Self::ZERO, self.0 + other.0 < f64::INFINITY) {
             (_, false) => Self::UNKNOWN,
             (true, true) => Self::ZERO,
@@ -120,7 +120,7 @@ impl Mul for Bound {
     }
 }
 
-/// By an exact number.
+/// Division by an exact number.
 impl Div<u32> for Bound {
     type Output = Self;
 

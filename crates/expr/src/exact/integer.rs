@@ -24,7 +24,7 @@ impl Integer {
         &self.0
     }
 
-    /// From a number of that crate.
+    /// Wraps an integer of the underlying crate.
     pub(super) fn of_inner(value: IBig) -> Self {
         Self(value)
     }
@@ -44,7 +44,7 @@ impl Integer {
         Self(self.0.pow(exponent as usize))
     }
 
-    /// How often a number that is not zero can be halved.
+    /// Number of times that the integer can be halved; `None` for zero.
     pub fn halvings(&self) -> Option<usize> {
         self.0.trailing_zeros()
     }
@@ -67,7 +67,7 @@ impl Integer {
     /// The `degree`-th root, rounded towards zero.
     ///
     /// # Panics
-    /// Of an even root of a negative number, and if `degree` is zero.
+    /// An even root of a negative number, or `degree` zero.
     pub fn nth_root(&self, degree: u32) -> Self {
         Self(self.0.nth_root(degree as usize))
     }
@@ -86,7 +86,7 @@ impl fmt::Debug for Integer {
     }
 }
 
-/// What is no integer.
+/// The text is not an integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no integer")]
 pub struct ParseIntegerError;

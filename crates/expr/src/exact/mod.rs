@@ -2,13 +2,13 @@
 //!
 //! In come whole numbers of any length, fractions and symbols; out go their sums, products and
 //! quotients, exact, and their values as doubles where numbers are wanted. A division that a ring
-//! cannot do is an [`Indivisible`], which names the divisor.
+//! cannot do is a [`NotInvertible`], which names the divisor.
 //!
-//! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what
-//! a derivation asks of its coefficients, so that one derivation serves exact numbers, symbols,
-//! floating point, and rings that are chosen at run time. Where rounding cannot be left out,
-//! `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that rounding
-//! leaves possible; their sizes are `Bound`s, rounded up.
+//! [`Rational`] is the coefficient that is printed; [`Polynomial`] carries the symbols; [`Ring`] is
+//! what a derivation asks of its coefficients, so that one derivation serves exact numbers,
+//! symbols, floating point, and rings that are chosen at run time. Where rounding cannot be left
+//! out, `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that
+//! rounding leaves possible; their sizes are `Bound`s, rounded up.
 
 pub mod ball;
 pub mod big_float;
@@ -26,5 +26,5 @@ pub use bound::Bound;
 pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
 pub use rational::{Rational, convergent, factorial, from_f64, ratio, to_f64};
-pub use ring::{Doubles, Indivisible, Integers, Number, Rationals, Ring};
+pub use ring::{Doubles, Integers, NotInvertible, Number, Rationals, Ring};
 pub use scaled::Scaled;

@@ -12,7 +12,7 @@ use std::ops::Add;
 use num_traits::Zero;
 
 use super::rational::{Integer, Rational, to_f64};
-use super::ring::{Indivisible, Number, Rationals, Ring};
+use super::ring::{NotInvertible, Number, Rationals, Ring};
 use super::scaled::Scaled;
 use crate::symbol::Symbol;
 
@@ -267,7 +267,7 @@ impl<K: Number> Polynomial<K> {
         result
     }
 
-    /// The same polynomial over other coefficients.
+    /// Returns the polynomial with a function applied to every coefficient.
     pub fn map<L: Number>(&self, mut change: impl FnMut(&K) -> L) -> Polynomial<L> {
         let mut result = Polynomial::zero();
         for (monomial, coefficient) in &self.terms {
@@ -279,7 +279,7 @@ impl<K: Number> Polynomial<K> {
     /// `symbol` replaced by `value`, whose negative powers exist only where it is a single
     /// invertible term.
     ///
-    /// `None` where a negative power would be needed and does not exist.
+    /// `None` if a negative power would be needed and does not exist.
     pub fn substitute(&self, symbol: Symbol, value: &Self) -> Option<Self> {
         let mut result = Self::zero();
         let mut powers: BTreeMap<i32, Self> = BTreeMap::new();
@@ -522,7 +522,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
         self.0.divide(coefficients, divisor)
     }
@@ -542,7 +542,7 @@ impl<R: Ring> Ring for Polynomials<R> {
 }
 
 impl<R: Ring> Polynomials<R> {
-    /// What a factor made zero is left out: zero itself, or a multiple of a prime.
+    /// Removes terms whose coefficient a factor made zero: zero itself, or a multiple of a prime.
     fn prune(&self, element: &mut Polynomial<R::Element>) {
         element.terms.retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
     }

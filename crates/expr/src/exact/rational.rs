@@ -148,8 +148,8 @@ pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
 
 /// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.
 ///
-/// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None`
-/// where the result is irrational, not real, a division by zero, or longer than a million bits.
+/// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None` if
+/// the result is irrational, not real, a division by zero, or longer than a million bits.
 pub fn power(base: &Rational, exponent: &Rational) -> Option<Rational> {
     const LONGEST: u64 = 1 << 20;
     if base.is_one() {

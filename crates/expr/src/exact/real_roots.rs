@@ -88,7 +88,7 @@ pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     powers.map(|(k, c)| c * Rational::from_integer(k.into())).collect()
 }
 
-/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a
+/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` if they have a
 /// factor in common.
 pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Rational>> {
     let (mut r, mut next_r) = (trimmed(modulus.to_vec()), remainder(a, modulus));
@@ -208,7 +208,7 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     for q in divisors(highest) {
         let inverse = power_modulo_prime(q, PRIME - 2);
         for &p in numerators.iter().filter(|p| p.gcd(&q).is_one()) {
-            // What is zero is zero modulo a prime as well, and that is soon seen.
+            // A root is a root modulo a prime as well, and that is quickly tested.
             let x = times_modulo_prime(p, inverse);
             let vanishes =
                 residues.iter().rev().fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);

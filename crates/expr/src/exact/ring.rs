@@ -1,4 +1,4 @@
-//! What a derivation asks of its coefficients.
+//! The arithmetic that a derivation needs of its coefficients.
 //!
 //! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, and
 //! its elements know nothing of it: what the arithmetic needs to know beside them, a prime or a
@@ -37,7 +37,7 @@ use super::rational::{Integer, Rational, to_f64};
 /// An integer by which a ring cannot divide.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no division by {divisor} in {ring}")]
-pub struct Indivisible {
+pub struct NotInvertible {
     /// The integer without an inverse.
     pub divisor: Integer,
     /// The ring in words, with whatever was chosen at run time: `the residues modulo 7`.
@@ -84,13 +84,12 @@ pub trait Ring: Clone + Debug + PartialEq {
     /// Divides all of `elements` by `divisor`, which is not zero.
     ///
     /// # Errors
-    /// No inverse of `divisor`, which depends on nothing but `divisor`; all elements are then as
-    /// they were.
+    /// `divisor` has no inverse, which depends on `divisor` alone; all elements are unchanged.
     fn divide<'a>(
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible>;
+    ) -> Result<(), NotInvertible>;
     /// Divides `elements` and their `denominator`, which is positive, by what they have in common.
     /// A field has nothing to do.
     fn reduce<'a>(
@@ -168,10 +167,13 @@ impl Ring for Integers {
         &self,
         elements: impl IntoIterator<Item = &'a mut Integer>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         // One and minus one are their own inverses.
         if !divisor.abs().is_one() {
-            return Err(Indivisible { divisor: divisor.clone(), ring: "the integers".to_owned() });
+            return Err(NotInvertible {
+                divisor: divisor.clone(),
+                ring: "the integers".to_owned(),
+            });
         }
         elements.into_iter().for_each(|element| *element *= divisor);
         Ok(())
@@ -232,7 +234,7 @@ impl Ring for Rationals {
         &self,
         elements: impl IntoIterator<Item = &'a mut Rational>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         elements.into_iter().for_each(|element| *element /= divisor);
         Ok(())
     }
@@ -274,7 +276,7 @@ impl Ring for Doubles {
         &self,
         elements: impl IntoIterator<Item = &'a mut f64>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         let divisor = to_f64(&Rational::from_integer(divisor.clone()));
         elements.into_iter().for_each(|element| *element /= divisor);
         Ok(())

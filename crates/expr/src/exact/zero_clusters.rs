@@ -20,22 +20,23 @@ pub struct Cluster {
     pub place: BigFloat,
     /// One or two.
     pub count: usize,
-    /// How far two zeros are from their middle, over the place; positive where they are conjugate,
-    /// negative where they are real.
+    /// Distance of two zeros from their middle, over the size of that; positive if they are
+    /// conjugate, negative if they are real.
     pub distance: f64,
 }
 
 /// All zeros on the positive axis, and the pairs beside it that are closer to each other than to
-/// all others, nearest first; `None` where rounding or a multiple zero hides them, or where zero is
-/// a zero.
+/// all others, nearest first; `None` if rounding or a multiple zero hides them, or if zero is a
+/// zero.
 pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
-    /// Far more steps than any walk needs: some ten for each zero, wherever it is.
+    /// Largest number of steps, far more than any search needs: some ten for each zero, wherever it
+    /// is.
     const MOST_STEPS: usize = 20_000;
     /// A step of a smaller share of the place looks for what is in the way; one of less than the
     /// second is none.
     const SHORT: f64 = -4.0;
     const NONE: f64 = -200.0;
-    let walk = Walk::new(polynomial)?;
+    let walk = ClusterSearch::new(polynomial)?;
     let mut found = vec![];
     let mut at = BigFloat::zero(walk.bits);
     for _ in 0..MOST_STEPS {
@@ -71,13 +72,13 @@ fn logarithm(value: &BigFloat) -> f64 {
     })
 }
 
-/// Two to a power that is no whole number, to the digits of a double.
+/// Two to a power that is not a whole number, to the digits of a double.
 fn power_of_two(exponent: f64, bits: usize) -> BigFloat {
     let whole = exponent.floor();
     BigFloat::of_f64((exponent - whole).exp2(), bits).shifted(whole as i64)
 }
 
-struct Walk<'a> {
+struct ClusterSearch<'a> {
     polynomial: &'a [BigFloat],
     bits: usize,
     /// Logarithms of the sizes of the coefficients.
@@ -88,14 +89,13 @@ struct Walk<'a> {
 struct About {
     coefficients: Vec<BigFloat>,
     sizes: Vec<f64>,
-    /// What rounding may have added to all terms together, within the largest disc that is asked
-    /// for.
+    /// Bound of the rounding error of all terms together, within the largest disc that is needed.
     noise: f64,
     /// The logarithm of the place, beyond which no disc reaches.
     largest: f64,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> ClusterSearch<'a> {
     fn new(polynomial: &'a [BigFloat]) -> Option<Self> {
         let degree = polynomial.iter().rposition(|value| !value.is_zero())?;
         let polynomial = &polynomial[..=degree];
@@ -128,7 +128,7 @@ impl<'a> Walk<'a> {
         let terms = terms.map(|(size, k)| size + f64::from(k) * (largest + 1.0));
         let noise = match at.is_zero() {
             true => f64::NEG_INFINITY,
-            // Every term takes part in so many sums.
+            // Every term takes part in this many sums.
             false => {
                 terms.fold(f64::NEG_INFINITY, f64::max) + 3.0 * (degree as f64 + 2.0).log2()
                     - self.bits as f64
@@ -161,7 +161,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    /// By Newton's steps, the zero ahead of a place, or the middle of two.
+    /// The zero near a point by Newton's method, or the middle of two zeros.
     fn centre(&self, at: &BigFloat, near: &About, count: usize) -> Option<BigFloat> {
         const STEPS: usize = 12;
         /// The last step over the place.
@@ -213,10 +213,10 @@ impl About {
         Some(inside)
     }
 
-    /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the
+    /// The logarithm of the radius of the largest disc with this many zeros, not far beyond the
     /// place.
     fn radius_of(&self, count: usize) -> Option<f64> {
-        /// Over the place.
+        /// Least logarithm of a distance over that of the point.
         const LEAST: f64 = -100.0;
         /// Two that are farther apart are found one by one.
         const WIDEST: [f64; 2] = [-3.0, -5.0];

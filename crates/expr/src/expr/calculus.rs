@@ -116,12 +116,12 @@ impl Expr {
         self.expand_within(EXPANSION_LIMIT)
     }
 
-    /// As [`Expr::expand`], giving up after so many products of two terms.
+    /// As [`Expr::expand`], giving up after this many products of two terms.
     ///
     /// # Errors
     /// [`ExprError::TooManyTerms`] where that is not enough.
     pub fn expand_within(&self, limit: usize) -> Result<Self, ExprError> {
-        let mut budget = Budget { left: limit, limit };
+        let mut budget = NodeBudget { left: limit, limit };
         let mut current = self.clone();
         loop {
             let next =
@@ -156,12 +156,12 @@ fn power_slope(
     Ok(result)
 }
 
-struct Budget {
+struct NodeBudget {
     left: usize,
     limit: usize,
 }
 
-impl Budget {
+impl NodeBudget {
     fn spend(&mut self, amount: usize) -> Result<(), ExprError> {
         self.left = self.left.checked_sub(amount).ok_or(ExprError::TooManyTerms(self.limit))?;
         Ok(())
@@ -176,10 +176,10 @@ impl Budget {
     }
 }
 
-/// How many products of two terms the power of a sum takes, one multiplication after the other,
-/// where that is known beforehand: if every term but one has a symbol of its own, no two products
-/// of `m` of the terms are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero where
-/// some may be alike; no longer counted where there are more than `enough`.
+/// Number of products of two terms in the power of a sum by repeated multiplication, if it is known
+/// beforehand: if every term but one has a symbol of its own, no two products of `m` of the terms
+/// are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero if some may be alike; the
+/// count stops beyond `enough`.
 fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     let mut shared = 0;
     for term in terms {
@@ -209,7 +209,7 @@ fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     total
 }
 
-fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Expr, ExprError> {
+fn expand_node(expr: &Expr, children: &[Expr], budget: &mut NodeBudget) -> Result<Expr, ExprError> {
     match (expr.node(), children) {
         (Node::Product(coefficient, _), factors) => {
             factors.iter().try_fold(Expr::number(coefficient.clone()), |product, factor| {
@@ -233,7 +233,7 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
     }
 }
 
-fn multiply(a: &Expr, b: &Expr, budget: &mut Budget) -> Result<Expr, ExprError> {
+fn multiply(a: &Expr, b: &Expr, budget: &mut NodeBudget) -> Result<Expr, ExprError> {
     budget.spend(a.terms().len().saturating_mul(b.terms().len()).saturating_sub(1))?;
     let pairs =
         a.terms().iter().flat_map(|first| b.terms().iter().map(move |second| first * second));
@@ -245,7 +245,7 @@ mod tests {
     use super::*;
     use crate::expr::parse_expression;
 
-    /// What is foretold of a power is what it takes.
+    /// The predicted number of products of a power is the number it takes.
     #[test]
     fn a_power_takes_the_products_that_are_foretold() {
         for (text, times, known) in [
@@ -257,7 +257,7 @@ mod tests {
             ("x + y + x*y", 6, false),
         ] {
             let sum = parsed(text);
-            let mut budget = Budget { left: 10_000, limit: 10_000 };
+            let mut budget = NodeBudget { left: 10_000, limit: 10_000 };
             expand_node(
                 &sum.integer_power(times).unwrap(),
                 &[sum.clone(), Expr::from(times)],

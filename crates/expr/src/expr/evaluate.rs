@@ -18,13 +18,13 @@ use super::{Expr, Function, Node};
 use crate::exact::rational::{Integer, Rational, to_f64};
 use crate::symbol::Symbol;
 
-/// Why an expression has no number.
+/// The reason why an expression has no number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluationError {
     /// A symbol without a value.
     #[error("`{0}` has no value here")]
     MissingSymbol(Symbol),
-    /// No real or no finite value at this point.
+    /// The expression has no real or no finite value at this point.
     #[error("`{expression}` has no finite value at {point}")]
     Undefined {
         /// The expression, shortened.
@@ -118,7 +118,7 @@ impl CompiledFunction {
             constants: Vec::new(),
             code: Vec::new(),
         };
-        let result = expr.fold(|node, children: &[Slot]| compiler.node(node, children))?;
+        let result = expr.fold(|node, children: &[ValueLocation]| compiler.node(node, children))?;
         Ok(compiler.finish(result))
     }
 
@@ -181,27 +181,27 @@ fn integer_power(base: f64, exponent: u32) -> f64 {
     result * square
 }
 
-/// Where a value will stand, before it is known how many constants there are.
+/// The location of a value before the number of constants is known.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Slot {
+enum ValueLocation {
     Argument(usize),
     Constant(usize),
     Result(usize),
 }
 
 enum Operation {
-    Pair(fn(usize, usize) -> Instruction, Slot, Slot),
-    IntegerPower(Slot, u32),
-    SquareRoot(Slot),
-    OddRoot(Slot, Slot, bool),
-    Unary(fn(f64) -> f64, Slot),
-    Binary(fn(f64, f64) -> f64, Slot, Slot),
+    Pair(fn(usize, usize) -> Instruction, ValueLocation, ValueLocation),
+    IntegerPower(ValueLocation, u32),
+    SquareRoot(ValueLocation),
+    OddRoot(ValueLocation, ValueLocation, bool),
+    Unary(fn(f64) -> f64, ValueLocation),
+    Binary(fn(f64, f64) -> f64, ValueLocation, ValueLocation),
 }
 
 struct Compiler<'a> {
     arguments: &'a [Symbol],
     /// Equal subexpressions share one slot.
-    known: HashMap<Expr, Slot>,
+    known: HashMap<Expr, ValueLocation>,
     /// The [sizes](Compiler::size) of all of them.
     sizes: HashMap<Expr, i64>,
     constants: Vec<f64>,
@@ -209,7 +209,11 @@ struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    fn node(&mut self, expr: &Expr, children: &[Slot]) -> Result<Slot, EvaluationError> {
+    fn node(
+        &mut self,
+        expr: &Expr,
+        children: &[ValueLocation],
+    ) -> Result<ValueLocation, EvaluationError> {
         if let Some(slot) = self.known.get(expr) {
             return Ok(*slot);
         }
@@ -218,7 +222,7 @@ impl Compiler<'_> {
             (Node::Pi, _) => self.constant(std::f64::consts::PI),
             (Node::Symbol(symbol), _) => {
                 let place = self.arguments.iter().position(|argument| argument == symbol);
-                Slot::Argument(place.ok_or(EvaluationError::MissingSymbol(*symbol))?)
+                ValueLocation::Argument(place.ok_or(EvaluationError::MissingSymbol(*symbol))?)
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
             (Node::Product(coefficient, factors), _) => {
@@ -249,7 +253,7 @@ impl Compiler<'_> {
         Ok(slot)
     }
 
-    /// By how many bits the numbers in an expression make it large, those of the sums in it
+    /// Number of bits that the numbers in an expression add to its size, those of the sums in it
     /// included.
     fn size(&self, expr: &Expr) -> i64 {
         let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
@@ -272,8 +276,8 @@ impl Compiler<'_> {
     /// up for them before it, are beyond double precision; none for other bases and exponents.
     fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
         const LONG: u64 = 200;
-        /// What is larger is no number of anybody's equation, and beyond double precision whatever
-        /// stands before it.
+        /// The longest number: no equation has larger ones, and they are beyond double precision
+        /// whatever their factor.
         const LONGEST: u64 = 100_000;
         let size = match base.node() {
             Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
@@ -292,8 +296,8 @@ impl Compiler<'_> {
         })
     }
 
-    fn sum(&mut self, terms: &[Expr], slots: &[Slot]) -> Slot {
-        let mut total: Option<Slot> = None;
+    fn sum(&mut self, terms: &[Expr], slots: &[ValueLocation]) -> ValueLocation {
+        let mut total: Option<ValueLocation> = None;
         for (term, slot) in terms.iter().zip(slots) {
             total = Some(match total {
                 None => *slot,
@@ -311,19 +315,28 @@ impl Compiler<'_> {
         total.unwrap_or_else(|| self.constant(0.0))
     }
 
-    fn positive_product(&mut self, factors: &[Expr]) -> Slot {
-        let slots: Vec<Slot> =
+    fn positive_product(&mut self, factors: &[Expr]) -> ValueLocation {
+        let slots: Vec<ValueLocation> =
             factors.iter().filter_map(|factor| self.known.get(factor).copied()).collect();
         self.product(&Rational::one(), factors, &slots)
     }
 
-    fn product(&mut self, coefficient: &Rational, factors: &[Expr], slots: &[Slot]) -> Slot {
-        let (mut above, mut below, mut gate): (Option<Slot>, Option<Slot>, Option<Slot>) =
-            (None, None, None);
+    fn product(
+        &mut self,
+        coefficient: &Rational,
+        factors: &[Expr],
+        slots: &[ValueLocation],
+    ) -> ValueLocation {
+        let (mut above, mut below, mut gate): (
+            Option<ValueLocation>,
+            Option<ValueLocation>,
+            Option<ValueLocation>,
+        ) = (None, None, None);
         // Sums whose numbers are beyond double precision enter divided by a power of two, which is
         // made up for at once.
         let mut coefficient = coefficient.clone();
-        let mut places: Vec<(Slot, Option<Slot>)> = Vec::with_capacity(slots.len());
+        let mut places: Vec<(ValueLocation, Option<ValueLocation>)> =
+            Vec::with_capacity(slots.len());
         for (factor, slot) in factors.iter().zip(slots) {
             let (base, exponent) = match factor.node() {
                 Node::Power(base, exponent) => (base, exponent.as_number().cloned()),
@@ -375,12 +388,12 @@ impl Compiler<'_> {
     }
 
     /// A sum over `2^bits`.
-    fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> Slot {
+    fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> ValueLocation {
         let unit = Rational::new(Integer::one(), Integer::one() << bits as usize);
-        let mut total: Option<Slot> = None;
+        let mut total: Option<ValueLocation> = None;
         for term in sum.terms() {
             let (coefficient, factors) = term.factors();
-            let slots: Vec<Slot> =
+            let slots: Vec<ValueLocation> =
                 factors.iter().filter_map(|factor| self.known.get(factor).copied()).collect();
             let slot = self.product(&(coefficient * &unit), factors, &slots);
             total = Some(match total {
@@ -391,7 +404,7 @@ impl Compiler<'_> {
         total.unwrap_or_else(|| self.constant(0.0))
     }
 
-    fn times(&mut self, product: Option<Slot>, factor: Slot) -> Slot {
+    fn times(&mut self, product: Option<ValueLocation>, factor: ValueLocation) -> ValueLocation {
         match product {
             None => factor,
             Some(product) => self.emit(Operation::Pair(Instruction::Multiply, product, factor)),
@@ -399,7 +412,7 @@ impl Compiler<'_> {
     }
 
     /// A positive exact exponent.
-    fn power(&mut self, base: Slot, exponent: &Rational) -> Slot {
+    fn power(&mut self, base: ValueLocation, exponent: &Rational) -> ValueLocation {
         // Beyond this a chain of multiplications is no better than the library's power.
         const LARGEST_CHAIN: u32 = 64;
         let numerator = exponent.numer().to_u32().filter(|numerator| *numerator <= LARGEST_CHAIN);
@@ -427,35 +440,40 @@ impl Compiler<'_> {
         }
     }
 
-    fn function(&mut self, function: Function, first: Slot, second: Slot) -> Slot {
+    fn function(
+        &mut self,
+        function: Function,
+        first: ValueLocation,
+        second: ValueLocation,
+    ) -> ValueLocation {
         match function.value_function() {
             Value::One(value) => self.emit(Operation::Unary(value, first)),
             Value::Two(value) => self.emit(Operation::Binary(value, first, second)),
         }
     }
 
-    fn constant(&mut self, value: f64) -> Slot {
+    fn constant(&mut self, value: f64) -> ValueLocation {
         let place = self.constants.iter().position(|known| known.to_bits() == value.to_bits());
-        Slot::Constant(place.unwrap_or_else(|| {
+        ValueLocation::Constant(place.unwrap_or_else(|| {
             self.constants.push(value);
             self.constants.len() - 1
         }))
     }
 
-    fn emit(&mut self, operation: Operation) -> Slot {
+    fn emit(&mut self, operation: Operation) -> ValueLocation {
         self.code.push(operation);
-        Slot::Result(self.code.len() - 1)
+        ValueLocation::Result(self.code.len() - 1)
     }
 
     /// Leaves out what nothing uses, such as the reciprocals that became divisions, and numbers the
     /// rest.
-    fn finish(self, result: Slot) -> CompiledFunction {
+    fn finish(self, result: ValueLocation) -> CompiledFunction {
         let mut constant_used = vec![false; self.constants.len()];
         let mut result_used = vec![false; self.code.len()];
-        let mut mark = |slot: Slot, results: &mut [bool]| match slot {
-            Slot::Argument(_) => {}
-            Slot::Constant(place) => constant_used[place] = true,
-            Slot::Result(place) => results[place] = true,
+        let mut mark = |slot: ValueLocation, results: &mut [bool]| match slot {
+            ValueLocation::Argument(_) => {}
+            ValueLocation::Constant(place) => constant_used[place] = true,
+            ValueLocation::Result(place) => results[place] = true,
         };
         mark(result, &mut result_used);
         for (place, operation) in self.code.iter().enumerate().rev() {
@@ -468,10 +486,10 @@ impl Compiler<'_> {
         let argument_count = self.arguments.len();
         let (constant_places, constants_end) = number(&constant_used, argument_count);
         let (result_places, _) = number(&result_used, constants_end);
-        let place = |slot: Slot| match slot {
-            Slot::Argument(index) => index,
-            Slot::Constant(index) => constant_places[index],
-            Slot::Result(index) => result_places[index],
+        let place = |slot: ValueLocation| match slot {
+            ValueLocation::Argument(index) => index,
+            ValueLocation::Constant(index) => constant_places[index],
+            ValueLocation::Result(index) => result_places[index],
         };
         CompiledFunction {
             argument_count,
@@ -489,7 +507,7 @@ fn bits(number: &Rational) -> i64 {
     number.numer().bits() as i64 - number.denom().bits() as i64 + 1
 }
 
-/// By what a sum is divided before it is raised to a power, and what makes up for it after.
+/// A scale that keeps a large sum within f64 when it is raised to a power, and its compensation.
 struct Shift {
     /// The divisor is `2^bits`.
     bits: u64,
@@ -522,7 +540,7 @@ fn kept<T>(items: Vec<T>, used: &[bool]) -> impl Iterator<Item = T> {
 }
 
 impl Operation {
-    fn operands(&self) -> [Option<Slot>; 2] {
+    fn operands(&self) -> [Option<ValueLocation>; 2] {
         match *self {
             Self::Pair(_, a, b) | Self::OddRoot(a, b, _) | Self::Binary(_, a, b) => {
                 [Some(a), Some(b)]
@@ -531,7 +549,7 @@ impl Operation {
         }
     }
 
-    fn resolve(self, place: impl Fn(Slot) -> usize) -> Instruction {
+    fn resolve(self, place: impl Fn(ValueLocation) -> usize) -> Instruction {
         match self {
             Self::Pair(make, a, b) => make(place(a), place(b)),
             Self::IntegerPower(a, exponent) => Instruction::IntegerPower(place(a), exponent),

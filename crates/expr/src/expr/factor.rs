@@ -1,4 +1,4 @@
-//! What all terms of a sum have in common, taken out.
+//! The common factor of all terms of a sum.
 //!
 //! ```text
 //! 4 cos(B)/A^2 - 4 cos(A)/A^2 = 4 (cos(B) - cos(A))/A^2         1/u - A^2/u^2 = (u - A^2)/u^2   with a sum u, written out
@@ -27,7 +27,7 @@ impl Expr {
 }
 
 fn common_factor(sum: &Expr) -> Option<Expr> {
-    /// What is left in front of common powers of sums is written out to so many terms.
+    /// Largest number of terms to which the factor of common powers of sums is expanded.
     const LONGEST: usize = 100;
     let (first, others) = sum.terms().split_first()?;
     if others.is_empty() {

@@ -102,7 +102,7 @@ impl Function {
         self.entry().name
     }
 
-    /// How many arguments it takes: 1 or 2.
+    /// Number of arguments: 1 or 2.
     pub fn argument_count(self) -> usize {
         match self.entry().value {
             Value::One(_) => 1,
@@ -169,13 +169,13 @@ impl Function {
         ExprError::WrongArguments { function: self.name(), expected: self.argument_count(), given }
     }
 
-    fn entry(self) -> &'static Entry {
+    fn entry(self) -> &'static FunctionDefinition {
         &TABLE[self as usize]
     }
 }
 
-/// What the crate knows of one function.
-struct Entry {
+/// The properties of one function.
+struct FunctionDefinition {
     function: Function,
     name: &'static str,
     parity: Parity,
@@ -218,8 +218,8 @@ use Function::{
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
-static TABLE: [Entry; 26] = [
-    Entry {
+static TABLE: [FunctionDefinition; 26] = [
+    FunctionDefinition {
         function: Sin,
         name: "sin",
         parity: Parity::Odd,
@@ -227,7 +227,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(quarter_turns(u).map(|turns| Expr::from([0, 1, 0, -1][turns]))),
         derivative: |u, _, _| call(Cos, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Cos,
         name: "cos",
         parity: Parity::Even,
@@ -235,7 +235,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(quarter_turns(u).map(|turns| Expr::from([1, 0, -1, 0][turns]))),
         derivative: |u, _, _| Ok(-call(Sin, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Tan,
         name: "tan",
         parity: Parity::Odd,
@@ -246,96 +246,100 @@ static TABLE: [Entry; 26] = [
         },
         derivative: |u, _, _| Ok(Expr::one() + call(Tan, u)?.integer_power(2)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Sinh,
         name: "sinh",
         parity: Parity::Odd,
         value: Unary(f64::sinh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Cosh,
         name: "cosh",
         parity: Parity::Even,
         value: Unary(f64::cosh),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(Sinh, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Tanh,
         name: "tanh",
         parity: Parity::Odd,
         value: Unary(f64::tanh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u)?.integer_power(-2),
     },
-    Entry {
+    FunctionDefinition {
         function: Asin,
         name: "asin",
         parity: Parity::Odd,
         value: Unary(f64::asin),
         exact: |u, _| match u.as_number() {
             Some(number) if beyond_one(number) => Err(NoValue),
-            _ => Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 2)))),
+            _ => {
+                Ok(value_if_equal(u, 0, Expr::zero).or_else(|| value_if_equal(u, 1, || turn(1, 2))))
+            }
         },
         derivative: |u, _, _| {
             Expr::divide(&Expr::one(), &(Expr::one() - u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Acos,
         name: "acos",
         parity: Parity::None,
         value: Unary(f64::acos),
         exact: |u, _| match u.as_number() {
             Some(number) if beyond_one(number) => Err(NoValue),
-            _ => Ok(at(u, 1, Expr::zero)
-                .or_else(|| at(u, 0, || turn(1, 2)))
-                .or_else(|| at(u, -1, Expr::pi))),
+            _ => Ok(value_if_equal(u, 1, Expr::zero)
+                .or_else(|| value_if_equal(u, 0, || turn(1, 2)))
+                .or_else(|| value_if_equal(u, -1, Expr::pi))),
         },
         derivative: |u, _, _| {
             Expr::divide(&Expr::from(-1), &(Expr::one() - u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Atan,
         name: "atan",
         parity: Parity::Odd,
         value: Unary(f64::atan),
-        exact: |u, _| Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 4)))),
+        exact: |u, _| {
+            Ok(value_if_equal(u, 0, Expr::zero).or_else(|| value_if_equal(u, 1, || turn(1, 4))))
+        },
         derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?)),
     },
-    Entry {
+    FunctionDefinition {
         function: Asinh,
         name: "asinh",
         parity: Parity::Odd,
         value: Unary(f64::asinh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| {
             Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Exp,
         name: "exp",
         parity: Parity::None,
         value: Unary(f64::exp),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(Exp, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Log,
         name: "log",
         parity: Parity::None,
         value: Unary(f64::ln),
         exact: |u, _| match u.as_number() {
             Some(number) if !number.is_positive() => Err(NoValue),
-            _ => Ok(at(u, 1, Expr::zero)),
+            _ => Ok(value_if_equal(u, 1, Expr::zero)),
         },
         derivative: |u, _, _| Expr::divide(&Expr::one(), u),
     },
-    Entry {
+    FunctionDefinition {
         function: Absolute,
         name: "abs",
         parity: Parity::Even,
@@ -343,7 +347,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(u.as_number().map(|number| Expr::number(number.abs()))),
         derivative: |u, _, _| call(Sign, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Sign,
         name: "sgn",
         parity: Parity::Odd,
@@ -351,7 +355,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(u.as_number().map(|number| Expr::number(number.signum()))),
         derivative: |_, _, _| Ok(Expr::zero()),
     },
-    Entry {
+    FunctionDefinition {
         function: Maximum,
         name: "max",
         parity: Parity::Symmetric,
@@ -362,7 +366,7 @@ static TABLE: [Entry; 26] = [
             _ => Ok(Expr::one() - call(Step, &(u - v))?),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Minimum,
         name: "min",
         parity: Parity::Symmetric,
@@ -373,7 +377,7 @@ static TABLE: [Entry; 26] = [
             _ => call(Step, &(u - v)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Step,
         name: "H",
         parity: Parity::None,
@@ -383,39 +387,39 @@ static TABLE: [Entry; 26] = [
     },
     // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u,
     // I0' = I1, I1' = I0 - I1/u.
-    Entry {
+    FunctionDefinition {
         function: BesselJ0,
         name: "J0",
         parity: Parity::Even,
         value: Unary(cephes64::j0),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| Ok(-call(BesselJ1, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselJ1,
         name: "J1",
         parity: Parity::Odd,
         value: Unary(cephes64::j1),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselJ0, u)? - Expr::divide(&call(BesselJ1, u)?, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselI0,
         name: "I0",
         parity: Parity::Even,
         value: Unary(cephes64::i0),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(BesselI1, u),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselI1,
         name: "I1",
         parity: Parity::Odd,
         value: Unary(cephes64::i1),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselI0, u)? - Expr::divide(&call(BesselI1, u)?, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Gamma,
         name: "Gamma",
         parity: Parity::None,
@@ -429,14 +433,14 @@ static TABLE: [Entry; 26] = [
             Err(ExprError::Undefined(print::call_in_message(Gamma, std::slice::from_ref(u))))
         },
     },
-    Entry {
+    FunctionDefinition {
         function: EllipticK,
         name: "K",
         parity: Parity::None,
         value: Unary(elliptic_k),
         exact: |u, _| match u.as_number() {
             Some(number) if *number >= Rational::one() => Err(NoValue),
-            _ => Ok(at(u, 0, || turn(1, 2))),
+            _ => Ok(value_if_equal(u, 0, || turn(1, 2))),
         },
         derivative: |u, _, _| {
             Err(ExprError::Undefined(print::call_in_message(EllipticK, std::slice::from_ref(u))))
@@ -444,7 +448,7 @@ static TABLE: [Entry; 26] = [
     },
     // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn
     // cn.
-    Entry {
+    FunctionDefinition {
         function: JacobiSn,
         name: "sn",
         parity: Parity::Odd,
@@ -455,7 +459,7 @@ static TABLE: [Entry; 26] = [
             _ => Err(no_slope(JacobiSn, u, m)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: JacobiCn,
         name: "cn",
         parity: Parity::Even,
@@ -466,14 +470,14 @@ static TABLE: [Entry; 26] = [
             _ => Err(no_slope(JacobiCn, u, m)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: JacobiDn,
         name: "dn",
         parity: Parity::Even,
         value: Binary(|u, m| jacobi(u, m)[2]),
         exact: |u, m| match m.as_number() {
             Some(number) if *number > Rational::one() => Err(NoValue),
-            _ => Ok(at(u, 0, Expr::one).or_else(|| at(m, 0, Expr::one))),
+            _ => Ok(value_if_equal(u, 0, Expr::one).or_else(|| value_if_equal(m, 0, Expr::one))),
         },
         derivative: |u, m, index| match index {
             0 => Ok(-(m * &(elliptic(JacobiSn, u, m)? * elliptic(JacobiCn, u, m)?))),
@@ -501,7 +505,7 @@ fn limit_of_jacobi(
     match m.as_number() {
         Some(number) if *number > Rational::one() => Err(NoValue),
         Some(number) if number.is_zero() => call(circular, u).map(Some).map_err(|_| NoValue),
-        _ => Ok(at(u, 0, at_zero)),
+        _ => Ok(value_if_equal(u, 0, at_zero)),
     }
 }
 
@@ -543,7 +547,7 @@ fn call(function: Function, argument: &Expr) -> Result<Expr, ExprError> {
 }
 
 /// The value, if the argument is exactly this number.
-fn at(argument: &Expr, point: i64, value: impl FnOnce() -> Expr) -> Option<Expr> {
+fn value_if_equal(argument: &Expr, point: i64, value: impl FnOnce() -> Expr) -> Option<Expr> {
     let number = argument.as_number()?;
     (number.is_integer() && *number.numer() == point.into()).then(value)
 }
@@ -605,8 +609,8 @@ mod tests {
         }
     }
 
-    /// By their integrals (NIST Digital Library of Mathematical Functions 10.9.2, 10.32.3,
-    /// 5.9.1, 19.2.8), which share nothing with the library.
+    /// Special functions agree with their integrals (NIST Digital Library of Mathematical Functions
+    /// 10.9.2, 10.32.3, 5.9.1, 19.2.8), which share nothing with the library.
     #[test]
     fn special_functions_are_their_integrals() {
         use lindstedt_numeric::numeric::ode::quadrature::integrate_smooth;
@@ -643,7 +647,7 @@ mod tests {
         );
     }
 
-    /// What simplification claims must be what the numbers say.
+    /// Simplified values must agree with numerical ones.
     #[test]
     fn exact_values_agree_with_the_numbers() {
         let points = ["0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2"];

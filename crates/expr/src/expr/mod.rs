@@ -17,8 +17,8 @@
 //! - a point where the original is undefined may become defined (`x/x = 1`), never the other way
 //!   round.
 //!
-//! What has no value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a silent
-//! infinity.
+//! An expression without a value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a
+//! silent infinity.
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -76,7 +76,7 @@ pub use print::Inside;
 pub use rounding::{LostDigits, Rounded};
 pub use typed::{Quotation, Typed};
 
-pub use crate::symbol::letters::{InForce, Letters};
+pub use crate::symbol::letters::{InForce, ResultSymbols};
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but
@@ -88,7 +88,7 @@ pub const EXPANSION_LIMIT: usize = 100_000;
 
 /// An immutable expression in normal form. A clone is one reference count.
 #[derive(Clone)]
-pub struct Expr(Arc<Inner>);
+pub struct Expr(Arc<ExprData>);
 
 /// One node of the tree. Match on [`Expr::node`] to read; build through [`Expr`] alone, which keeps
 /// the promises written on the variants.
@@ -100,8 +100,8 @@ pub enum Node {
     Pi,
     /// A parameter, coordinate or derivative: `eps`, `x`, `x'`.
     Symbol(Symbol),
-    /// At least two terms, none a sum or zero, at most one a number, no two alike up to a numeric
-    /// factor; in the order in which they print.
+    /// A sum of at least two terms, none a sum or zero, at most one a number, no two alike up to a
+    /// numeric factor; in the order in which they print.
     Sum(Vec<Expr>),
     /// A coefficient, not zero, and at least one factor (at least two where the coefficient is
     /// one). No factor is a number or a product, no two have the same base, a sum among them is
@@ -116,7 +116,7 @@ pub enum Node {
     Function(Function, Vec<Expr>),
 }
 
-/// Why an expression could not be built.
+/// The reason why an expression could not be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExprError {
@@ -137,9 +137,9 @@ pub enum ExprError {
     WrongArguments {
         /// The function's name.
         function: &'static str,
-        /// How many arguments it takes.
+        /// The number of arguments it takes.
         expected: usize,
-        /// How many it was given.
+        /// The number of arguments given.
         given: usize,
     },
     /// Writing the result out would take more products than allowed.
@@ -238,11 +238,11 @@ impl Expr {
         Self::function(Function::Cos, vec![self.clone()])
     }
 
-    /// The same kind of node over other children, in the order of [`Expr::children`], put into
-    /// normal form again. A leaf is returned as it is.
+    /// Returns a node of this kind with other children, in the order of [`Expr::children`], in
+    /// normal form. A leaf is returned as it is.
     ///
     /// # Errors
-    /// Those of [`Expr::power`] and [`Expr::function`].
+    /// The errors of [`Expr::power`] and [`Expr::function`].
     pub fn with_children(&self, children: &[Self]) -> Result<Self, ExprError> {
         match (self.node(), children) {
             (Node::Number(_) | Node::Pi | Node::Symbol(_), _) => Ok(self.clone()),
@@ -368,7 +368,7 @@ impl Expr {
         &self,
         mut step: impl FnMut(&Self, &[T]) -> Result<T, E>,
     ) -> Result<T, E> {
-        let mut done: HashMap<*const Inner, T> = HashMap::new();
+        let mut done: HashMap<*const ExprData, T> = HashMap::new();
         let mut open = vec![(self, false)];
         let mut values = Vec::new();
         while let Some((expr, children_done)) = open.pop() {
@@ -407,7 +407,7 @@ impl Expr {
         })
     }
 
-    fn address(&self) -> *const Inner {
+    fn address(&self) -> *const ExprData {
         Arc::as_ptr(&self.0)
     }
 
@@ -444,7 +444,7 @@ impl Expr {
             }
         };
         let size = node.children().fold(1, |size: u32, child| size.saturating_add(child.0.size));
-        Self(Arc::new(Inner { node, hash: hasher.finish(), size, stepwise }))
+        Self(Arc::new(ExprData { node, hash: hasher.finish(), size, stepwise }))
     }
 
     /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a
@@ -465,9 +465,9 @@ impl Node {
     }
 }
 
-struct Inner {
+struct ExprData {
     node: Node,
-    /// Of the whole tree below, so that comparing and hashing look at one word.
+    /// The hash of the whole tree below, so that comparing and hashing look at one word.
     hash: u64,
     /// The number of nodes below, each occurrence counted, as far as that fits.
     size: u32,
@@ -476,7 +476,7 @@ struct Inner {
 
 /// Children are handed to a list instead of being dropped in place: the depth of a tree never meets
 /// the stack.
-impl Drop for Inner {
+impl Drop for ExprData {
     fn drop(&mut self) {
         let mut open = Vec::new();
         let release = |node: &mut Node, open: &mut Vec<Expr>| match node {

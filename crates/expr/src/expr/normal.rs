@@ -13,12 +13,12 @@ use crate::exact::rational::{self, Integer, Rational};
 /// Flat, like terms merged, zeros gone, sorted.
 pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
     let mut constant = Rational::zero();
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<LikeTerm> = Vec::new();
     for expr in terms {
         for term in expr.terms() {
             match term.node() {
                 Node::Number(value) => constant = number::add(&constant, value),
-                _ => parts.push(Part::of(term)),
+                _ => parts.push(LikeTerm::from_term(term)),
             }
         }
     }
@@ -26,7 +26,7 @@ pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
 }
 
 /// The sum of a number and of terms; one piece of code, whatever the terms came from.
-fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
+fn merged(constant: Rational, mut parts: Vec<LikeTerm>) -> Expr {
     sort_by_hash(&mut parts, |part| &part.rest);
     let mut merged: Vec<Expr> = Vec::with_capacity(parts.len() + 1);
     if !constant.is_zero() {
@@ -57,14 +57,14 @@ fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
 }
 
 /// A term as coefficient and rest, which is what like terms share.
-struct Part {
+struct LikeTerm {
     rest: Expr,
     coefficient: Rational,
     term: Expr,
 }
 
-impl Part {
-    fn of(term: &Expr) -> Self {
+impl LikeTerm {
+    fn from_term(term: &Expr) -> Self {
         let (rest, coefficient) = match term.node() {
             Node::Product(coefficient, factors) if !coefficient.is_one() => {
                 (scaled(Rational::one(), factors), coefficient.clone())
@@ -85,7 +85,7 @@ fn sort_by_hash<T>(items: &mut [T], expr: impl Fn(&T) -> &Expr) {
 
 /// Flat, numbers gathered in the coefficient, equal bases merged, sorted.
 pub(super) fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
-    let mut gathered = Gathered { coefficient: Rational::one(), powers: Vec::new() };
+    let mut gathered = ProductBuilder { coefficient: Rational::one(), powers: Vec::new() };
     for factor in factors {
         gathered.multiply(&factor);
     }
@@ -94,7 +94,7 @@ pub(super) fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
 
 /// `coefficient` times the product of the factors.
 pub(super) fn scaled_product(coefficient: Rational, factors: &[Expr]) -> Expr {
-    let mut gathered = Gathered { coefficient, powers: Vec::new() };
+    let mut gathered = ProductBuilder { coefficient, powers: Vec::new() };
     for factor in factors {
         gathered.multiply(factor);
     }
@@ -102,7 +102,7 @@ pub(super) fn scaled_product(coefficient: Rational, factors: &[Expr]) -> Expr {
 }
 
 /// A product in the making.
-struct Gathered {
+struct ProductBuilder {
     coefficient: Rational,
     powers: Vec<Factor>,
 }
@@ -113,7 +113,7 @@ struct Factor {
     whole: Expr,
 }
 
-impl Gathered {
+impl ProductBuilder {
     fn multiply(&mut self, factor: &Expr) {
         match factor.node() {
             Node::Number(value) => self.coefficient = number::multiply(&self.coefficient, value),
@@ -168,7 +168,7 @@ impl Gathered {
     }
 }
 
-/// One power for factors of one base, or `None` where they stay as they are: a single factor, or a
+/// One power for factors of one base, or `None` if they stay as they are: a single factor, or a
 /// power of a number that would be too long to write out.
 fn merge(group: &[Factor]) -> Option<Expr> {
     match group {
@@ -378,7 +378,7 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
         }
     }
     if inside != base {
-        // What is left may be a perfect power: 72^(1/3) = 2*9^(1/3) = 2*3^(2/3).
+        // The remaining number may be a perfect power: 72^(1/3) = 2*9^(1/3) = 2*3^(2/3).
         let (more, root) = integer_root(inside, broken)?;
         return Some((outside * more, root));
     }

@@ -21,7 +21,7 @@ pub(super) fn add(a: &Rational, b: &Rational) -> Rational {
     }
     let rest = a.denom() / &common;
     let numerator = a.numer() * (b.denom() / &common) + b.numer() * &rest;
-    // What still divides both divides the common part.
+    // A factor that still divides both divides the common part.
     let again = greatest_common_divisor(&numerator, &common);
     Rational::new_raw(numerator / &again, rest * (b.denom() / again))
 }
@@ -61,7 +61,7 @@ pub(super) fn greatest_common_divisor(a: &Integer, b: &Integer) -> Integer {
     larger
 }
 
-/// Which fraction is greater.
+/// Compares two fractions.
 pub(super) fn compare(a: &Rational, b: &Rational) -> Ordering {
     match a.denom() == b.denom() {
         true => a.numer().cmp(b.numer()),

@@ -14,9 +14,9 @@ use super::{Expr, Node, number};
 use crate::exact::rational::to_f64;
 use crate::symbol::Symbol;
 
-/// Puts terms that are no sums and pairwise unlike into printing order.
+/// Sorts terms that are not sums and pairwise unlike into printing order.
 pub(super) fn sort_terms(terms: &mut [Expr]) {
-    terms.sort_by_cached_key(TermKey::of);
+    terms.sort_by_cached_key(TermKey::from_term);
 }
 
 /// The order of factors; the bases differ.
@@ -77,7 +77,7 @@ struct TermKey {
 }
 
 impl TermKey {
-    fn of(term: &Expr) -> Self {
+    fn from_term(term: &Expr) -> Self {
         let mut key =
             Self { kind: 1, degree: 0.0, monomial: Vec::new(), factors: term.factors().1.to_vec() };
         for factor in &key.factors {
@@ -87,7 +87,7 @@ impl TermKey {
             };
             match (base.node(), exponent) {
                 (Node::Symbol(symbol), Some(exponent)) => {
-                    // What stands below the line counts neither way:
+                    // A negative power does not count for the degree:
                     // `omega0 + A^2/omega0 + A^4/omega0^3`.
                     key.degree += exponent.max(0.0);
                     key.monomial.push((*symbol, exponent));

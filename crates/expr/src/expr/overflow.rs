@@ -7,13 +7,13 @@ use std::convert::Infallible;
 use super::{CompiledFunction, Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// What is known of the value of a part.
+/// The known size of the value of a part.
 #[derive(Clone)]
-enum Found {
+enum Magnitude {
     Finite(f64),
     /// Larger than any number, by this part of it.
     Beyond(Expr),
-    /// No real value, or a pole.
+    /// The value is not real, or it is a pole.
     None,
 }
 
@@ -27,18 +27,18 @@ impl Expr {
         let value = |part: &Self| {
             CompiledFunction::new(part, &names).map_or(f64::NAN, |part| part.call(&numbers))
         };
-        let found = self.fold(|part, children: &[Found]| {
+        let found = self.fold(|part, children: &[Magnitude]| {
             let value = value(part);
-            let inner = children.iter().find(|child| !matches!(child, Found::Finite(_)));
-            Ok::<Found, Infallible>(match (value.is_finite(), inner) {
-                (true, _) => Found::Finite(value),
+            let inner = children.iter().find(|child| !matches!(child, Magnitude::Finite(_)));
+            Ok::<Magnitude, Infallible>(match (value.is_finite(), inner) {
+                (true, _) => Magnitude::Finite(value),
                 (false, Some(inner)) => inner.clone(),
-                (false, None) if value.is_nan() || is_pole(part, children) => Found::None,
-                (false, None) => Found::Beyond(part.clone()),
+                (false, None) if value.is_nan() || is_pole(part, children) => Magnitude::None,
+                (false, None) => Magnitude::Beyond(part.clone()),
             })
         });
         match found {
-            Ok(Found::Beyond(part)) => Some(super::print::in_message(&part)),
+            Ok(Magnitude::Beyond(part)) => Some(super::print::in_message(&part)),
             _ => None,
         }
     }
@@ -46,9 +46,9 @@ impl Expr {
 
 /// Whether an infinite value of finite arguments is that of a pole: a small number to a negative
 /// power, or the logarithm of zero.
-fn is_pole(part: &Expr, children: &[Found]) -> bool {
+fn is_pole(part: &Expr, children: &[Magnitude]) -> bool {
     match (part.node(), children) {
-        (Node::Power(..), [Found::Finite(base), ..]) => base.abs() < 1.0,
+        (Node::Power(..), [Magnitude::Finite(base), ..]) => base.abs() < 1.0,
         (Node::Function(function, _), _) => {
             use Function::{BesselI0, BesselI1, Cosh, Exp, Sinh};
             !matches!(function, Exp | Sinh | Cosh | BesselI0 | BesselI1)

@@ -43,7 +43,7 @@ pub use notation::{equation_in_grammar, expression_in_grammar};
 /// such names of an equation the answer writes `omega0_` and `phi`.
 pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
 
-/// Spellings of what is no number.
+/// Spellings of what is not a number.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
 
 /// The deepest nesting of parentheses, calls, powers and signs together.
@@ -58,9 +58,9 @@ const MOST_WORK: u64 = 500_000;
 /// An equation of motion as it was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Equation {
-    /// What stands left of the equals sign.
+    /// The left side.
     pub left: Expr,
-    /// What stands right of it; 0 where there is none.
+    /// The right side; 0 if there is no equals sign.
     pub right: Expr,
     /// The dependent variable: the letter that carries primes, `x` if none does.
     pub coordinate: Symbol,
@@ -92,8 +92,8 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
     let mut parser = Parser::new(text, true)?;
     let expr = parser.sum()?;
     match parser.peek() {
-        Kind::End => Ok(expr),
-        Kind::Equals => Err(parser.error(
+        TokenKind::End => Ok(expr),
+        TokenKind::Equals => Err(parser.error(
             parser.token().span(),
             "an `=` in an expression",
             "an equation is expected elsewhere",
@@ -121,9 +121,9 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
     let coordinate = parser.coordinate()?;
     let (left, mut terms) = parser.side(false, coordinate)?;
     let mut right = Expr::zero();
-    if parser.peek() == Kind::Equals {
+    if parser.peek() == TokenKind::Equals {
         let first = parser.advance();
-        if parser.peek() == Kind::Equals && parser.token().start == first.end {
+        if parser.peek() == TokenKind::Equals && parser.token().start == first.end {
             let span = first.start..parser.token().end;
             return Err(parser.error(span, "`==`: an equation has a single sign", "try `=`"));
         }
@@ -132,8 +132,8 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
         terms.extend(typed);
     }
     match parser.peek() {
-        Kind::End => Ok(Equation { left, right, coordinate, typed: Typed::new(text, terms) }),
-        Kind::Equals => {
+        TokenKind::End => Ok(Equation { left, right, coordinate, typed: Typed::new(text, terms) }),
+        TokenKind::Equals => {
             Err(parser.error(parser.token().span(), "a second `=`", "an equation has one"))
         }
         _ => Err(parser.unexpected()),
@@ -155,7 +155,7 @@ impl<'a> Parser<'a> {
     fn new(text: &'a str, special: bool) -> Result<Self, ParseError> {
         let tokens = lexer::tokens(text)?;
         let parser = Self { text, tokens, next: 0, depth: 0, work: 0, special };
-        if parser.peek() == Kind::End {
+        if parser.peek() == TokenKind::End {
             return Err(parser.error(0..0, "the text is empty", "an example: `x'' + sin(x) = 0`"));
         }
         parser.refuse_other_derivatives()?;
@@ -174,12 +174,12 @@ impl<'a> Parser<'a> {
         loop {
             let first = self.next;
             // The sign before the first term belongs to its first factor.
-            let minus = !terms.is_empty() && self.advance().kind == Kind::Minus;
+            let minus = !terms.is_empty() && self.advance().kind == TokenKind::Minus;
             let term = self.product()?;
             let term = if minus { -term } else { term };
             show(&term, first..self.next);
             terms.push(term);
-            if !matches!(self.peek(), Kind::Plus | Kind::Minus) {
+            if !matches!(self.peek(), TokenKind::Plus | TokenKind::Minus) {
                 break;
             }
         }
@@ -206,11 +206,11 @@ impl<'a> Parser<'a> {
         let mut factors = vec![self.unary()?];
         loop {
             match self.peek() {
-                Kind::Times => {
+                TokenKind::Times => {
                     self.advance();
                     factors.push(self.unary()?);
                 }
-                Kind::Divide => {
+                TokenKind::Divide => {
                     self.advance();
                     let start = self.token().start;
                     let divisor = self.unary()?;
@@ -226,7 +226,9 @@ impl<'a> Parser<'a> {
                     self.charge(std::slice::from_ref(&divisor), start)?;
                     factors.push(self.located(Expr::divide(&Expr::one(), &divisor), span)?);
                 }
-                Kind::Number | Kind::Name | Kind::Open => return Err(self.missing_sign()),
+                TokenKind::Number | TokenKind::Name | TokenKind::Open => {
+                    return Err(self.missing_sign());
+                }
                 _ => break,
             }
         }
@@ -248,10 +250,10 @@ impl<'a> Parser<'a> {
     fn unary(&mut self) -> Result<Expr, ParseError> {
         let mut negative = false;
         let mut signs = 0;
-        while let sign @ (Kind::Plus | Kind::Minus) = self.peek() {
+        while let sign @ (TokenKind::Plus | TokenKind::Minus) = self.peek() {
             self.enter(self.token())?;
             signs += 1;
-            negative ^= sign == Kind::Minus;
+            negative ^= sign == TokenKind::Minus;
             self.advance();
         }
         let value = self.power()?;
@@ -262,7 +264,7 @@ impl<'a> Parser<'a> {
     fn power(&mut self) -> Result<Expr, ParseError> {
         let start = self.token().start;
         let base = self.primary()?;
-        if self.peek() != Kind::Power {
+        if self.peek() != TokenKind::Power {
             return Ok(base);
         }
         let sign = self.advance();
@@ -279,18 +281,18 @@ impl<'a> Parser<'a> {
     fn primary(&mut self) -> Result<Expr, ParseError> {
         let token = self.token();
         match token.kind {
-            Kind::Number => {
+            TokenKind::Number => {
                 self.advance();
                 Ok(Expr::number(self.decimal(token)?))
             }
-            Kind::Name => {
+            TokenKind::Name => {
                 self.advance();
                 self.name(token)
             }
-            Kind::Open => {
+            TokenKind::Open => {
                 self.advance();
                 self.enter(token)?;
-                if self.peek() == Kind::Close {
+                if self.peek() == TokenKind::Close {
                     return Err(self.error(
                         token.start..self.token().end,
                         "nothing stands between these parentheses",
@@ -307,7 +309,7 @@ impl<'a> Parser<'a> {
 
     fn name(&mut self, token: Token) -> Result<Expr, ParseError> {
         let name = &self.text[token.span()];
-        let called = self.peek() == Kind::Open;
+        let called = self.peek() == TokenKind::Open;
         if NOT_NUMBERS.contains(&name.to_ascii_lowercase().as_str()) {
             return Err(self.error(token.span(), &format!("`{name}` is no number"), ""));
         }
@@ -368,7 +370,7 @@ impl<'a> Parser<'a> {
     fn arguments(&mut self, name: Token) -> Result<Vec<Expr>, ParseError> {
         let open = self.advance();
         self.enter(open)?;
-        if self.peek() == Kind::Close {
+        if self.peek() == TokenKind::Close {
             let text = self.quoted(name.span());
             return Err(self.error(
                 name.start..self.token().end,
@@ -377,7 +379,7 @@ impl<'a> Parser<'a> {
             ));
         }
         let mut arguments = vec![self.sum()?];
-        while self.peek() == Kind::Comma {
+        while self.peek() == TokenKind::Comma {
             self.advance();
             arguments.push(self.sum()?);
         }
@@ -387,13 +389,15 @@ impl<'a> Parser<'a> {
 
     fn close(&mut self, open: Token) -> Result<(), ParseError> {
         match self.peek() {
-            Kind::Close => {
+            TokenKind::Close => {
                 self.advance();
                 self.depth -= 1;
                 Ok(())
             }
-            Kind::End => Err(self.error(open.span(), "this `(` is never closed", "")),
-            Kind::Equals => Err(self.error(self.token().span(), "an `=` inside parentheses", "")),
+            TokenKind::End => Err(self.error(open.span(), "this `(` is never closed", "")),
+            TokenKind::Equals => {
+                Err(self.error(self.token().span(), "an `=` inside parentheses", ""))
+            }
             _ => Err(self.unexpected()),
         }
     }
@@ -428,13 +432,13 @@ impl<'a> Parser<'a> {
         Ok(number::lowest_terms(numerator, denominator))
     }
 
-    fn peek(&self) -> Kind {
+    fn peek(&self) -> TokenKind {
         self.token().kind
     }
 
     fn token(&self) -> Token {
         self.tokens.get(self.next).copied().unwrap_or(Token {
-            kind: Kind::End,
+            kind: TokenKind::End,
             start: self.text.len(),
             end: self.text.len(),
         })
@@ -722,7 +726,7 @@ mod tests {
         );
         assert_eq!(shown(""), "the text is empty\n  an example: `x'' + sin(x) = 0`");
         assert_eq!(shown("x +"), "something is missing after `+`\n  x +\n    ^");
-        // What a terminal would obey or reorder is not shown.
+        // Characters that a terminal would obey or reorder are not shown.
         assert_eq!(shown("x\u{1b}[31m"), "a control character, U+001B\n  x?[31m\n   ^");
         assert_eq!(shown("\u{202e}x"), "the character U+202E is not understood\n  ?x\n  ^");
         let long = shown(&format!("{}2x{}", "x + ".repeat(1_000), " + x".repeat(1_000)));

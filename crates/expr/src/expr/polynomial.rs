@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 impl Expr {
     /// This expression as a polynomial in its symbols, with exponents of either sign.
     ///
-    /// A factor that is no integer power of a symbol (`sqrt(k)`, `sin(1/2)`, `1/(1 + k)`) is
+    /// A factor that is not an integer power of a symbol (`sqrt(k)`, `sin(1/2)`, `1/(1 + k)`) is
     /// offered to `name`, which may give it a symbol of its own. `Ok(None)` where a factor stays
     /// without a name.
     ///
@@ -39,8 +39,8 @@ impl Expr {
 
 impl Expr {
     /// The degree of a polynomial in one variable that can be told without writing it out: nothing
-    /// of the highest degree can cancel where one term alone has it. `None` where it takes more
-    /// than that.
+    /// of the highest degree can cancel where one term alone has it. `None` if it takes more than
+    /// that.
     pub fn degree_at_sight(&self, variable: Symbol) -> Option<u32> {
         let degree =
             self.fold(|part, degrees: &[u32]| degree_of(part, degrees, variable).ok_or(()));

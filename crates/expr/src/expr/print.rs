@@ -96,7 +96,7 @@ impl Expr {
 
 impl fmt::Display for Expr {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_expr(self, Place::Free, formatter)
+        write_expr(self, PrintContext::Free, formatter)
     }
 }
 
@@ -106,17 +106,17 @@ pub struct Inside<'a>(pub &'a Expr);
 
 impl fmt::Display for Inside<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_expr(self.0, Place::Inside, formatter)
+        write_expr(self.0, PrintContext::Inside, formatter)
     }
 }
 
 /// Without recursion: `open` holds what is still to be written, the next piece last.
-fn write_expr(expr: &Expr, place: Place, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let mut open = vec![Piece::Expr(expr.clone(), place)];
+fn write_expr(expr: &Expr, place: PrintContext, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let mut open = vec![PrintItem::Expr(expr.clone(), place)];
     while let Some(piece) = open.pop() {
         match piece {
-            Piece::Text(text) => formatter.write_str(text)?,
-            Piece::Expr(expr, place) => write_node(&expr, place, formatter, &mut open)?,
+            PrintItem::Text(text) => formatter.write_str(text)?,
+            PrintItem::Expr(expr, place) => write_node(&expr, place, formatter, &mut open)?,
         }
     }
     Ok(())
@@ -143,15 +143,15 @@ impl Expr {
     }
 }
 
-enum Piece {
+enum PrintItem {
     Text(&'static str),
-    Expr(Expr, Place),
+    Expr(Expr, PrintContext),
 }
 
-/// What surrounds an expression, and with it which expressions need parentheses.
+/// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
-    /// Alone.
+enum PrintContext {
+    /// The whole expression.
     Free,
     /// An argument, or in parentheses already.
     Inside,
@@ -166,79 +166,91 @@ enum Place {
 }
 
 /// Whether an expression stands in parentheses there.
-fn in_parentheses(expr: &Expr, place: Place) -> bool {
+fn in_parentheses(expr: &Expr, place: PrintContext) -> bool {
     match expr.node() {
         Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
         Node::Number(value) => match place {
-            Place::Free | Place::Inside | Place::Unsigned => false,
-            Place::Factor => !value.is_integer() && decimal_of_long_fraction(value).is_none(),
-            Place::Base | Place::Exponent => !value.is_integer() || value.is_negative(),
+            PrintContext::Free | PrintContext::Inside | PrintContext::Unsigned => false,
+            PrintContext::Factor => {
+                !value.is_integer() && decimal_of_long_fraction(value).is_none()
+            }
+            PrintContext::Base | PrintContext::Exponent => {
+                !value.is_integer() || value.is_negative()
+            }
         },
-        Node::Sum(_) => !matches!(place, Place::Free | Place::Inside),
-        Node::Product(..) => !matches!(place, Place::Free | Place::Inside | Place::Unsigned),
+        Node::Sum(_) => !matches!(place, PrintContext::Free | PrintContext::Inside),
+        Node::Product(..) => {
+            !matches!(place, PrintContext::Free | PrintContext::Inside | PrintContext::Unsigned)
+        }
         Node::Power(_, exponent) => match place {
-            Place::Free | Place::Inside | Place::Unsigned | Place::Factor => false,
-            Place::Base | Place::Exponent => !is_half(exponent),
+            PrintContext::Free
+            | PrintContext::Inside
+            | PrintContext::Unsigned
+            | PrintContext::Factor => false,
+            PrintContext::Base | PrintContext::Exponent => !is_half(exponent),
         },
     }
 }
 
 fn write_node(
     expr: &Expr,
-    place: Place,
+    place: PrintContext,
     out: &mut fmt::Formatter<'_>,
-    open: &mut Vec<Piece>,
+    open: &mut Vec<PrintItem>,
 ) -> fmt::Result {
     if in_parentheses(expr, place) {
-        open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Inside)]);
+        open.extend([PrintItem::Text(")"), PrintItem::Expr(expr.clone(), PrintContext::Inside)]);
         return out.write_char('(');
     }
     match expr.node() {
         Node::Pi => out.write_str("pi"),
         Node::Symbol(symbol) => out.write_str(symbol.written()),
-        Node::Number(value) if place == Place::Unsigned => write_number(&value.abs(), out),
+        Node::Number(value) if place == PrintContext::Unsigned => write_number(&value.abs(), out),
         Node::Number(value) => write_number(value, out),
         Node::Sum(terms) => {
             let terms: Vec<&Expr> = match place {
-                Place::Inside => expr.terms_inside().collect(),
+                PrintContext::Inside => expr.terms_inside().collect(),
                 _ => terms.iter().collect(),
             };
             for (index, term) in terms.into_iter().enumerate().rev() {
-                open.push(Piece::Expr(term.clone(), Place::Unsigned));
+                open.push(PrintItem::Expr(term.clone(), PrintContext::Unsigned));
                 match (index, term.has_leading_minus()) {
                     (0, false) => {}
-                    (0, true) => open.push(Piece::Text("-")),
-                    (_, false) => open.push(Piece::Text(" + ")),
-                    (_, true) => open.push(Piece::Text(" - ")),
+                    (0, true) => open.push(PrintItem::Text("-")),
+                    (_, false) => open.push(PrintItem::Text(" + ")),
+                    (_, true) => open.push(PrintItem::Text(" - ")),
                 }
             }
             Ok(())
         }
         Node::Function(function, arguments) => {
-            open.push(Piece::Text(")"));
+            open.push(PrintItem::Text(")"));
             for (index, argument) in arguments.iter().enumerate().rev() {
-                open.push(Piece::Expr(argument.clone(), Place::Inside));
+                open.push(PrintItem::Expr(argument.clone(), PrintContext::Inside));
                 if index > 0 {
-                    open.push(Piece::Text(", "));
+                    open.push(PrintItem::Text(", "));
                 }
             }
             write!(out, "{}(", function.name())
         }
         Node::Power(base, exponent) if is_half(exponent) => {
-            open.extend([Piece::Text(")"), Piece::Expr(base.clone(), Place::Inside)]);
+            open.extend([
+                PrintItem::Text(")"),
+                PrintItem::Expr(base.clone(), PrintContext::Inside),
+            ]);
             out.write_str("sqrt(")
         }
         Node::Power(base, exponent) if !exponent.as_number().is_some_and(Signed::is_negative) => {
             open.extend([
-                Piece::Expr(exponent.clone(), Place::Exponent),
-                Piece::Text("^"),
-                Piece::Expr(base.clone(), Place::Base),
+                PrintItem::Expr(exponent.clone(), PrintContext::Exponent),
+                PrintItem::Text("^"),
+                PrintItem::Expr(base.clone(), PrintContext::Base),
             ]);
             Ok(())
         }
         Node::Product(..) | Node::Power(..) => {
             let mut fraction = expr.fraction();
-            if fraction.negative && place != Place::Unsigned {
+            if fraction.negative && place != PrintContext::Unsigned {
                 let mut factors = fraction.numerator.iter_mut();
                 match factors.find_map(|factor| Some((factor.turned_round()?, factor))) {
                     Some((turned, factor)) => *factor = turned,
@@ -260,27 +272,29 @@ fn write_number(value: &Rational, out: &mut fmt::Formatter<'_>) -> fmt::Result {
 }
 
 /// Numerator over denominator, without the sign.
-fn push_fraction(fraction: &Fraction, open: &mut Vec<Piece>) {
+fn push_fraction(fraction: &Fraction, open: &mut Vec<PrintItem>) {
     match fraction.denominator.as_slice() {
         [] => {}
-        [only] => open.extend([Piece::Expr(only.clone(), Place::Factor), Piece::Text("/")]),
+        [only] => {
+            open.extend([PrintItem::Expr(only.clone(), PrintContext::Factor), PrintItem::Text("/")])
+        }
         several => {
-            open.push(Piece::Text(")"));
+            open.push(PrintItem::Text(")"));
             push_factors(several, open);
-            open.push(Piece::Text("/("));
+            open.push(PrintItem::Text("/("));
         }
     }
     match fraction.numerator.as_slice() {
-        [] => open.push(Piece::Text("1")),
+        [] => open.push(PrintItem::Text("1")),
         factors => push_factors(factors, open),
     }
 }
 
-fn push_factors(factors: &[Expr], open: &mut Vec<Piece>) {
+fn push_factors(factors: &[Expr], open: &mut Vec<PrintItem>) {
     for (index, factor) in factors.iter().enumerate().rev() {
-        open.push(Piece::Expr(factor.clone(), Place::Factor));
+        open.push(PrintItem::Expr(factor.clone(), PrintContext::Factor));
         if index > 0 {
-            open.push(Piece::Text("*"));
+            open.push(PrintItem::Text("*"));
         }
     }
 }

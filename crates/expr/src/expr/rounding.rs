@@ -1,5 +1,5 @@
-//! How many digits of a value rounding leaves: an expression evaluated together with a bound of its
-//! rounding error.
+//! Significant digits of a value: an expression is evaluated together with a bound of its rounding
+//! error.
 //!
 //! Reference: N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., SIAM 2002,
 //! section 3.3 (running error analysis).
@@ -42,7 +42,7 @@ pub struct LostDigits {
     pub name: Symbol,
     /// The value of that symbol.
     pub value: f64,
-    /// How far rounding moves the expression, over its size near that value.
+    /// Bound of the rounding error, over the size of the expression near that value.
     pub lost: f64,
 }
 
@@ -109,7 +109,7 @@ impl Expr {
     }
 
     /// The value with a bound of the error that rounding makes, given the same of the symbols;
-    /// `None` where a symbol is missing.
+    /// `None` if a symbol is missing.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -150,7 +150,7 @@ fn node(
         }
         (Node::Product(coefficient, factors), values) => {
             let coefficient = to_f64(coefficient);
-            // Where a step is zero the other factors need no value.
+            // If a step function is zero, the other factors need no value.
             let closed = factors
                 .iter()
                 .zip(values)

@@ -20,23 +20,23 @@ pub struct Typed {
 /// One term of either side, or of a bracket there that is scaled by numbers and parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct TypedTerm {
-    /// What it adds to its own side.
+    /// Its contribution to its own side.
     pub value: Expr,
-    /// Where it stands, its sign apart.
+    /// Its range in the text, without the sign.
     pub span: Range<usize>,
     /// Whether a minus stands before it.
     pub negative: bool,
     /// Whether it stands right of the equals sign.
     pub right: bool,
-    /// What stands around the bracket in which it stands.
-    pub around: Option<Arc<Around>>,
+    /// The context of the bracket around it; `None` outside of brackets.
+    pub around: Option<Arc<BracketContext>>,
 }
 
-/// What stands around a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A
-/// bracket that nothing scales leaves the texts empty. Around a bracket in a bracket stands what
-/// stands around both.
+/// The context of a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A
+/// bracket without a factor leaves the texts empty. The context of a nested bracket is that of
+/// both.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Around {
+pub(super) struct BracketContext {
     pub opening: String,
     pub closing: String,
     /// Whether the minuses before the brackets, those inside the texts apart, are one together.
@@ -69,7 +69,7 @@ impl Quotation {
         Self { expression, words }
     }
 
-    /// What is named.
+    /// The named expression.
     pub fn expression(&self) -> &Expr {
         &self.expression
     }
@@ -80,7 +80,7 @@ impl Quotation {
     }
 }
 
-/// In the words of the normal form.
+/// A quotation in the words of the normal form.
 impl From<Expr> for Quotation {
     fn from(expression: Expr) -> Self {
         let words = expression.to_string();
@@ -99,7 +99,7 @@ impl Typed {
         Self { text: text.to_owned(), terms }
     }
 
-    /// What each term adds to the left side, in the order in which they were typed.
+    /// The contribution of each term to the left side, in the order of the text.
     pub fn values(&self) -> impl Iterator<Item = Expr> {
         self.terms.iter().map(|term| match term.right {
             true => -&term.value,
@@ -107,7 +107,7 @@ impl Typed {
         })
     }
 
-    /// The same text with numbers for some of its parameters.
+    /// Returns the text with numbers for some of its parameters.
     ///
     /// # Errors
     /// A value at which a term has none.
@@ -153,9 +153,9 @@ impl Typed {
         }
     }
 
-    /// The line in which a quotation stands, and a line with carets under it; `None` where it
-    /// stands nowhere as it is.
-    pub fn place(&self, quotation: &str) -> Option<[String; 2]> {
+    /// The line in which a quotation stands, and a line with carets under it; `None` if it stands
+    /// nowhere as it is.
+    pub fn locate(&self, quotation: &str) -> Option<[String; 2]> {
         let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
         let span = match number.and_then(|number| self.terms.get(number)) {
             Some(term) => term.span.clone(),
@@ -164,7 +164,8 @@ impl Typed {
         Some(excerpt(&self.text, &span))
     }
 
-    /// Where a text stands that does not go on as a longer name on either side.
+    /// Range of a text that does not go on as a longer name on either side; `None` if it does not
+    /// occur.
     fn span_of(&self, quotation: &str) -> Option<Range<usize>> {
         let in_name = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '\'';
         let spans = self.text.match_indices(quotation);

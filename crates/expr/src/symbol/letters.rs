@@ -4,7 +4,7 @@
 //! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where
 //! an equation has one of these names for something of its own, the equation keeps it, and the
 //! answer takes another. Inside the crate the symbols of an answer are the same for every equation,
-//! those of such an equation are [apart](Symbol::apart), and [`Letters`] in force say how the
+//! those of such an equation are [apart](Symbol::apart), and [`ResultSymbols`] in force say how the
 //! former are printed: in formulas and in sentences, in every format.
 
 use std::cell::Cell;
@@ -41,10 +41,10 @@ pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
-/// use lindstedt::expr::{Expr, Letters};
+/// use lindstedt::expr::{Expr, ResultSymbols};
 /// use lindstedt::Symbol;
 ///
-/// let letters = Letters::beside(&["omega".into()], false);
+/// let letters = ResultSymbols::avoiding(&["omega".into()], false);
 /// assert_eq!((letters.amplitude.name(), letters.frequency.name()), ("A", "Omega"));
 /// let ratio = Expr::divide(&Expr::symbol("omega"), &Expr::from(Symbol::new("omega").apart()))?;
 /// let in_force = letters.in_force();
@@ -53,7 +53,7 @@ pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Letters {
+pub struct ResultSymbols {
     /// The amplitude at the start, `A` where the equation has no such name.
     pub amplitude: Symbol,
     /// The amplitude of the first harmonic and of slow equations, `a` likewise.
@@ -63,17 +63,17 @@ pub struct Letters {
 }
 
 /// The letters of most answers.
-const USUAL: Letters =
-    Letters { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
+const USUAL: ResultSymbols =
+    ResultSymbols { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
 
 thread_local! {
-    static IN_FORCE: Cell<Letters> = const { Cell::new(USUAL) };
+    static IN_FORCE: Cell<ResultSymbols> = const { Cell::new(USUAL) };
 }
 
 /// Letters are in force on this thread until this value is dropped.
 #[must_use]
 pub struct InForce {
-    before: Letters,
+    before: ResultSymbols,
     of_this_thread: PhantomData<*const ()>,
 }
 
@@ -83,10 +83,10 @@ impl Drop for InForce {
     }
 }
 
-impl Letters {
+impl ResultSymbols {
     /// The letters of an answer to an equation that has these names: those that it leaves free. A
     /// `driven` equation has its `Omega` for the drive.
-    pub fn beside(names: &[Symbol], driven: bool) -> Self {
+    pub fn avoiding(names: &[Symbol], driven: bool) -> Self {
         let clash = |own: &Symbol| {
             [AMPLITUDE, FIRST_HARMONIC, FREQUENCY].iter().any(|usual| usual.name() == own.name())
         };
@@ -111,29 +111,29 @@ impl Letters {
         }
     }
 
-    /// Those that are in force on this thread, where they are not the usual ones.
+    /// The symbols in force on this thread; `None` if they are the usual ones.
     pub fn current() -> Option<Self> {
         Some(IN_FORCE.get()).filter(|letters| *letters != USUAL)
     }
 
-    /// Puts these letters in force on this thread, until what is returned is dropped; unusual ones
-    /// that are in force already stay, for they belong to the equation that was asked about.
+    /// Puts these symbols in force on this thread until the guard is dropped. Unusual ones that are
+    /// in force already stay, because they belong to the equation in question.
     pub fn in_force(self) -> InForce {
         Self::current().unwrap_or(self).exactly()
     }
 
-    /// Puts these letters in force in any case: for work that goes on on another thread.
+    /// Puts these symbols in force in any case: for work that continues on another thread.
     pub(crate) fn exactly(self) -> InForce {
         InForce { before: IN_FORCE.replace(self), of_this_thread: PhantomData }
     }
 
     /// The letters that are in force on this thread, the usual ones included.
-    pub(crate) fn here() -> Self {
+    pub(crate) fn in_force_here() -> Self {
         IN_FORCE.get()
     }
 
-    /// Those that are not the usual ones: each the symbol of the answer and how it is written.
-    pub fn unusual(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
+    /// The symbols that are not the usual ones: each symbol of the answer and its spelling.
+    pub fn renamed(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
         let pairs = [
             (AMPLITUDE, self.amplitude),
             (FIRST_HARMONIC, self.first_harmonic),
@@ -144,22 +144,22 @@ impl Letters {
 
     /// The symbol that a person means by this name beside an equation with these names: one of the
     /// equation, or else the one that is written so in the answer.
-    pub fn meant(&self, name: Symbol, names: &[Symbol]) -> Symbol {
+    pub fn resolve(&self, name: Symbol, names: &[Symbol]) -> Symbol {
         if let Some(own) = names.iter().find(|own| own.name() == name.name()) {
             return *own;
         }
-        let written = self.unusual().find(|(_, written)| *written == name);
+        let written = self.renamed().find(|(_, written)| *written == name);
         written.map_or(name, |(usual, _)| usual)
     }
 }
 
 /// The name of a symbol as it is printed on this thread.
 pub(super) fn written(symbol: Symbol) -> &'static str {
-    let Some(letters) = Letters::current() else {
+    let Some(letters) = ResultSymbols::current() else {
         return symbol.name();
     };
     let bare = symbol.0.trim_end_matches('\'');
-    let Some((_, letter)) = letters.unusual().find(|(usual, _)| usual.0 == bare) else {
+    let Some((_, letter)) = letters.renamed().find(|(usual, _)| usual.0 == bare) else {
         return symbol.name();
     };
     match symbol.primes() {
@@ -179,13 +179,13 @@ mod tests {
 
     #[test]
     fn letters_of_an_answer_give_way_to_those_of_the_equation() {
-        let names = |letters: Letters| {
+        let names = |letters: ResultSymbols| {
             [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name)
         };
-        assert_eq!(names(Letters::beside(&["x".into()], false)), ["A", "a", "omega"]);
+        assert_eq!(names(ResultSymbols::avoiding(&["x".into()], false)), ["A", "a", "omega"]);
         let all = ["A", "C", "a", "omega"].map(Symbol::new);
-        assert_eq!(names(Letters::beside(&all, false)), ["X", "r", "Omega"]);
-        assert_eq!(names(Letters::beside(&all, true)), ["X", "r", "nu"]);
+        assert_eq!(names(ResultSymbols::avoiding(&all, false)), ["X", "r", "Omega"]);
+        assert_eq!(names(ResultSymbols::avoiding(&all, true)), ["X", "r", "nu"]);
     }
 
     #[test]
@@ -193,15 +193,15 @@ mod tests {
         let (answer, equation) = (Symbol::new("a"), Symbol::new("a").apart());
         assert_eq!(equation.derivative().to_string(), "a'");
         assert_eq!(equation.derivative().coordinate(), equation);
-        let letters = Letters::beside(&[equation], false);
+        let letters = ResultSymbols::avoiding(&[equation], false);
         {
             let _letters = letters.in_force();
             assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
-            let _others = Letters::beside(&["omega".into()], false).in_force();
+            let _others = ResultSymbols::avoiding(&["omega".into()], false).in_force();
             assert_eq!(answer.to_string(), "r");
         }
         assert_eq!(answer.to_string(), "a");
-        assert_eq!(letters.meant("r".into(), &[equation]), answer);
-        assert_eq!(letters.meant("a".into(), &[equation]), equation);
+        assert_eq!(letters.resolve("r".into(), &[equation]), answer);
+        assert_eq!(letters.resolve("a".into(), &[equation]), equation);
     }
 }

@@ -1,5 +1,5 @@
-//! What a barrier is good for: the rest time beside that without a barrier and with one that loses
-//! nothing.
+//! The benefit of a barrier: the rest time compared with those without a barrier and with a
+//! lossless one.
 //!
 //! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and
 //! faster: under light viscous damping the action, the area S of the orbit in the phase plane,
@@ -30,9 +30,9 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
-    /// What the actions say of the difference; nothing with dry friction, where the first swing
-    /// turns over, where a barrier holds the pendulum above the bottom, or where two hold it within
-    /// a tenth of it.
+    /// The difference as predicted by the actions; `None` with dry friction, if the first swing
+    /// turns over, if a barrier holds the pendulum above the bottom, or if two barriers hold it
+    /// within a tenth of the amplitude.
     pub geometry: Option<Geometry>,
 }
 
@@ -51,9 +51,9 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of
-    /// the model; nothing where the formula says nothing.
-    fn of(model: &Model, amplitude: f64) -> Option<Self> {
+    /// The prediction by the actions of a swing of this amplitude, rad, about the bottom between
+    /// the barriers of the model; `None` if the formula does not apply.
+    fn from_actions(model: &Model, amplitude: f64) -> Option<Self> {
         let caged = model.is_caged(0.0, REST_FRACTION * amplitude);
         if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
             return None;
@@ -68,10 +68,10 @@ impl Geometry {
     }
 }
 
-/// So many times the duration of the run are the others followed for: they rest later.
+/// Duration of the comparison runs in durations of the run: they rest later.
 pub const BASELINE_DURATIONS: f64 = 4.0;
 
-/// The rest times beside that of this motion; `None` where there is nothing to compare: no impact,
+/// The rest times beside that of this motion; `None` if there is nothing to compare: no impact,
 /// nothing that damps the swing, or a pivot that moves.
 ///
 /// # Errors
@@ -112,7 +112,7 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         // The formula counts amplitudes from the bottom.
         geometry: Some(motion.rest())
             .filter(|rest| rest.place == 0.0)
-            .and_then(|rest| Geometry::of(&model, rest.amplitude)),
+            .and_then(|rest| Geometry::from_actions(&model, rest.amplitude)),
         no_barrier: rest(Model { left: None, right: None, ..model })?,
         lossless_barrier: match model.mu == 0.0 {
             true => motion.rest().time,

@@ -16,7 +16,7 @@ use super::dissipation::{
     ContactDamping, ContactScales, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
     viscous_coefficient, viscous_ratio,
 };
-use super::hertz::{Design, NotPositive};
+use super::hertz::{NotPositive, StiffnessDesign};
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, Side, Start};
 use super::parameter::Parameter;
 use super::units::Units;
@@ -61,7 +61,7 @@ pub struct Case {
     /// Omega/omega, dimensionless, not negative.
     pub frequency_ratio: f64,
     /// Mass, radius, length, modulus, gravity, in SI units.
-    pub design: Design,
+    pub design: StiffnessDesign,
 }
 
 impl Default for Case {
@@ -84,14 +84,14 @@ impl Default for Case {
             friction: Friction::default(),
             beta: 0.0,
             frequency_ratio: 0.0,
-            design: Design::default(),
+            design: StiffnessDesign::default(),
         }
     }
 }
 
 impl Case {
-    /// The value of a parameter; nothing where the case leaves it to others: gamma to the design,
-    /// the start to the amplitude.
+    /// The value of a parameter; `None` if the case leaves it to others: gamma to the design, the
+    /// start to the amplitude.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Amplitude => Some(self.amplitude),
@@ -255,7 +255,7 @@ impl Case {
         }
     }
 
-    /// What its contact damping is measured by.
+    /// The scales of its contact damping.
     fn scales(&self, gamma: f64, start: Start) -> ContactScales {
         ContactScales {
             gamma,
@@ -266,17 +266,15 @@ impl Case {
         }
     }
 
-    /// The speed at which a restitution is stated, in units of L omega; `None` where none is
-    /// stated.
+    /// The speed at which a restitution is stated, in units of L omega; `None` if none is stated.
     fn stated_speed(&self) -> Option<f64> {
-        let Design { length, gravity, .. } = self.design;
+        let StiffnessDesign { length, gravity, .. } = self.design;
         let speed = self.at_speed?;
         Some(self.speed_unit.dimensionless(speed, length, gravity))
     }
 
     /// The speed of the first touch from this start, by the energy of the swing: without damping
-    /// and with the pivot at rest. Nothing where no barrier is reached, or where the start is
-    /// inside one.
+    /// and with the pivot at rest. `None` if no barrier is reached, or if the start is inside one.
     fn touch_speed(&self, start: Start) -> Option<f64> {
         let Start { x, velocity } = start;
         if self.left.is_some_and(|left| x < left) || self.right.is_some_and(|right| x > right) {
@@ -320,7 +318,7 @@ impl Case {
         let (model, start) = self.motion()?;
         let damping = self.contact_damping;
         let scales = self.scales(model.gamma, start);
-        // Where gamma is zero there is no barrier to touch.
+        // With gamma = 0 there is no barrier to touch.
         let touch_speed = self.touch_speed(start).filter(|_| model.gamma != 0.0);
         let form = |of: ContactDamping, scales: &ContactScales| {
             Some(damping.in_form(of, scales).ok()?.value())
@@ -424,7 +422,7 @@ mod tests {
         let case = Case {
             gamma: Some(1e6),
             contact_damping: ContactDamping::Lambda(0.1),
-            design: Design { length: 0.25, gravity: 9.0, ..Design::default() },
+            design: StiffnessDesign { length: 0.25, gravity: 9.0, ..StiffnessDesign::default() },
             ..Case::default()
         };
         assert!((case.motion().unwrap().0.mu / 1.5e5 - 1.0).abs() < 1e-15);

@@ -19,8 +19,8 @@ use super::derived::{DerivedContact, Flight};
 use super::error::ImpactError;
 use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
-use super::phases::{ContactSpeed, Swing, ThreePhases, three_phases};
-use super::setup::{Letters, Setup};
+use super::phases::{ContactSpeed, ImpactProblem, ThreePhases, three_phases};
+use super::setup::{ImpactSymbols, Setup};
 use super::trial::{Attempt, Trial};
 use crate::method::{self, is_odd};
 use crate::solution::{Method, Solution};
@@ -30,52 +30,51 @@ use crate::verify::Verdict;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Impact {
-    /// What was asked.
+    /// The problem that was solved.
     pub setup: Setup,
     /// The equation as it is judged.
     pub equation: String,
     /// Its letters.
-    pub letters: Letters,
+    pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// The start of the cycle: the release, or the turning point of a motion released inside the
     /// barrier.
     pub turning_point: f64,
     /// The derived law of the free swing in the paper's reading, where there is one.
     pub free_swing: Option<Solution>,
     /// The closed forms, the paper's first.
-    pub columns: Vec<Column>,
+    pub columns: Vec<JudgedPhases>,
     /// The swing of the derived column.
     pub flight: Option<Flight>,
     /// The contact of the derived column.
     pub contact: Option<DerivedContact>,
-    /// Every law of the contact at `energy_speed`; empty where they are not asked for.
+    /// Every law of the contact at `energy_speed`; empty if they are not asked for.
     pub contact_laws: Vec<ContactRow>,
     /// lambda of the contact, zero where it loses nothing.
     pub damping: f64,
-    /// What was tried for the derived column, in order; where that has a reason not to be, it is
-    /// here.
+    /// Attempts at the derived column, in order, with the reasons of their failure.
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
     pub energy_speed: f64,
-    /// Why the paper's reading does not apply, where it does not.
+    /// The reason why the paper's version does not apply; `None` if it does.
     pub no_paper: Option<String>,
     /// Runge-Kutta on the original equation.
     pub truth: TrueImpact,
 }
 
-/// How the three phases are read.
+/// The version of the three closed-form phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reading {
+pub enum PhaseReading {
     /// As the paper has it: every join continuous, contact speed from the one-term motion.
     Paper,
-    /// The same with the contact speed from the energy.
+    /// As in the paper, with the contact speed from the energy.
     Energy,
     /// The derived motion with all its harmonics, the joins from it.
     Derived,
 }
 
-impl Reading {
+impl PhaseReading {
     /// The name in tables and documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -89,9 +88,9 @@ impl Reading {
 /// The three phases in one reading, judged.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Column {
-    /// Which reading it is.
-    pub reading: Reading,
+pub struct JudgedPhases {
+    /// The version.
+    pub reading: PhaseReading,
     /// The closed forms.
     pub phases: ThreePhases,
     /// Its largest deviation from the true motion.
@@ -106,12 +105,12 @@ pub struct Column {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{Reading, Setup, solve};
+/// use lindstedt::impact::{PhaseReading, Setup, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let derived = impact.column(Reading::Derived).ok_or("none passes")?;
+/// let derived = impact.column(PhaseReading::Derived).ok_or("none passes")?;
 /// let contact = &derived.phases.phases[1];
-/// assert!(contact.end > contact.start && contact.at(contact.start).1 > 0.0); // pressed into the barrier
+/// assert!(contact.end > contact.start && contact.phase_point_at(contact.start).1 > 0.0); // pressed into the barrier
 /// assert!((derived.phases.penetration / impact.truth.penetration - 1.0).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -121,7 +120,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         let (free_swing, paper, no_paper) = match paper(trial) {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
-                // Where the same method was asked for both, its reason is the whole reason.
+                // If the same method was asked for both, its reason is the whole reason.
                 let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
                 if derived.is_none()
                     && alone
@@ -137,12 +136,15 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
                 (None, vec![], Some(error.to_string()))
             }
         };
-        let column =
-            |(reading, phases)| Column { reading, deviation: trial.deviation(&phases), phases };
-        let mut columns: Vec<Column> = paper.into_iter().map(column).collect();
+        let column = |(reading, phases)| JudgedPhases {
+            reading,
+            deviation: trial.deviation(&phases),
+            phases,
+        };
+        let mut columns: Vec<JudgedPhases> = paper.into_iter().map(column).collect();
         let (flight, contact) = derived
             .map(|derived| {
-                columns.push(column((Reading::Derived, derived.phases)));
+                columns.push(column((PhaseReading::Derived, derived.phases)));
                 (derived.flight, derived.contact)
             })
             .unzip();
@@ -183,7 +185,9 @@ fn methods_to_try(setup: &Setup) -> Vec<Method> {
 const PAPERS_ORDER: u32 = 2;
 
 /// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
-pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
+pub(super) fn paper(
+    trial: &Trial,
+) -> Result<(Solution, Vec<(PhaseReading, ThreePhases)>), ImpactError> {
     let Trial { setup, equations, collision, .. } = trial;
     if setup.loss.is_some() {
         return Err(ImpactError::LosesEnergy);
@@ -211,7 +215,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         false => values.get(&name).copied(),
     };
     let squared = law.law.frequency_squared().map(|squared| law.evaluate(squared, &known));
-    let swing = Swing {
+    let swing = ImpactProblem {
         amplitude,
         barrier: collision.barrier,
         stiffness: collision.stiffness,
@@ -221,7 +225,8 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         elastic_force: collision.elastic_force,
         rule: setup.rule,
     };
-    let readings = [(Reading::Paper, ContactSpeed::Paper), (Reading::Energy, ContactSpeed::Energy)];
+    let readings =
+        [(PhaseReading::Paper, ContactSpeed::Paper), (PhaseReading::Energy, ContactSpeed::Energy)];
     let side = setup.side.sign();
     let phases = readings
         .map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
@@ -230,16 +235,16 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
 
 /// One number of an impact: by Runge-Kutta and by every column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
-    /// What it is.
+pub struct ImpactQuantity {
+    /// Its name.
     pub name: &'static str,
-    /// By Runge-Kutta.
+    /// The value by Runge-Kutta.
     pub runge_kutta: f64,
-    /// By each column, in their order.
+    /// The values by the columns, in their order.
     pub closed_forms: Vec<f64>,
 }
 
-impl Quantity {
+impl ImpactQuantity {
     /// The relative error of each column, `closed form / runge_kutta - 1`.
     pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
         self.closed_forms.iter().map(|value| value / self.runge_kutta - 1.0)
@@ -262,7 +267,7 @@ pub type Shortcoming = (Vec<(&'static str, f64)>, String);
 
 impl Impact {
     /// The column of a reading, where there is one.
-    pub fn column(&self, reading: Reading) -> Option<&Column> {
+    pub fn column(&self, reading: PhaseReading) -> Option<&JudgedPhases> {
         self.columns.iter().find(|column| column.reading == reading)
     }
 
@@ -276,12 +281,12 @@ impl Impact {
         self.setup.loss.is_none() && self.setup.contact_law == ContactLaw::Exact
     }
 
-    /// Where the true motion turns after the impact, in the unit of x.
+    /// The turning point of the true motion after the impact, in the unit of x.
     pub fn place_of_turn(&self) -> f64 {
-        self.equilibrium + self.setup.side.sign() * self.truth.at(self.truth.period).0
+        self.equilibrium + self.setup.side.sign() * self.truth.phase_point_at(self.truth.period).0
     }
 
-    /// Runge-Kutta and then every column, with so many points a phase.
+    /// Runge-Kutta and then every column, with this many points a phase.
     pub fn paths(&self, points: usize) -> Vec<SampledMotion> {
         let sign = self.setup.side.sign();
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
@@ -296,7 +301,7 @@ impl Impact {
                     .collect(),
             }
         };
-        let closed_form = |column: &Column| {
+        let closed_form = |column: &JudgedPhases| {
             let phases = &column.phases;
             path(phases.phases.each_ref().map(|phase| phase.end), &|t| {
                 (phases.position_at(t), phases.velocity_at(t))
@@ -304,19 +309,19 @@ impl Impact {
         };
         let truth = &self.truth;
         let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| {
-            let (z, v) = truth.at(t);
+            let (z, v) = truth.phase_point_at(t);
             (self.equilibrium + sign * z, sign * v)
         });
         std::iter::once(true_path).chain(self.columns.iter().map(closed_form)).collect()
     }
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
-    pub fn quantities(&self) -> [Quantity; 5] {
+    pub fn quantities(&self) -> [ImpactQuantity; 5] {
         const NAMES: [&str; 5] = ["time to contact", "speed", "penetration", "duration", "period"];
         let truth = self.truth.quantities();
         let columns: Vec<[f64; 5]> =
             self.columns.iter().map(|column| column.phases.quantities()).collect();
-        std::array::from_fn(|index| Quantity {
+        std::array::from_fn(|index| ImpactQuantity {
             name: NAMES[index],
             runge_kutta: truth[index],
             closed_forms: columns.iter().map(|numbers| numbers[index]).collect(),
@@ -325,13 +330,13 @@ impl Impact {
 
     /// Restitution and speed out of a contact that loses energy, which are judged, and what it
     /// loses per unit of mass, which is not: of a small loss no digits are left.
-    pub fn losses(&self) -> Option<([Quantity; 2], Quantity)> {
+    pub fn losses(&self) -> Option<([ImpactQuantity; 2], ImpactQuantity)> {
         self.setup.loss?;
         let truth = losses([self.truth.touch.v, -self.truth.exit.v]);
         let columns = self.columns.iter().map(|column| &column.phases);
         let found: Vec<[f64; 3]> =
             columns.map(|phases| losses([phases.speed, phases.exit_speed])).collect();
-        let quantity = |index: usize, name| Quantity {
+        let quantity = |index: usize, name| ImpactQuantity {
             name,
             runge_kutta: truth[index],
             closed_forms: found.iter().map(|numbers| numbers[index]).collect(),
@@ -342,7 +347,7 @@ impl Impact {
 
     /// omega of the approach and the return in the paper's reading.
     pub fn frequency(&self) -> Option<f64> {
-        match self.column(Reading::Paper)?.phases.phases[0].form {
+        match self.column(PhaseReading::Paper)?.phases.phases[0].form {
             Form::Cosine { frequency, .. } => Some(frequency),
             _ => None,
         }
@@ -350,7 +355,7 @@ impl Impact {
 
     /// The largest deviation of a column in approach, contact and return, each on its own clock: of
     /// the flights over the amplitude, of the contact over the true depth.
-    pub fn deviations(&self, column: &Column) -> [f64; 3] {
+    pub fn deviations(&self, column: &JudgedPhases) -> [f64; 3] {
         let [approach, contact, back] = column.deviation.aligned;
         [approach / self.amplitude(), contact / self.truth.penetration, back / self.amplitude()]
     }
@@ -358,12 +363,12 @@ impl Impact {
     /// The verdict on each column: every quantity within the tolerance, and the deviation in every
     /// phase.
     pub fn verdicts(&self, tolerance: f64) -> Vec<Verdict> {
-        let passes = |index| Verdict::of(self.shortcomings(index, tolerance).is_empty());
+        let passes = |index| Verdict::from_passed(self.shortcomings(index, tolerance).is_empty());
         (0..self.columns.len()).map(passes).collect()
     }
 
-    /// What lies beyond the tolerance in a column, by its place: the quantities with their errors,
-    /// and what of the closed form they come from.
+    /// The quantities of a column that are beyond the tolerance, with their errors and the part of
+    /// the closed form that they come from.
     pub fn shortcomings(&self, index: usize, tolerance: f64) -> Vec<Shortcoming> {
         let column = &self.columns[index];
         let one_cosine = || {
@@ -371,17 +376,17 @@ impl Impact {
             format!("the swing is one cosine, by the law of order {order}")
         };
         let [swing, speed, contact] = match column.reading {
-            Reading::Paper => [
+            PhaseReading::Paper => [
                 one_cosine(),
                 "the contact begins with the speed of that cosine".to_owned(),
                 "a line stands for the force of the barrier, met with that speed".to_owned(),
             ],
-            Reading::Energy => [
+            PhaseReading::Energy => [
                 one_cosine(),
                 "the contact begins with the speed from the energy".to_owned(),
                 "a line stands for the force of the barrier".to_owned(),
             ],
-            Reading::Derived => [
+            PhaseReading::Derived => [
                 "the derived swing is not closer at this order".to_owned(),
                 "the contact begins with the speed of the derived swing".to_owned(),
                 match (self.setup.loss, self.setup.contact_law) {
@@ -412,7 +417,7 @@ impl Impact {
                 contact,
             ),
         ];
-        // An error that is no number lies beyond every tolerance.
+        // An error that is not a number lies beyond every tolerance.
         let beyond = |names: &[&str]| {
             let those = errors.iter().filter(|(name, _)| names.contains(name));
             those

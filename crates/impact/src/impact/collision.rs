@@ -1,4 +1,4 @@
-//! What hits what: a swing released from rest, and an elastic barrier in its way.
+//! The collision: a swing released from rest, and an elastic barrier in its way.
 //!
 //! ```text
 //! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0,   x(0) = x_r < x_c,  x'(0) = 0
@@ -20,7 +20,7 @@ use crate::numeric::ode::root::find_root;
 /// to the right of it.
 #[derive(Clone, Copy)]
 pub struct Collision<'a> {
-    /// Where it is released, in the unit of x.
+    /// The position of the release, in the unit of x.
     pub release: f64,
     /// Position x_c of the barrier, in the unit of x.
     pub barrier: f64,
@@ -44,7 +44,7 @@ pub(super) fn losses([inwards, outwards]: [f64; 2]) -> [f64; 3] {
     [outwards / inwards, outwards, lost]
 }
 
-/// Why nothing hits the barrier.
+/// The reason why nothing hits the barrier.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CollisionError {
@@ -54,7 +54,7 @@ pub enum CollisionError {
     /// The release is not a finite number.
     #[error("the release must be a finite number, not {0}")]
     Release(f64),
-    /// A swing whose energy is no number.
+    /// A swing whose energy is not a number.
     #[error(
         "the amplitude {0:e} is too small: its energy, A^2, underflows; below 1e-8 or so the swing is linear, scale it up"
     )]
@@ -74,11 +74,11 @@ pub enum CollisionError {
          the barrier stands at {barrier}: raise the amplitude or move the barrier"
     )]
     NeverReaches {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
         /// The furthest point.
         furthest: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
     },
     /// The release is at or beyond the barrier.
@@ -87,9 +87,9 @@ pub enum CollisionError {
          barrier"
     )]
     ReleasedBehindBarrier {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
     },
     /// Released inside the barrier, it does not leave it, or does not come back.
@@ -98,22 +98,23 @@ pub enum CollisionError {
          `lindstedt simulate`"
     )]
     Inside {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
-        /// What becomes of it.
+        /// The motion that follows, in words.
         what: &'static str,
     },
-    /// At the release, or on the way, the force does not drive the pendulum towards the barrier.
+    /// The force does not drive the pendulum towards the barrier, at the release or on the way.
     #[error(
         "released at rest at x = {release}, the pendulum does not swing to the barrier: the force turns it back at \
          x = {at}; the amplitude must stay inside the well (below pi for sin x)"
     )]
     OutsideTheWell {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the kinetic energy would be negative or the force points the wrong way.
+        /// The position at which the kinetic energy would be negative or the force points the wrong
+        /// way.
         at: f64,
     },
     /// The energy of the swing could not be integrated.
@@ -122,7 +123,7 @@ pub enum CollisionError {
 }
 
 impl CollisionError {
-    /// The same with places as seen from outside: x = origin + sign z.
+    /// Returns the error with positions in the coordinate of the equation: x = origin + sign z.
     pub(super) fn seen_from(self, sign: f64, origin: f64) -> Self {
         let x = |z: f64| origin + sign * z;
         match self {

@@ -3,11 +3,11 @@
 //! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at
 //! its lowest order that passes, else at its best, and the reason of each that has no row.
 
-use super::closed_form::{Reading, paper};
+use super::closed_form::{PhaseReading, paper};
 use super::error::ImpactError;
 use super::judge::TrueImpact;
 use super::phases::ThreePhases;
-use super::setup::{Letters, Setup};
+use super::setup::{ImpactSymbols, Setup};
 use super::trial::{Trial, worst};
 use crate::solution::{Degrees, Method};
 use crate::verify::Verdict;
@@ -16,15 +16,15 @@ use crate::verify::Verdict;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ImpactComparison {
-    /// What was asked.
+    /// The problem that was solved.
     pub setup: Setup,
     /// The equation as it is judged.
     pub equation: String,
     /// Its letters.
-    pub letters: Letters,
+    pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// The start of the cycle: the release, or the turning point of a motion released inside the
     /// barrier.
     pub turning_point: f64,
     /// The rows that have numbers: the paper's readings first, then the methods in the order of
@@ -38,11 +38,11 @@ pub struct ImpactComparison {
     pub truth: TrueImpact,
 }
 
-/// Who derives the three phases.
+/// The source of the three phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImpactMethod {
     /// A reading of the paper.
-    Reading(Reading),
+    Reading(PhaseReading),
     /// A method of `derive`.
     Derived(Method),
 }
@@ -59,7 +59,7 @@ impl ImpactMethod {
     /// The name in tables.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Reading(Reading::Paper) => "Paper",
+            Self::Reading(PhaseReading::Paper) => "Paper",
             Self::Reading(_) => "Paper, speed by energy",
             Self::Derived(method) => method.title(),
         }
@@ -70,7 +70,7 @@ impl ImpactMethod {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ImpactRow {
-    /// Whose it is.
+    /// The method of the row.
     pub method: ImpactMethod,
     /// The order of the law, where it has one.
     pub order: Option<u32>,
@@ -103,7 +103,7 @@ impl ImpactRow {
 
     /// Whether every number and every phase is within the tolerance.
     pub fn verdict(&self, tolerance: f64) -> Verdict {
-        Verdict::of(self.worst() <= tolerance)
+        Verdict::from_passed(self.worst() <= tolerance)
     }
 }
 
@@ -138,11 +138,13 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
         match paper(trial) {
             Ok((law, phases)) => {
                 for (reading, phases) in phases {
-                    let order = (reading == Reading::Paper).then_some(law.order);
+                    let order = (reading == PhaseReading::Paper).then_some(law.order);
                     rows.push(row(ImpactMethod::Reading(reading), order, None, phases));
                 }
             }
-            Err(error) => refused.push((ImpactMethod::Reading(Reading::Paper), error.to_string())),
+            Err(error) => {
+                refused.push((ImpactMethod::Reading(PhaseReading::Paper), error.to_string()))
+            }
         }
         for method in Method::ALL {
             let name = ImpactMethod::Derived(method);

@@ -24,8 +24,8 @@ use num_complex::Complex64;
 use super::contact::{ContactMotion, HuntCrossley, SineSeries};
 use super::error::ImpactError;
 use super::form::Form;
-use super::phases::{Phase, ThreePhases};
-use super::setup::Equations;
+use super::phases::{MotionPhase, ThreePhases};
+use super::setup::ImpactEquations;
 use crate::exact::{Doubles, from_f64};
 use crate::expr::{Equation, Expr};
 use crate::method::motion::Motion;
@@ -59,12 +59,12 @@ impl Flight {
     /// # Errors
     /// [`ImpactError`].
     pub(super) fn derive(
-        equations: &Equations,
+        equations: &ImpactEquations,
         [release, sign]: [f64; 2],
         options: &method::Options,
     ) -> Result<Self, ImpactError> {
         let swing = &equations.swing;
-        let turned = if sign < 0.0 { turned(swing)? } else { None };
+        let turned = if sign < 0.0 { mirrored_equation(swing)? } else { None };
         // A swing between barriers is free: what drives it is refused by the method that knows free
         // motions alone.
         let options = &method::Options {
@@ -79,15 +79,16 @@ impl Flight {
             AmplitudeConvention::FirstHarmonic => {
                 // Of the size of the distance: the other harmonics are smaller than the first.
                 let short = |amplitude| {
-                    motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from)
+                    motion_at(amplitude)
+                        .map_or(f64::NAN, |motion| motion.displacement_at(0.0) - from)
                 };
                 find_root(short, 0.25 * distance, 2.0 * distance)
                     .map_err(|_| ImpactError::NoAmplitude)?
             }
         };
         let motion = motion_at(amplitude)?;
-        let start = motion.at(0.0);
-        // An answer that is no number fails as well.
+        let start = motion.displacement_at(0.0);
+        // An answer that is not a number fails as well.
         let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
         match starts_there {
             true => Ok(Self { solution, amplitude, sign, is_turned: turned.is_some(), motion }),
@@ -95,13 +96,14 @@ impl Flight {
         }
     }
 
-    /// The same swing with the amplitude, no larger one, that passes the barrier at this speed.
+    /// The swing with the amplitude, no larger than this one, that passes the barrier at this
+    /// speed.
     ///
     /// # Errors
     /// [`ImpactError::WayBack`]; the method has no motion at that amplitude.
     pub(super) fn passing(
         &self,
-        equations: &Equations,
+        equations: &ImpactEquations,
         barrier: f64,
         speed: f64,
     ) -> Result<Self, ImpactError> {
@@ -130,8 +132,8 @@ impl Flight {
         let half = PI / self.motion.frequency();
         let place = self.sign * barrier;
         let never = |_| ImpactError::NeverReaches {
-            from: self.sign * self.motion.at(0.0),
-            to: self.sign * self.motion.at(half),
+            from: self.sign * self.motion.displacement_at(0.0),
+            to: self.sign * self.motion.displacement_at(half),
         };
         let displacement = self.motion.displacement();
         let number = |series: FourierSeries<Doubles>| series.mean().0;
@@ -142,7 +144,7 @@ impl Flight {
             1 if displacement.is_even() && cosine.abs() <= 1.0 => {
                 cosine.acos() / self.motion.frequency()
             }
-            _ => find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?,
+            _ => find_root(|t| self.motion.displacement_at(t) - place, 0.0, half).map_err(never)?,
         };
         Ok((time, self.motion.velocity(time).abs()))
     }
@@ -167,7 +169,7 @@ impl Flight {
 /// The motion of a law at this amplitude.
 fn motion_at(
     solution: &Solution,
-    equations: &Equations,
+    equations: &ImpactEquations,
     amplitude: f64,
 ) -> Result<Motion, ImpactError> {
     let symbol = solution.amplitude.symbol();
@@ -177,8 +179,8 @@ fn motion_at(
     Ok(solution.motion_at(&values)?)
 }
 
-/// The equation of -x; `None` where it is that of x.
-fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
+/// The equation of -x; `None` if it is that of x.
+fn mirrored_equation(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     let x = swing.coordinate;
     if is_odd(&swing.force, x)? {
         return Ok(None);
@@ -192,13 +194,13 @@ fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     Ok(Some(Oscillator { about, ..Oscillator::from_equation(&equation)? }))
 }
 
-/// How close the printed series of a contact comes to its motion, as a part of the depth.
+/// Largest deviation of the printed series of a contact from its motion, over the depth.
 const SERIES: f64 = 1e-6;
 
 /// The contact of the derived phases.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DerivedContact {
-    /// By a law under which nothing is lost.
+    /// A contact without losses.
     Elastic(Box<ContactMotion>),
     /// With damping, the force of the swing left out of it.
     Damped(Box<HuntCrossley>),
@@ -217,7 +219,7 @@ impl DerivedContact {
     fn sine_series(&self) -> SineSeries {
         match self {
             Self::Elastic(contact) => contact.sine_series(SERIES),
-            Self::Damped(contact) => SineSeries::of(
+            Self::Damped(contact) => SineSeries::from_motion(
                 |time| contact.position(time),
                 contact.duration,
                 0.0,
@@ -235,7 +237,7 @@ impl DerivedContact {
 /// [`ImpactError`] where a contact that loses energy has no way back.
 pub(super) fn phases_of(
     flight: &Flight,
-    equations: &Equations,
+    equations: &ImpactEquations,
     barrier: f64,
     [touch, speed]: [f64; 2],
     contact: &DerivedContact,
@@ -251,9 +253,10 @@ pub(super) fn phases_of(
     let exit = touch + duration;
     let end = exit + way_back;
     let depth = contact.sine_series();
-    let velocity_jump = depth.at(0.0).1 - speed;
+    let velocity_jump = depth.phase_point_at(0.0).1 - speed;
     let pressed = Form::Contact { barrier, inward: -flight.sign, depth };
-    let phase = |name, [start, end, clock]: [f64; 3], form| Phase { name, start, end, clock, form };
+    let phase =
+        |name, [start, end, clock]: [f64; 3], form| MotionPhase { name, start, end, clock, form };
     Ok(ThreePhases {
         phases: [
             phase("approach", [0.0, touch, 0.0], flight.form()),

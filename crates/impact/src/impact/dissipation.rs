@@ -1,5 +1,5 @@
-//! What damps a pendulum and its contact: each damping in every form in which it may be given, and
-//! which form is held fixed.
+//! The damping of a pendulum and of its contact: each damping in every form in which it may be
+//! given, and the form that is held fixed.
 //!
 //! In: a number in one form, and the pendulum in SI units. Out: the number of equation (7), and
 //! from it every other form. With d = L (x - x_c) the depth in m, v the dimensionless speed at a
@@ -24,7 +24,7 @@ use super::parameter::Parameter;
 use super::units::Units;
 use crate::decimal::decimal;
 
-/// What damps the contact, in the form in which it is given and held fixed.
+/// The damping of the contact, in the form in which it is given and held fixed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactDamping {
     /// mu of equation (7), dimensionless.
@@ -77,7 +77,7 @@ impl SpeedUnit {
     }
 }
 
-/// What a damping of the contact is measured by.
+/// The scales of a damping of the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactScales {
     /// The stiffness gamma of equation (7), positive.
@@ -88,8 +88,7 @@ pub struct ContactScales {
     pub length: f64,
     /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
-    /// The speed at which a restitution is stated, in units of L omega; nothing where none is
-    /// known.
+    /// The speed at which a restitution is stated, in units of L omega; `None` if none is known.
     pub speed: Option<f64>,
 }
 
@@ -103,7 +102,7 @@ impl ContactDamping {
         Parameter::ContactDamping,
     ];
 
-    /// A value in this form; nothing for a parameter that is no damping of the contact.
+    /// A value in this form; `None` for a parameter that is no damping of the contact.
     pub fn given(form: Parameter, value: f64) -> Option<Self> {
         match form {
             Parameter::Mu => Some(Self::Mu(value)),
@@ -157,7 +156,7 @@ impl ContactDamping {
     pub fn mu(self, scales: &ContactScales) -> Result<f64, ModelError> {
         let (key, value) = (self.form(), self.value());
         if let Self::Mu(mu) = self {
-            // What a mu may be says the equation.
+            // The range of mu is checked by the equation.
             return Ok(mu);
         }
         if let Self::Restitution(e) = self {
@@ -187,7 +186,7 @@ impl ContactDamping {
         }
     }
 
-    /// The same damping in the form of another one, whose number does not matter.
+    /// Converts the damping to the form of another one, whose number does not matter.
     ///
     /// # Errors
     /// As [`ContactDamping::mu`].
@@ -262,8 +261,8 @@ pub struct Dissipation {
     pub at_speed: Option<f64>,
     /// The speed in m/s, if the file states it so.
     pub at_speed_si: Option<f64>,
-    /// The speed of the first touch without damping, in units of L omega; nothing where no barrier
-    /// is reached.
+    /// The speed of the first touch without damping, in units of L omega; `None` if no barrier is
+    /// reached.
     pub touch_speed: Option<f64>,
     /// The restitution at that speed.
     pub restitution: Option<f64>,
@@ -294,7 +293,7 @@ impl Dissipation {
         })
     }
 
-    /// What is held fixed, of the dampings that are there: `mu`, `zeta`.
+    /// The quantities that are held fixed, of the dampings that act: `mu`, `zeta`.
     pub fn held_fixed(&self) -> Vec<&'static str> {
         [
             (self.mu != 0.0, self.contact.form()),

@@ -15,12 +15,12 @@ use crate::solution::Method;
 use crate::symbol::Symbol;
 use crate::values::ValueError;
 
-/// Why there is no impact to report: in its equation, its three phases, the derived flight or the
-/// true motion.
+/// The reason why there is no impact to report: in its equation, its three phases, the derived
+/// flight or the true motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
-    /// The swing is no oscillator.
+    /// The swing is not an oscillator.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// The force of the swing is not one of the position alone.
@@ -40,7 +40,7 @@ pub enum ImpactError {
     InfinitelyFast {
         /// The force.
         force: String,
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// A release or a barrier so far out that the force of the swing has no digits there.
@@ -112,7 +112,7 @@ pub enum ImpactError {
     /// The method refuses.
     #[error(transparent)]
     Refusal(#[from] Refusal),
-    /// It has no motion at these numbers.
+    /// The answer has no motion at these numbers.
     #[error(transparent)]
     Motion(#[from] NoNumbers),
     /// A value that is none.
@@ -124,15 +124,15 @@ pub enum ImpactError {
     /// No amplitude of the law belongs to the release.
     #[error("no amplitude of the law turns round at the release")]
     NoAmplitude,
-    /// No amplitude of the law belongs to the way back.
+    /// No amplitude of the law belongs to the return.
     #[error("no amplitude of the law leaves the barrier with the speed {0}")]
     WayBack(f64),
     /// The derived motion does not touch the barrier.
     #[error("the derived motion does not reach the barrier: it swings from {from} to {to}")]
     NeverReaches {
-        /// Where it starts.
+        /// The start of the range.
         from: f64,
-        /// Where it ends.
+        /// The end of the range.
         to: f64,
     },
     /// The derived motion does not start at the release.
@@ -141,12 +141,12 @@ pub enum ImpactError {
          where a motion all but stops; lower the amplitude, or follow it by `lindstedt simulate`"
     )]
     Start {
-        /// Where it starts.
+        /// The start of the motion.
         start: f64,
-        /// Where it should.
+        /// The position at which it should start.
         release: f64,
     },
-    /// Nothing hits the barrier.
+    /// The pendulum does not hit the barrier.
     #[error(transparent)]
     Collision(#[from] CollisionError),
     /// The run gave up.
@@ -171,9 +171,9 @@ pub enum ImpactError {
     /// No reading applies.
     #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
     NoReading {
-        /// Why not the paper's.
+        /// The reason why the paper's version does not apply.
         paper: String,
-        /// What else was tried.
+        /// The other attempts.
         tried: Vec<Attempt>,
     },
 }

@@ -38,7 +38,7 @@ pub enum Form {
     },
     /// x = centre + Re sum_k Z_k exp(i k frequency s): a motion with all its harmonics.
     Harmonics {
-        /// What does not oscillate.
+        /// The constant part.
         centre: f64,
         /// Angular frequency of the first harmonic.
         frequency: f64,
@@ -47,7 +47,7 @@ pub enum Form {
     },
     /// x = barrier + inward d(s): a contact by the series of its depth.
     Contact {
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
         /// 1 where the depth grows with x, -1 where it grows the other way.
         inward: f64,
@@ -58,7 +58,7 @@ pub enum Form {
 
 /// A function of time in a closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Term {
+pub enum TimeFunction {
     /// One.
     Constant,
     /// s (T - s), with T the duration of the phase.
@@ -73,13 +73,13 @@ pub enum Term {
 }
 
 impl Form {
-    /// How close the written series of a contact comes to the whole one, as a part of the depth.
+    /// Largest deviation of the written series of a contact from the whole one, over the depth.
     pub const WRITTEN_CONTACT: f64 = 1e-4;
 
     /// The terms of a sum that are worth writing, in their order, with their coefficients: those
     /// that six digits of a flight feel, or a contact to [`Form::WRITTEN_CONTACT`]; none for the
     /// forms of one wave.
-    pub fn felt_terms(&self) -> Vec<(Term, f64)> {
+    pub fn felt_terms(&self) -> Vec<(TimeFunction, f64)> {
         let felt = match self {
             Self::Contact { .. } => 0.5 * Self::WRITTEN_CONTACT,
             _ => 5e-7,
@@ -90,21 +90,22 @@ impl Form {
         let (frequency, parabola, sum) = (self.frequency(), self.parabola(), self.harmonics());
         let waves = sum.iter().flat_map(|&(number, amplitude)| {
             let frequency = f64::from(number) * frequency;
-            let wave = |function| Term::Wave { function, frequency };
+            let wave = |function| TimeFunction::Wave { function, frequency };
             [(wave("cos"), amplitude.re), (wave("sin"), -amplitude.im)]
         });
         // A parabola is as large as its vertex.
-        let size = |(term, value): &(Term, f64)| match term {
-            Term::Constant | Term::Wave { .. } => value.abs(),
-            Term::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
+        let size = |(term, value): &(TimeFunction, f64)| match term {
+            TimeFunction::Constant | TimeFunction::Wave { .. } => value.abs(),
+            TimeFunction::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
         };
-        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola)).chain(waves).collect();
+        let moving: Vec<_> =
+            std::iter::once((TimeFunction::Parabola, parabola)).chain(waves).collect();
         let largest = moving.iter().map(size).fold(0.0, f64::max);
-        let terms = std::iter::once((Term::Constant, self.centre())).chain(moving);
+        let terms = std::iter::once((TimeFunction::Constant, self.centre())).chain(moving);
         terms.filter(|term| size(term) > felt * largest).collect()
     }
 
-    /// What does not oscillate: the point oscillated about, or the place of the barrier.
+    /// The constant part: the centre of the oscillation, or the position of the barrier.
     pub fn centre(&self) -> f64 {
         match *self {
             Self::Cosine { .. } => 0.0,
@@ -145,7 +146,7 @@ impl Form {
         }
     }
 
-    /// The same motion in another coordinate, offset + sign x.
+    /// The motion in another coordinate, offset + sign x.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         match self {
             // A cosine swings about zero.
@@ -171,7 +172,7 @@ impl Form {
     }
 
     /// Displacement and velocity at the time s on the clock of the phase.
-    pub fn at(&self, elapsed: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, elapsed: f64) -> (f64, f64) {
         match self {
             &Self::Cosine { amplitude, frequency, phase } => {
                 let (sine, cosine) = (frequency * elapsed + phase).sin_cos();
@@ -199,7 +200,7 @@ impl Form {
                 (x, v)
             }
             Self::Contact { barrier, inward, depth } => {
-                let (depth, rate) = depth.at(elapsed);
+                let (depth, rate) = depth.phase_point_at(elapsed);
                 (barrier + inward * depth, inward * rate)
             }
         }

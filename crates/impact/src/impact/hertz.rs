@@ -33,7 +33,7 @@ use crate::numeric::ode::quadrature::nodes_and_weights;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("the {quantity} must be a positive number, not {value}")]
 pub struct NotPositive {
-    /// What it is.
+    /// The name of the quantity.
     pub quantity: &'static str,
     /// The value given.
     pub value: f64,
@@ -44,7 +44,7 @@ pub struct NotPositive {
 ///
 /// The default is a light pendulum before a soft barrier, with standard gravity to two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Design {
+pub struct StiffnessDesign {
     /// Mass of the pendulum, kg.
     pub mass: f64,
     /// Radius of the sphere, m.
@@ -57,17 +57,17 @@ pub struct Design {
     pub gravity: f64,
 }
 
-/// The stiffness gamma of the default [`Design`], by equation (8): that of every impact and every
-/// simulation for which no other is given.
+/// The stiffness gamma of the default [`StiffnessDesign`], by equation (8): that of every impact
+/// and every simulation for which no other is given.
 pub const DEFAULT_STIFFNESS: f64 = 30_406_664.685_165_863;
 
-impl Default for Design {
+impl Default for StiffnessDesign {
     fn default() -> Self {
         Self { mass: 0.0112, radius: 0.0096, length: 0.0681, modulus: 1.439e9, gravity: 9.81 }
     }
 }
 
-impl Design {
+impl StiffnessDesign {
     /// The dimensionless stiffness gamma = (4/3) E sqrt(R) L^(3/2) / (m g), equation (8) with l = L
     /// and omega^2 = g/L.
     ///
@@ -142,7 +142,7 @@ pub(super) fn greatest_depth(stiffness: f64, speed: f64) -> f64 {
     power.powf(0.4)
 }
 
-/// How long that contact lasts.
+/// Duration of that contact.
 ///
 /// # Errors
 /// As [`penetration`].
@@ -181,7 +181,7 @@ pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, NotPos
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::ode::{Event, Options, State, integrate};
+    use crate::numeric::ode::{Event, IntegrationOptions, State, integrate};
 
     #[test]
     fn the_duration_factor_is_a_ratio_of_gamma_functions() {
@@ -199,8 +199,10 @@ mod tests {
         for (stiffness, speed) in [(1.0, 1.0), (1e6, 1.3), (3e7, 1e-3)] {
             let (depth, time) =
                 (penetration(stiffness, speed).unwrap(), duration(stiffness, speed).unwrap());
-            let options =
-                Options { absolute_tolerance: 1e-12 * depth, ..Options::with_tolerance(1e-12) };
+            let options = IntegrationOptions {
+                absolute_tolerance: 1e-12 * depth,
+                ..IntegrationOptions::with_tolerance(1e-12)
+            };
             let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
             let start = State { t: 0.0, x: 0.0, v: speed };
             let path = integrate(
@@ -221,7 +223,7 @@ mod tests {
 
     #[test]
     fn the_default_stiffness_is_that_of_the_default_design() {
-        let design = Design::default();
+        let design = StiffnessDesign::default();
         assert!((design.stiffness().unwrap() / DEFAULT_STIFFNESS - 1.0).abs() < 1e-15);
         // The general equation (8), l and omega^2 written out.
         let omega_squared = design.gravity / design.length;
@@ -232,9 +234,14 @@ mod tests {
 
     #[test]
     fn what_is_not_positive_is_named() {
-        let refused = Design { radius: 0.0, ..Design::default() }.stiffness().unwrap_err();
+        let refused =
+            StiffnessDesign { radius: 0.0, ..StiffnessDesign::default() }.stiffness().unwrap_err();
         assert_eq!(refused.to_string(), "the radius must be a positive number, not 0");
-        assert!(Design { modulus: 1e300, mass: 1e-300, ..Design::default() }.stiffness().is_err());
+        assert!(
+            StiffnessDesign { modulus: 1e300, mass: 1e-300, ..StiffnessDesign::default() }
+                .stiffness()
+                .is_err()
+        );
         assert!(penetration(0.0, 1.0).is_err() && duration(1e6, f64::NAN).is_err());
     }
 }

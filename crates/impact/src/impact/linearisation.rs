@@ -2,7 +2,7 @@
 //! x - q.
 //!
 //! In: the force per unit of gamma as a closure of the depth, the greatest depth D, a [`Rule`].
-//! Out: a [`Line`].
+//! Out: a [`LinearContactForce`].
 //!
 //! With F(d) the force, the six rules ask, on 0 <= d <= D,
 //!
@@ -17,7 +17,7 @@
 //!
 //! The paper says "least square method" and no more; the affine line is the plain reading, so that
 //! is the default. It is not zero at touch: the acceleration jumps there by gamma times
-//! [`Line::at_touch`].
+//! [`LinearContactForce::at_touch`].
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -29,7 +29,7 @@ use thiserror::Error;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
 use crate::numeric::ode::root::{RootError, find_root};
 
-/// How the line is chosen. The names are those of problem files.
+/// The rule that fits the line. The names are those of problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rule {
     /// `least-squares`: continuous least squares, slope and constant.
@@ -98,14 +98,14 @@ impl FromStr for Rule {
 
 /// force ~ at_touch + slope * depth, per unit of gamma.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub struct LinearContactForce {
     /// Force per depth: p of equation (15).
     pub slope: f64,
     /// Force at depth zero: not zero for the affine least squares.
     pub at_touch: f64,
 }
 
-impl Line {
+impl LinearContactForce {
     /// q of equation (15), where the line is written p x - q with the barrier at x_c: q = p x_c -
     /// F(touch).
     pub fn q(&self, barrier: f64) -> f64 {
@@ -113,7 +113,7 @@ impl Line {
     }
 }
 
-/// Why there is no line.
+/// The reason why there is no line.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LinearisationError {
@@ -162,7 +162,7 @@ pub fn fit(
     rule: Rule,
     elastic_force: impl Fn(f64) -> f64,
     deepest: f64,
-) -> Result<Line, LinearisationError> {
+) -> Result<LinearContactForce, LinearisationError> {
     if !(deepest.is_finite() && deepest > 0.0) {
         return Err(LinearisationError::Depth(deepest));
     }
@@ -170,7 +170,7 @@ pub fn fit(
     if work <= 0.0 {
         return Err(LinearisationError::NotElastic(deepest));
     }
-    let through_touch = |slope: f64| Line { slope, at_touch: 0.0 };
+    let through_touch = |slope: f64| LinearContactForce { slope, at_touch: 0.0 };
     match rule {
         Rule::LeastSquares => least_squares(&elastic_force, deepest, true),
         Rule::LeastSquaresThroughTouch => least_squares(&elastic_force, deepest, false),
@@ -255,7 +255,7 @@ fn least_squares(
     elastic_force: impl Fn(f64) -> f64,
     deepest: f64,
     with_constant: bool,
-) -> Result<Line, LinearisationError> {
+) -> Result<LinearContactForce, LinearisationError> {
     // Depth = deepest * q^2, weight of the depth 2 q dq; the unknowns are scaled by the peak force.
     let peak = elastic_force(deepest).abs().max(f64::MIN_POSITIVE);
     let nodes: Vec<(f64, f64)> = nodes_and_weights(0.0, 1.0).collect();
@@ -281,7 +281,7 @@ fn least_squares(
         .solve_upper_triangular(&projected)
         .ok_or(LinearisationError::NotElastic(deepest))?;
     let at_touch = if with_constant { solution[1] * peak } else { 0.0 };
-    Ok(Line { slope: solution[0] * peak / deepest, at_touch })
+    Ok(LinearContactForce { slope: solution[0] * peak / deepest, at_touch })
 }
 
 /// Duration of a contact turned at this depth by the force alone, at unit gamma: 2 int_0^D dd /
@@ -367,12 +367,12 @@ mod tests {
             slope_change in -0.1..0.1_f64, constant_change in -0.1..0.1_f64, power in 1.0..3.0_f64
         ) {
             let force = |depth: f64| depth.powf(power);
-            let misfit = |line: Line| {
+            let misfit = |line: LinearContactForce| {
                 let square = |d: f64| (force(d) - line.at_touch - line.slope * d).powi(2);
                 integrate_smooth(square, 0.0, 1.0, 1e-10).unwrap().0
             };
             let best = fit(Rule::LeastSquares, force, 1.0).unwrap();
-            let other = Line { slope: best.slope + slope_change, at_touch: best.at_touch + constant_change };
+            let other = LinearContactForce { slope: best.slope + slope_change, at_touch: best.at_touch + constant_change };
             prop_assert!(misfit(best) <= misfit(other) + 1e-9);
         }
 

@@ -1,4 +1,4 @@
-//! Which material a barrier should be made of: the same swing against barriers that differ in their
+//! The choice of the material of a barrier: the same swing against barriers that differ in their
 //! modulus alone.
 //!
 //! In: a design, what damps it, and materials. Out: for each material the contact, the motion until
@@ -24,7 +24,9 @@ use super::model::{Model, ModelError, Start};
 use super::parameter::Parameter;
 use super::si::YieldCheck;
 use super::simulate::{SimulationError, simulate};
-use super::simulation::{CLOCK, Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use super::simulation::{
+    CLOCK, ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop,
+};
 use super::units::{FIRST_YIELD, Modulus, Units};
 
 /// The materials of a study that is given none, with their elastic moduli, Pa.
@@ -40,11 +42,11 @@ pub const DEFAULT_ZETA: f64 = 0.02;
 /// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design,
 /// sqrt(g L) = 0.817 m/s.
 pub fn default_lambda() -> f64 {
-    let design = hertz::Design::default();
+    let design = hertz::StiffnessDesign::default();
     0.1 / (design.gravity * design.length).sqrt()
 }
 
-/// How long the motions of a study are followed where no duration is given, in units of 1/omega.
+/// Duration of the motions of a study if none is given, in units of 1/omega.
 pub const DEFAULT_DURATION: f64 = 500.0;
 
 /// A material of a barrier.
@@ -95,11 +97,11 @@ pub struct MaterialQuestion {
     pub materials: Vec<Material>,
     /// The yield limit of the sphere, Pa, where one is stated.
     pub sphere_yield: Option<f64>,
-    /// How long and how closely the motions are followed.
+    /// Duration and accuracy of the motions.
     pub settings: Settings,
-    /// By which method they are followed; the picture shows them by the same.
+    /// The method that follows them; pictures use the same one.
     pub integrator: Integrator,
-    /// The dampings that nobody gave, which are then the defaults.
+    /// The dampings that were not given, for which the defaults are used.
     pub defaults: Vec<Parameter>,
 }
 
@@ -121,11 +123,11 @@ impl Default for MaterialQuestion {
     }
 }
 
-/// Why there is no study.
+/// The reason why there is no study.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MaterialsError {
-    /// No material.
+    /// There is no material.
     #[error("there is no material: give one as [[material]] with a name and a modulus")]
     NoMaterial,
     /// The design.
@@ -144,17 +146,17 @@ pub enum MaterialsError {
     Simulation(#[from] SimulationError),
 }
 
-/// What becomes of one motion until it rests.
+/// The motion against one barrier until it rests.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
-    /// When it rests, in units of 1/omega.
+pub struct MotionToRest {
+    /// The time at which it rests, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until then; all of them where it does not rest.
-    pub impacts: Vec<Contact>,
+    pub impacts: Vec<ContactRecord>,
     /// The energy of the swing after each of them that ended, in units of m g L.
     pub energies: Vec<f64>,
-    /// Why it was followed no further.
-    pub stop: Stop,
+    /// The reason why it was followed no further.
+    pub stop: SimulationStop,
 }
 
 /// Follows one motion until it rests: the one place where a study finds a rest time.
@@ -176,20 +178,21 @@ pub fn course(
     start: Start,
     integrator: Integrator,
     settings: &Settings,
-) -> Result<Course, SimulationError> {
+) -> Result<MotionToRest, SimulationError> {
     let settings = Settings { keep_path: false, ..*settings };
-    Ok(Course::from(&simulate(model, start, integrator, &settings)?))
+    Ok(MotionToRest::from(&simulate(model, start, integrator, &settings)?))
 }
 
-impl From<&Simulation> for Course {
+impl From<&Simulation> for MotionToRest {
     fn from(motion: &Simulation) -> Self {
         let model = &motion.model;
         let rest_time = motion.rest().time;
-        let before_rest = |impact: &&Contact| {
+        let before_rest = |impact: &&ContactRecord| {
             rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
         };
-        let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
-        let energy = |impact: &Contact| {
+        let impacts: Vec<ContactRecord> =
+            motion.impacts.iter().filter(before_rest).copied().collect();
+        let energy = |impact: &ContactRecord| {
             Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?))
         };
         Self {
@@ -229,12 +232,12 @@ pub struct MaterialRow {
     pub material: Material,
     /// The dimensionless stiffness of its contact, equation (8).
     pub gamma: f64,
-    /// What damps it, in every form.
+    /// Its damping, in every form.
     pub dissipation: Dissipation,
-    /// The first contact; nothing where the barrier is not touched, or not left again.
+    /// The first contact; `None` if the barrier is not touched, or not left again.
     pub first: Option<FirstContact>,
     /// The motion until it rests.
-    pub course: Course,
+    pub course: MotionToRest,
     /// The rest time of the same barrier without loss, mu = 0, in units of 1/omega.
     pub lossless: Result<f64, NoRest>,
     /// Its stated yield limit, and that of the sphere, beside the pressure of the first contact.
@@ -259,7 +262,7 @@ pub struct HeldFixed {
 }
 
 impl HeldFixed {
-    /// The materials that rest first and last, by their numbers; nothing where one of them does not
+    /// The materials that rest first and last, by their numbers; `None` if one of them does not
     /// rest.
     pub fn extremes(&self) -> Option<[usize; 2]> {
         let times: Vec<f64> = self.rest_times.iter().copied().collect::<Result<_, _>>().ok()?;
@@ -268,7 +271,7 @@ impl HeldFixed {
         Some([numbers.clone().min_by(by_time)?, numbers.max_by(by_time)?])
     }
 
-    /// (latest - soonest)/soonest of the rest times; nothing where a material does not rest.
+    /// (latest - soonest)/soonest of the rest times; `None` if a material does not rest.
     pub fn spread(&self) -> Option<f64> {
         let [first, last] = self.extremes()?.map(|number| self.rest_times[number]);
         let (first, last) = (first.ok()?, last.ok()?);
@@ -280,22 +283,22 @@ impl HeldFixed {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MaterialStudy {
-    /// What was asked.
+    /// The question that this answers.
     pub question: MaterialQuestion,
     /// The pendulum in SI units.
     pub units: Units,
     /// The equation of the design, at its own modulus.
     pub model: Model,
-    /// Where the motions begin.
+    /// The initial state of the motions.
     pub start: Start,
-    /// What damps the design, in every form.
+    /// The damping of the design, in every form.
     pub dissipation: Dissipation,
     /// The materials, in the order in which they were given.
     pub rows: Vec<MaterialRow>,
     /// The rest time without a barrier, in units of 1/omega.
     pub no_barrier: Result<f64, NoRest>,
-    /// The same materials under every form of the contact damping, the given one first; empty where
-    /// the contact loses nothing, or is not touched.
+    /// The materials under every form of the contact damping, the given one first; empty if the
+    /// contact is lossless or never touched.
     pub held_fixed: Vec<HeldFixed>,
 }
 
@@ -343,8 +346,13 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         model,
         start,
         rows,
-        no_barrier: course(&without, start, question.integrator, &longer(&question.settings))?
-            .rest_time,
+        no_barrier: course(
+            &without,
+            start,
+            question.integrator,
+            &with_longer_duration(&question.settings),
+        )?
+        .rest_time,
         dissipation,
         held_fixed,
         question,
@@ -352,7 +360,7 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
 }
 
 /// The settings of a motion that rests later.
-fn longer(settings: &Settings) -> Settings {
+fn with_longer_duration(settings: &Settings) -> Settings {
     Settings { duration: BASELINE_DURATIONS * settings.duration, ..*settings }
 }
 
@@ -406,8 +414,13 @@ fn row(
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(&lossless, start, question.integrator, &longer(&question.settings))?
-            .rest_time,
+        lossless: self::course(
+            &lossless,
+            start,
+            question.integrator,
+            &with_longer_duration(&question.settings),
+        )?
+        .rest_time,
         course,
         material: material.clone(),
     })
@@ -417,7 +430,7 @@ fn row(
 /// itself. Of one of a chain, or too short for the clock, duration and force are those of the
 /// closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
-    impact: &Contact,
+    impact: &ContactRecord,
     model: &Model,
     start: Start,
     question: &MaterialQuestion,
@@ -512,7 +525,7 @@ impl MaterialStudy {
         [softest, hardest]
     }
 
-    /// Whether a softer material always rests sooner (true) or always later (false); nothing where
+    /// Whether a softer material always rests sooner (true) or always later (false); `None` if
     /// neither is so, or one does not rest.
     pub fn order(&self, held: &HeldFixed) -> Option<bool> {
         let mut rests: Vec<(f64, f64)> = Vec::new();

@@ -46,14 +46,14 @@
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;
-//! use lindstedt::impact::hertz::{Design, elastic_force};
+//! use lindstedt::impact::hertz::{StiffnessDesign, elastic_force};
 //! use lindstedt::impact::Rule;
-//! use lindstedt::impact::{ContactSpeed, Swing, three_phases};
+//! use lindstedt::impact::{ContactSpeed, ImpactProblem, three_phases};
 //!
-//! let swing = Swing {
+//! let swing = ImpactProblem {
 //!     amplitude: 1.5,
 //!     barrier: 0.323,
-//!     stiffness: Design::default().stiffness()?,
+//!     stiffness: StiffnessDesign::default().stiffness()?,
 //!     frequency_squared: 1.0 - 1.5 * 1.5 / 8.0,
 //!     linear_stiffness: 1.0,
 //!     restoring_force: &|x| x.sin(),
@@ -100,7 +100,9 @@ mod units;
 pub use baseline::{BASELINE_DURATIONS, Baseline, Geometry, baseline};
 pub use case::Case;
 pub use chain::{ChainError, chain};
-pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
+pub use closed_form::{
+    Impact, ImpactQuantity, JudgedPhases, PhaseReading, SampledMotion, Shortcoming, solve,
+};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight};
@@ -113,21 +115,22 @@ pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
-    Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
-    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, course, default_lambda,
-    study_materials,
+    DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
+    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest, course,
+    default_lambda, study_materials,
 };
 pub use model::{
     DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,
 };
 pub use parameter::{Parameter, UnknownParameter};
-pub use phases::{ContactSpeed, FittedLine, Phase, Swing, ThreePhases, three_phases};
-pub use setup::{ContactLoss, Letters, Setup};
+pub use phases::{ContactSpeed, FittedLine, ImpactProblem, MotionPhase, ThreePhases, three_phases};
+pub use setup::{ContactLoss, ImpactSymbols, Setup};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
-    ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest,
-    Path, Piece, REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
+    ClosedForm, ContactDeviation, ContactRecord, EnergyBook, EnergyPoint, Integrator,
+    MotionDifference, NoRest, PathSegment, REST_FRACTION, Regime, Rest, Settings, Simulation,
+    SimulationPath, SimulationStop, TurningPoint,
 };
 pub use trial::Attempt;
 pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

@@ -20,7 +20,7 @@ use super::hertz::{self, NotPositive};
 use super::parameter::Parameter;
 use crate::decimal::{decimal, significant};
 
-/// How dry friction depends on the velocity.
+/// The law of dry friction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Friction {
     /// Coulomb's: alpha against the motion, and at rest whatever up to alpha keeps it at rest.
@@ -117,7 +117,7 @@ pub const DEFAULT_AMPLITUDE: f64 = 1.5;
 /// The place of the default barrier, rad.
 pub const DEFAULT_BARRIER: f64 = 0.323;
 
-/// Where and how fast a motion begins, at t = 0.
+/// The initial state of a motion, at t = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
     /// Angle, rad.
@@ -133,14 +133,14 @@ impl Default for Start {
     }
 }
 
-/// Why there is nothing to simulate.
+/// The reason why there is nothing to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// A parameter that is no finite number.
+    /// A parameter that is not a finite number.
     #[error("{parameter} must be a finite number, not {value}")]
     NotFinite {
-        /// Which.
+        /// The parameter.
         parameter: Parameter,
         /// The value given.
         value: f64,
@@ -148,7 +148,7 @@ pub enum ModelError {
     /// A parameter below zero.
     #[error("{parameter} must not be negative, but is {value}")]
     Negative {
-        /// Which.
+        /// The parameter.
         parameter: Parameter,
         /// The value given.
         value: f64,
@@ -163,7 +163,7 @@ pub enum ModelError {
         decimal(*value), significant(value.abs() * f64::EPSILON, 1)
     )]
     LostDigits {
-        /// Which.
+        /// The parameter.
         parameter: Parameter,
         /// The value given.
         value: f64,
@@ -315,7 +315,7 @@ impl Model {
         self.beta * (self.frequency_ratio * t).sin() * x.cos() - x.sin()
     }
 
-    /// How fast [`Model::field`] changes with time at this place.
+    /// The time derivative of [`Model::field`] at this position.
     pub fn field_rate(&self, t: f64, x: f64) -> f64 {
         let eta = self.frequency_ratio;
         self.beta * eta * (eta * t).cos() * x.cos()
@@ -354,7 +354,7 @@ impl Model {
         hertz::stored_energy(self.gamma, depth)
     }
 
-    /// How deep this place lies inside a barrier, and which; nothing between the barriers.
+    /// The depth of this position inside a barrier, and its side; `None` between the barriers.
     pub fn depth(&self, x: f64) -> Option<(Side, f64)> {
         [Side::Left, Side::Right].into_iter().find_map(|side| {
             let depth = side.sign() * (x - self.barrier(side)?);
@@ -368,9 +368,9 @@ impl Model {
         self.swing_energy(x, velocity) + self.elastic_energy(depth)
     }
 
-    /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the
-    /// constant force `field` and the excitation: the time and the direction; nothing where it
-    /// holds for ever.
+    /// The time at which Coulomb friction lets go of a pendulum at rest at x, held since `t`
+    /// against the constant force `field` and the excitation: the time and the direction; `None` if
+    /// it holds for ever.
     ///
     /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
     pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {

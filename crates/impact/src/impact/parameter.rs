@@ -61,7 +61,7 @@ pub enum Parameter {
 }
 
 /// Name, group, unit and meaning of a parameter.
-type Row = (&'static str, &'static str, &'static str, &'static str);
+type ParameterRow = (&'static str, &'static str, &'static str, &'static str);
 
 impl Parameter {
     /// Every parameter, in the order of the documentation.
@@ -90,7 +90,7 @@ impl Parameter {
         Self::Gravity,
     ];
 
-    const fn row(self) -> Row {
+    const fn row(self) -> ParameterRow {
         match self {
             Self::Amplitude => ("amplitude", "pendulum", "rad", "the release from rest at x = -A"),
             Self::Start => ("start", "pendulum", "rad", "the displacement x(0)"),
@@ -146,17 +146,17 @@ impl Parameter {
         self.row().0
     }
 
-    /// What it belongs to, `damping`: the section of a problem file.
+    /// The group of the parameter, `damping`: the section of a problem file.
     pub const fn group(self) -> &'static str {
         self.row().1
     }
 
-    /// Its SI unit, or rad and rad*omega; empty where it is dimensionless.
+    /// Its SI unit, or rad and rad*omega; empty if it is dimensionless.
     pub const fn unit(self) -> &'static str {
         self.row().2
     }
 
-    /// What it is, in words: `the viscous damping ratio`.
+    /// The meaning of the parameter in words: `the viscous damping ratio`.
     pub const fn meaning(self) -> &'static str {
         self.row().3
     }
@@ -176,14 +176,14 @@ impl fmt::Display for Parameter {
     Parameter::ALL.map(Parameter::name).join(", ")
 )]
 pub struct UnknownParameter {
-    /// What was asked for.
+    /// The name that was given.
     pub name: String,
-    /// What was meant, perhaps.
+    /// The most similar known name.
     pub nearest: Option<&'static str>,
 }
 
 impl UnknownParameter {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         self.nearest.map(|name| format!("did you mean `{name}`?"))
     }
@@ -192,7 +192,7 @@ impl UnknownParameter {
 impl FromStr for Parameter {
     type Err = UnknownParameter;
 
-    /// By its name alone: `zeta`.
+    /// Parses the name alone: `zeta`.
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
         let known = Self::ALL.into_iter().find(|parameter| parameter.name() == name);
         known.ok_or_else(|| UnknownParameter {

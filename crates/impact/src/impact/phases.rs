@@ -1,7 +1,8 @@
 //! Approach, contact, return: one impact of the pendulum in closed form, equations (13) to (16).
 //!
-//! In: a [`Swing`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free swing,
-//! the forces as closures. Out: [`ThreePhases`], the motion from release at x = -A back to -A.
+//! In: an [`ImpactProblem`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free
+//! swing, the forces as closures. Out: [`ThreePhases`], the motion from release at x = -A back to
+//! -A.
 //!
 //! ```text
 //! approach   x = -A cos(omega t)                                  t1 = acos(-x_c/A)/omega          (13)
@@ -27,8 +28,8 @@ use std::fmt;
 use super::collision::{Collision, CollisionError};
 use super::contact::line::LineContact;
 use super::error::ImpactError;
-use super::form::{Form, Term};
-use super::linearisation::{self, Line, Rule};
+use super::form::{Form, TimeFunction};
+use super::linearisation::{self, LinearContactForce, Rule};
 use crate::decimal::significant;
 use crate::series::terms;
 use crate::symbol::Symbol;
@@ -37,7 +38,7 @@ use num_complex::Complex64;
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the
 /// barrier.
 #[derive(Clone, Copy)]
-pub struct Swing<'a> {
+pub struct ImpactProblem<'a> {
     /// Amplitude A > 0: the release is at x = -A.
     pub amplitude: f64,
     /// Position x_c of the barrier, between -A and A.
@@ -53,16 +54,16 @@ pub struct Swing<'a> {
     /// F(depth), the elastic force of the barrier per unit of gamma, such as
     /// [`hertz::elastic_force`](super::hertz::elastic_force).
     pub elastic_force: &'a dyn Fn(f64) -> f64,
-    /// How the line of equation (15) is chosen.
+    /// The rule that fits the line of equation (15).
     pub rule: Rule,
 }
 
-/// Which speed of contact is used.
+/// The speed at the touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactSpeed {
-    /// That of the approximate cosine, as in the paper.
+    /// The speed of the approximate cosine, as in the paper.
     Paper,
-    /// That of the energy, exact for the original force.
+    /// The speed by the energy, exact for the original force.
     Energy,
 }
 
@@ -79,7 +80,7 @@ impl fmt::Display for ContactSpeed {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreePhases {
     /// Approach, contact, return.
-    pub phases: [Phase; 3],
+    pub phases: [MotionPhase; 3],
     /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the
     /// pendulum.
     pub speed: f64,
@@ -104,7 +105,7 @@ pub struct ThreePhases {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedLine {
     /// The line, per unit of gamma.
-    pub line: Line,
+    pub line: LinearContactForce,
     /// Depth over which it was fitted, in the unit of x: d_max of the energy balance, gravity
     /// apart.
     pub depth: f64,
@@ -112,7 +113,7 @@ pub struct FittedLine {
 
 /// One phase of the motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Phase {
+pub struct MotionPhase {
     /// `approach`, `contact` or `return`.
     pub name: &'static str,
     /// Time at which it begins.
@@ -134,9 +135,9 @@ pub struct Phase {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{ContactSpeed, Rule, Swing, hertz::elastic_force, three_phases};
+/// use lindstedt::impact::{ContactSpeed, Rule, ImpactProblem, hertz::elastic_force, three_phases};
 ///
-/// let swing = Swing {
+/// let swing = ImpactProblem {
 ///     amplitude: 1.5,
 ///     barrier: 0.323,
 ///     stiffness: 1e6,
@@ -150,8 +151,13 @@ pub struct Phase {
 /// assert!(motion.duration < 0.02 * motion.period);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, ImpactError> {
-    let &Swing { amplitude, barrier, stiffness, frequency_squared, linear_stiffness, .. } = swing;
+pub fn three_phases(
+    swing: &ImpactProblem,
+    column: ContactSpeed,
+) -> Result<ThreePhases, ImpactError> {
+    let &ImpactProblem {
+        amplitude, barrier, stiffness, frequency_squared, linear_stiffness, ..
+    } = swing;
     check(swing)?;
     let frequency = frequency_squared.sqrt();
     let swing_speed = frequency * (amplitude - barrier).sqrt() * (amplitude + barrier).sqrt();
@@ -181,15 +187,21 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     };
     Ok(ThreePhases {
         phases: [
-            Phase {
+            MotionPhase {
                 name: "approach",
                 start: 0.0,
                 end: touch,
                 clock: 0.0,
                 form: Form::Cosine { amplitude: -amplitude, frequency, phase: 0.0 },
             },
-            Phase { name: "contact", start: touch, end: exit, clock: touch, form: oscillation },
-            Phase {
+            MotionPhase {
+                name: "contact",
+                start: touch,
+                end: exit,
+                clock: touch,
+                form: oscillation,
+            },
+            MotionPhase {
                 name: "return",
                 start: exit,
                 end,
@@ -207,8 +219,8 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     })
 }
 
-fn check(swing: &Swing) -> Result<(), ImpactError> {
-    let &Swing { amplitude, frequency_squared, linear_stiffness, .. } = swing;
+fn check(swing: &ImpactProblem) -> Result<(), ImpactError> {
+    let &ImpactProblem { amplitude, frequency_squared, linear_stiffness, .. } = swing;
     if !(amplitude.is_finite() && amplitude > 0.0) {
         return Err(CollisionError::Amplitude(amplitude).into());
     }
@@ -222,8 +234,8 @@ fn check(swing: &Swing) -> Result<(), ImpactError> {
     Ok(())
 }
 
-impl Swing<'_> {
-    /// The same without the approximations.
+impl ImpactProblem<'_> {
+    /// The collision without the approximations.
     pub fn collision(&self) -> Collision<'_> {
         Collision {
             release: -self.amplitude,
@@ -237,14 +249,14 @@ impl Swing<'_> {
 }
 
 impl ThreePhases {
-    /// The same motion in another coordinate, offset + sign x; a cosine swings about zero, so it
-    /// knows no offset.
+    /// The motion in another coordinate, offset + sign x; a cosine oscillates about zero and has no
+    /// offset.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         Self {
             phases: self
                 .phases
                 .each_ref()
-                .map(|phase| Phase { form: phase.form.moved(sign, offset), ..*phase }),
+                .map(|phase| MotionPhase { form: phase.form.moved(sign, offset), ..*phase }),
             ..self.clone()
         }
     }
@@ -257,15 +269,15 @@ impl ThreePhases {
     /// Displacement at this time; the motion repeats with its period, but one that has lost energy
     /// goes on as its return.
     pub fn position_at(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// Velocity at this time, as for [`ThreePhases::position_at`].
     pub fn velocity_at(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
-    fn at(&self, time: f64) -> (f64, f64) {
+    fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let repeats = self.exit_speed == self.speed;
         let time = if (0.0..=self.period).contains(&time) || !repeats {
             time
@@ -280,11 +292,11 @@ impl ThreePhases {
         } else {
             back
         };
-        phase.at(time)
+        phase.phase_point_at(time)
     }
 }
 
-impl Phase {
+impl MotionPhase {
     /// The number of the join from which its time is counted: contact from t1, the paper's return
     /// from t2, a derived one from t3, its end.
     pub fn joined_at(&self) -> Option<u8> {
@@ -297,18 +309,18 @@ impl Phase {
     }
 
     /// Displacement and velocity at this time since the release.
-    pub fn at(&self, time: f64) -> (f64, f64) {
-        self.form.at(time - self.clock)
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
+        self.form.phase_point_at(time - self.clock)
     }
 
-    /// The formula as people write it, six significant digits (nine for the centre of the contact,
+    /// The formula in the usual form, six significant digits (nine for the centre of the contact,
     /// so that the depth has six), without terms too small to write ([`Form::felt_terms`]): t1 is
     /// the start of the contact, t2 its end, t3 that of the return.
     pub fn closed_form(&self) -> String {
         self.closed_form_of(Symbol::new("x"))
     }
 
-    /// The same for another letter of the coordinate.
+    /// The closed form with another letter for the coordinate.
     pub fn closed_form_of(&self, coordinate: Symbol) -> String {
         let clock = match self.joined_at() {
             Some(join) => format!("(t - t{join})"),
@@ -335,9 +347,11 @@ impl Phase {
             Form::Harmonics { .. } | Form::Contact { .. } => {
                 let written =
                     self.form.felt_terms().into_iter().map(|(function, value)| match function {
-                        Term::Constant => significant(value, 9),
-                        Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
-                        Term::Wave { function, frequency } => format!(
+                        TimeFunction::Constant => significant(value, 9),
+                        TimeFunction::Parabola => {
+                            format!("{} {clock} (t2 - t)", significant(value, 6))
+                        }
+                        TimeFunction::Wave { function, frequency } => format!(
                             "{} {function}({} {clock})",
                             significant(value, 6),
                             significant(frequency, 6)
@@ -358,15 +372,15 @@ fn signed_term(value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::{Design, elastic_force};
-    use crate::numeric::ode::{Event, Options, State, integrate};
+    use crate::impact::hertz::{StiffnessDesign, elastic_force};
+    use crate::numeric::ode::{Event, IntegrationOptions, State, integrate};
     use proptest::prelude::*;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
 
     /// The paper's swing, A = 1.5 and x_c = 0.323, at this stiffness.
-    fn paper(stiffness: f64) -> Swing<'static> {
-        Swing {
+    fn paper(stiffness: f64) -> ImpactProblem<'static> {
+        ImpactProblem {
             amplitude: 1.5,
             barrier: 0.323,
             stiffness,
@@ -384,9 +398,11 @@ mod tests {
 
     #[test]
     fn the_swing_of_the_paper() {
-        let motion =
-            three_phases(&paper(Design::default().stiffness().unwrap()), ContactSpeed::Paper)
-                .unwrap();
+        let motion = three_phases(
+            &paper(StiffnessDesign::default().stiffness().unwrap()),
+            ContactSpeed::Paper,
+        )
+        .unwrap();
         let Form::Cosine { frequency, phase, .. } = motion.phases[2].form else {
             panic!("return is a cosine")
         };
@@ -408,7 +424,7 @@ mod tests {
         near(motion.fitted.unwrap().depth, 1.3909e-3, 5e-8);
         // The cubic restoring force of equation (11).
         near(
-            Swing { restoring_force: &|x| x - x * x * x / 6.0, ..paper(3.0407e7) }
+            ImpactProblem { restoring_force: &|x| x - x * x * x / 6.0, ..paper(3.0407e7) }
                 .collision()
                 .contact_speed()
                 .unwrap(),
@@ -423,18 +439,19 @@ mod tests {
             [(0.323, 3.0407e7), (0.0, 1e6), (-0.9, 1e4), (1.4, 1e9), (0.323, 1.0)]
         {
             let motion =
-                three_phases(&Swing { barrier, ..paper(stiffness) }, ContactSpeed::Paper).unwrap();
+                three_phases(&ImpactProblem { barrier, ..paper(stiffness) }, ContactSpeed::Paper)
+                    .unwrap();
             let [approach, contact, back] = &motion.phases;
             for (left, right) in [(approach, contact), (contact, back)] {
-                let before = left.form.at(left.end - left.start);
-                let after = right.form.at(0.0);
+                let before = left.form.phase_point_at(left.end - left.start);
+                let after = right.form.phase_point_at(0.0);
                 near(before.0, barrier, 1e-14);
                 near(after.0, barrier, 1e-14);
                 near(before.1, after.1, 2e-12);
             }
-            near(back.form.at(0.0).1, -motion.speed, 1e-14);
-            near(back.form.at(back.end - back.start).0, -1.5, 1e-14);
-            near(back.form.at(back.end - back.start).1, 0.0, 1e-14);
+            near(back.form.phase_point_at(0.0).1, -motion.speed, 1e-14);
+            near(back.form.phase_point_at(back.end - back.start).0, -1.5, 1e-14);
+            near(back.form.phase_point_at(back.end - back.start).1, 0.0, 1e-14);
             near(motion.period, 2.0 * approach.end + motion.duration, 1e-14);
         }
     }
@@ -446,12 +463,12 @@ mod tests {
             (-0.5, 1e3, Rule::EqualEnergy),
             (0.9, 30.0, Rule::LeastSquares),
         ] {
-            let swing = Swing { barrier, rule, ..paper(stiffness) };
+            let swing = ImpactProblem { barrier, rule, ..paper(stiffness) };
             let motion = three_phases(&swing, ContactSpeed::Energy).unwrap();
             let (p, q) =
                 (motion.fitted.unwrap().line.slope, motion.fitted.unwrap().line.q(barrier));
             let contact = &motion.phases[1];
-            let options = Options::with_tolerance(1e-13);
+            let options = IntegrationOptions::with_tolerance(1e-13);
             let start = State { t: contact.start, x: barrier, v: motion.speed };
             let events = [
                 Event::record(|_, _, v| v).falling(),
@@ -464,7 +481,7 @@ mod tests {
             near(path.end().v, -motion.speed, 1e-10);
             near(path.occurrences()[0].state.x - barrier, motion.penetration, 1e-11);
             for state in path.samples(50) {
-                let (x, v) = contact.form.at(state.t - contact.start);
+                let (x, v) = contact.form.phase_point_at(state.t - contact.start);
                 near(x, state.x, 1e-11);
                 near(v, state.v, 1e-8);
             }
@@ -522,44 +539,45 @@ mod tests {
         let middle = 0.5 * (contact.end - contact.start);
         let (centre, cosine, frequency, sine) = (numbers[0], numbers[1], numbers[2], numbers[3]);
         let x = centre + cosine * (frequency * middle).cos() + sine * (frequency * middle).sin();
-        near(x, contact.form.at(middle).0, 2e-8);
+        near(x, contact.form.phase_point_at(middle).0, 2e-8);
     }
 
     #[test]
     fn what_cannot_be_is_refused_with_a_way_on() {
-        let refuse = |swing: Swing| three_phases(&swing, ContactSpeed::Energy).unwrap_err();
+        let refuse = |swing: ImpactProblem| three_phases(&swing, ContactSpeed::Energy).unwrap_err();
         let usual = paper(1e6);
         for barrier in [1.5, 2.0] {
-            let refused = refuse(Swing { barrier, ..usual });
+            let refused = refuse(ImpactProblem { barrier, ..usual });
             assert!(
                 refused.to_string().starts_with("the pendulum never reaches the barrier"),
                 "{refused}"
             );
         }
         assert!(matches!(
-            refuse(Swing { barrier: -1.5, ..usual }),
+            refuse(ImpactProblem { barrier: -1.5, ..usual }),
             ImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(
-            refuse(Swing { barrier: f64::NAN, ..usual }),
+            refuse(ImpactProblem { barrier: f64::NAN, ..usual }),
             ImpactError::Collision(CollisionError::Barrier(_))
         ));
         for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
-                refuse(Swing { stiffness, ..usual }),
+                refuse(ImpactProblem { stiffness, ..usual }),
                 ImpactError::Collision(CollisionError::Stiffness(_))
             ));
         }
         for amplitude in [0.0, -1.5, f64::INFINITY] {
             assert!(matches!(
-                refuse(Swing { amplitude, ..usual }),
+                refuse(ImpactProblem { amplitude, ..usual }),
                 ImpactError::Collision(CollisionError::Amplitude(_))
             ));
         }
-        let beyond = refuse(Swing { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
+        let beyond =
+            refuse(ImpactProblem { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
         assert!(beyond.to_string().contains("omega^2 = -0.125 at A = 3"), "{beyond}");
         for amplitude in [std::f64::consts::PI, 3.5] {
-            let outside = refuse(Swing { amplitude, ..usual });
+            let outside = refuse(ImpactProblem { amplitude, ..usual });
             assert!(
                 matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
                 "{outside}"
@@ -567,7 +585,7 @@ mod tests {
         }
         // A hill on the way: V = cos(3 x)-like, higher in the middle than at the release.
         let hill = |x: f64| -(3.0 * x).sin();
-        let outside = refuse(Swing { restoring_force: &hill, amplitude: 0.9, ..usual });
+        let outside = refuse(ImpactProblem { restoring_force: &hill, amplitude: 0.9, ..usual });
         assert!(
             matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
             "{outside}"
@@ -586,7 +604,7 @@ mod tests {
         fn energy_is_kept_within_each_phase(
             amplitude in 0.1..2.5_f64, part in -0.9..0.9_f64, gamma_power in 0.0..10.0_f64, time in 0.0..1.0_f64
         ) {
-            let swing = Swing {
+            let swing = ImpactProblem {
                 amplitude,
                 barrier: part * amplitude,
                 frequency_squared: 1.0 - amplitude * amplitude / 8.0,
@@ -596,14 +614,14 @@ mod tests {
             prop_assert!(motion.penetration > 0.0 && motion.duration > 0.0);
             for phase in &motion.phases {
                 let elapsed = time * (phase.end - phase.start);
-                let (x, v) = phase.form.at(elapsed);
+                let (x, v) = phase.form.phase_point_at(elapsed);
                 let (stiffness, centre) = match phase.form {
                     Form::Cosine { frequency, .. } => (frequency * frequency, 0.0),
                     Form::Oscillation { frequency, centre, .. } => (frequency * frequency, centre),
                     Form::Harmonics { .. } | Form::Contact { .. } => panic!("one wave a phase"),
                 };
                 let energy = |x: f64, v: f64| v * v + stiffness * (x - centre).powi(2);
-                let (x0, v0) = phase.form.at(0.0);
+                let (x0, v0) = phase.form.phase_point_at(0.0);
                 prop_assert!((energy(x, v) / energy(x0, v0) - 1.0).abs() < 1e-9);
             }
         }

@@ -1,4 +1,4 @@
-//! What an impact is asked with: a swing, a barrier in its way, and which closed forms.
+//! The problem of one impact: a swing, a barrier in its way, and the closed forms asked for.
 //!
 //! In: an equation of the swing with the values of its parameters, a release, a barrier and the law
 //! of its force. Out: the equation that is judged,
@@ -23,7 +23,7 @@ use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
 use super::units::Units;
-use crate::conservative::Force;
+use crate::conservative::CentredForce;
 use crate::conservative::force::NearRest;
 use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
@@ -50,11 +50,11 @@ pub struct Setup {
     pub release: f64,
     /// Position x_c of the barrier, in the unit of x.
     pub barrier: f64,
-    /// On which side of x_c the barrier is.
+    /// The side of x_c on which the barrier is.
     pub side: Side,
     /// Stiffness gamma of the barrier, positive; dimensionless for a pendulum in units of 1/omega.
     pub stiffness: f64,
-    /// Where gamma comes from, in words.
+    /// The source of gamma, in words.
     pub stiffness_source: String,
     /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is
     /// dimensionless alone.
@@ -62,22 +62,23 @@ pub struct Setup {
     /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma`
     /// among them; without it that of Hertz, `gamma*d^(3/2)`.
     pub force: Option<Expr>,
-    /// Who derives the swing of the derived column; without it the first of a few that passes.
+    /// The method that derives the swing of the derived column; if `None`, the first of a few that
+    /// passes.
     pub method: Option<Method>,
     /// Order of the law; without it 2 for the paper's reading, and for the derived column the
     /// lowest that passes.
     pub order: Option<u32>,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
-    /// What the amplitude of the derived law measures.
+    /// The definition of the amplitude of the derived law.
     pub amplitude_convention: Option<AmplitudeConvention>,
-    /// How the line is fitted in the paper's reading.
+    /// The rule of the line in the paper's version.
     pub rule: Rule,
     /// The law of the contact in the derived column; without say where `loss` is given.
     pub contact_law: ContactLaw,
     /// Whether every law of the contact is to stand in a table.
     pub every_contact_law: bool,
-    /// What the contact loses: then the derived column's is that of Hunt and Crossley.
+    /// The loss in the contact: with it the derived column is that of Hunt and Crossley.
     pub loss: Option<ContactLoss>,
     /// The relative error up to which a closed form passes.
     pub tolerance: f64,
@@ -87,7 +88,7 @@ pub struct Setup {
     pub step_limit: u32,
 }
 
-/// What a contact loses, by the law of Hunt and Crossley.
+/// The loss in a contact, by the law of Hunt and Crossley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactLoss {
     /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).
@@ -128,7 +129,7 @@ impl Default for Setup {
 
 /// The letters of an equation with a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Letters {
+pub struct ImpactSymbols {
     /// The coordinate.
     pub coordinate: Symbol,
     /// The place of the barrier: `xc`.
@@ -142,7 +143,7 @@ pub struct Letters {
 }
 
 /// The equations of an impact, and their forces as functions.
-pub(super) struct Equations {
+pub(super) struct ImpactEquations {
     /// The swing alone, as methods are asked: with numbers in it where its equilibrium needs them.
     pub(super) swing: Oscillator,
     /// The values of its parameters.
@@ -150,7 +151,7 @@ pub(super) struct Equations {
     /// x_e in numbers; zero where there is none.
     pub(super) equilibrium: f64,
     /// The letters.
-    pub(super) letters: Letters,
+    pub(super) letters: ImpactSymbols,
     /// The equation that is judged.
     pub(super) judged: String,
     /// The stiffness that multiplies the elastic force: gamma, or one where the force was given
@@ -171,7 +172,7 @@ struct NearTouch {
     root: u32,
 }
 
-/// The power of a symbol among the factors of a term; `None` where it stands elsewhere in them.
+/// The power of a symbol among the factors of a term; `None` if it stands elsewhere in them.
 fn power_of(symbol: Symbol, term: &Expr) -> Option<Rational> {
     let mut power = Rational::default();
     for factor in term.factors().1 {
@@ -190,7 +191,7 @@ impl NearTouch {
     /// is typed.
     const HIGHEST_ROOT: u32 = 12;
 
-    /// The polynomial of this force of the depth; `None` where the force keeps its digits, does not
+    /// The polynomial of this force of the depth; `None` if the force keeps its digits, does not
     /// vanish at the touch, or is not analytic in a root of the depth.
     fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
         /// A depth below all that matter: digits that are there at this one are there everywhere.
@@ -223,7 +224,7 @@ impl NearTouch {
             _ => part.with_children(children),
         });
         let numbers = BTreeMap::from([stiffness]);
-        let force = Force::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
+        let force = CentredForce::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
         Some(Self { polynomial: force.polynomial_near_rest()?.clone(), root })
     }
 
@@ -236,7 +237,7 @@ impl NearTouch {
     }
 }
 
-impl Equations {
+impl ImpactEquations {
     /// f(x).
     pub(super) fn restoring_force(&self, x: f64) -> f64 {
         self.forces[0].call(&[x, self.gamma])
@@ -256,11 +257,11 @@ impl Equations {
 
 impl Setup {
     /// The letters, none of which the swing or the force of the barrier uses for something else.
-    fn letters(&self, swing: &Oscillator) -> Letters {
+    fn letters(&self, swing: &Oscillator) -> ImpactSymbols {
         let x = swing.coordinate;
         let mut taken = swing.parameters.clone();
         taken.extend(self.force.iter().flat_map(|force| force.symbols()));
-        Letters {
+        ImpactSymbols {
             coordinate: x,
             barrier: fresh(&format!("{x}c"), &swing.parameters),
             stiffness: fresh("gamma", &swing.parameters),
@@ -273,7 +274,7 @@ impl Setup {
     fn judged(
         &self,
         swing: &Oscillator,
-        letters: Letters,
+        letters: ImpactSymbols,
         written: &Expr,
     ) -> Result<Equation, ExprError> {
         let x = letters.coordinate;
@@ -299,7 +300,7 @@ impl Setup {
     /// # Errors
     /// A swing that is none or whose force depends on more than the position; a parameter without a
     /// value.
-    pub(super) fn equations(&self) -> Result<Equations, ImpactError> {
+    pub(super) fn equations(&self) -> Result<ImpactEquations, ImpactError> {
         let swing = match &self.swing {
             Some(swing) => swing.clone(),
             None => Oscillator::parse(FREE_SWING)?,
@@ -378,7 +379,7 @@ impl Setup {
             swing_alone.check_digits(&BTreeMap::from([(x, place)]), &[x])?;
         }
         let elastic = Expr::divide(&per_unit, &mass)?;
-        Ok(Equations {
+        Ok(ImpactEquations {
             equilibrium,
             forces: [
                 function(&swing.force, x)?,

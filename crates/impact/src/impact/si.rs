@@ -5,7 +5,7 @@
 //! depth, also where a line stood for it; of a damped contact the greatest there is, which comes
 //! before.
 
-use super::closed_form::{Impact, Quantity};
+use super::closed_form::{Impact, ImpactQuantity};
 use super::contact::hunt_crossley;
 use super::hertz;
 use super::units::{FIRST_YIELD, Units};
@@ -18,24 +18,24 @@ pub struct SiImpact {
     pub units: Units,
     /// The stiffness k of the contact, N/m^(3/2).
     pub contact_stiffness: f64,
-    /// From the release to the touch, s.
-    pub time_to_contact: Quantity,
+    /// Time from the release to the touch, s.
+    pub time_to_contact: ImpactQuantity,
     /// The speed at the touch, m/s.
-    pub speed: Quantity,
+    pub speed: ImpactQuantity,
     /// The kinetic energy at the touch, J.
-    pub energy: Quantity,
+    pub energy: ImpactQuantity,
     /// The greatest depth, m.
-    pub penetration: Quantity,
-    /// From the touch to the release from the barrier, s.
-    pub duration: Quantity,
-    /// From release to release, s.
-    pub period: Quantity,
+    pub penetration: ImpactQuantity,
+    /// Duration of the contact, s.
+    pub duration: ImpactQuantity,
+    /// Period from release to release, s.
+    pub period: ImpactQuantity,
     /// The greatest force of the contact, its damping included, N; without damping that at the
     /// greatest depth.
-    pub peak_force: Quantity,
-    /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is
-    /// not known.
-    pub peak_pressure: Option<Quantity>,
+    pub peak_force: ImpactQuantity,
+    /// The pressure of Hertz in its middle at the greatest depth, Pa; `None` if the radius is not
+    /// known.
+    pub peak_pressure: Option<ImpactQuantity>,
 }
 
 /// A stated yield limit beside the pressure of the true motion.
@@ -59,8 +59,8 @@ impl YieldCheck {
 }
 
 impl Impact {
-    /// The same numbers in SI units; nothing where no units are known, or where a number is beyond
-    /// the range of doubles.
+    /// The numbers in SI units; `None` if no units are known, or if a number is beyond the range of
+    /// doubles.
     pub fn si(&self) -> Option<SiImpact> {
         let units = self.setup.units?;
         let gamma = self.setup.stiffness;
@@ -85,7 +85,7 @@ impl Impact {
             period: converted("period", &period, time),
             peak_force: match self.setup.loss {
                 None => converted("peak force", &penetration, force),
-                Some(_) => Quantity {
+                Some(_) => ImpactQuantity {
                     name: "peak force",
                     runge_kutta: units.force() * self.greatest_force(),
                     closed_forms: speed
@@ -111,7 +111,7 @@ impl Impact {
     /// The greatest force of the true contact, its damping included, per unit of mass.
     fn greatest_force(&self) -> f64 {
         let contact = &self.truth.contact;
-        let force = |t: f64| match contact.at(t) {
+        let force = |t: f64| match contact.phase_point_at(t) {
             Some((depth, speed)) => {
                 hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth)
             }
@@ -122,8 +122,12 @@ impl Impact {
 }
 
 /// A number of every reading, converted.
-fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f64) -> Quantity {
-    Quantity {
+fn converted(
+    name: &'static str,
+    quantity: &ImpactQuantity,
+    convert: impl Fn(f64) -> f64,
+) -> ImpactQuantity {
+    ImpactQuantity {
         name,
         runge_kutta: convert(quantity.runge_kutta),
         closed_forms: quantity.closed_forms.iter().map(|value| convert(*value)).collect(),
@@ -132,7 +136,7 @@ fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f
 
 impl SiImpact {
     /// Every number with its unit.
-    pub fn rows(&self) -> Vec<(&Quantity, &'static str)> {
+    pub fn rows(&self) -> Vec<(&ImpactQuantity, &'static str)> {
         let rows = [
             (&self.time_to_contact, "s"),
             (&self.speed, "m/s"),

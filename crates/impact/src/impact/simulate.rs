@@ -18,19 +18,19 @@ use thiserror::Error;
 
 use super::chain::{ChainError, chain};
 use super::model::{Model, ModelError, Start};
-use super::simulation::{Integrator, Settings, Simulation, Stop, size};
+use super::simulation::{Integrator, Settings, Simulation, SimulationStop, size};
 use super::{judge, taylor};
 use crate::numeric::ode::IntegrationError;
 use crate::trajectory::DISPLACEMENT;
 
-/// Why a simulation cannot begin.
+/// The reason why a simulation cannot begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {
     /// The model or the start.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A duration that is no positive number.
+    /// A duration that is not a positive number.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
     /// A motion so small that the force of a barrier cannot be told from zero.
@@ -80,16 +80,16 @@ pub fn simulate(
 ) -> Result<Simulation, SimulationError> {
     check(model, start, settings)?;
     match integrator {
-        Integrator::Taylor => Ok(taylor::alone(*model, start, *settings)),
+        Integrator::Taylor => Ok(taylor::simulate_one(*model, start, *settings)),
         Integrator::RungeKutta => Ok(judge::follow(model, start, settings)?),
         Integrator::Chain => Ok(chain(model, start, settings)?),
     }
 }
 
 /// The time until which a motion with a moving pivot is known to six digits of its size, one of two
-/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
-/// where it is known to the end, where the pivot is at rest, whose motions are regular, or without
-/// a path. Costs as much as the motion.
+/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None` if
+/// it is known to the end, where the pivot is at rest, whose motions are regular, or without a
+/// path. Costs as much as the motion.
 ///
 /// ```text
 /// errors of the integration grow as the displacement does: six digits are lost where it has grown 1e-6/tolerance times
@@ -107,7 +107,7 @@ pub fn simulate(
 pub fn known_until(motion: &Simulation) -> Option<f64> {
     const SIX_DIGITS: f64 = 1e-6;
     const LOOKS: usize = 2000;
-    if motion.model.beta == 0.0 || matches!(motion.stop, Stop::Interrupted { .. }) {
+    if motion.model.beta == 0.0 || matches!(motion.stop, SimulationStop::Interrupted { .. }) {
         return None;
     }
     let displaced =
@@ -117,7 +117,7 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     let until = motion.end_time.min(other.end_time);
     let places = (0..=LOOKS).filter_map(|look| {
         let time = until * look as f64 / LOOKS as f64;
-        Some((time, motion.path.at(time)?.0, other.path.at(time)?.0))
+        Some((time, motion.path.phase_point_at(time)?.0, other.path.phase_point_at(time)?.0))
     });
     let places: Vec<(f64, f64, f64)> = places.collect();
     let size = places.iter().fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));

@@ -26,8 +26,8 @@ pub use axis::{Axis, AxisError, Spacing};
 
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate, simulate_many};
-use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
-use crate::parallel::each;
+use super::simulation::{ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop};
+use crate::parallel::par_map;
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -40,7 +40,7 @@ const CHUNK: usize = 96;
 #[error(
     "the sweep has {counts} = {product} motions, more than {MOST_MOTIONS} motions: lower the counts"
 )]
-pub struct TooMany {
+pub struct TooManyRuns {
     /// The numbers of values, `2000 * 2000`.
     pub counts: String,
     /// Their product.
@@ -50,7 +50,7 @@ pub struct TooMany {
 /// The number of motions of a grid: the product of the numbers of values.
 ///
 /// # Errors
-/// [`TooMany`], beyond [`MOST_MOTIONS`].
+/// [`TooManyRuns`], beyond [`MOST_MOTIONS`].
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -60,7 +60,7 @@ pub struct TooMany {
 /// assert_eq!(grid_size(&axes), Ok(6000));
 /// # Ok::<(), lindstedt::impact::sweep::AxisError>(())
 /// ```
-pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
+pub fn grid_size(axes: &[Axis]) -> Result<usize, TooManyRuns> {
     let counts = axes.iter().map(|axis| axis.values().len());
     let product = counts.clone().try_fold(1_usize, usize::checked_mul);
     product.filter(|product| *product <= MOST_MOTIONS).ok_or_else(|| {
@@ -72,7 +72,7 @@ pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
                 axes.iter().map(|axis| axis.values().len() as f64).product::<f64>()
             ),
         };
-        TooMany { counts: counts.join(" * "), product }
+        TooManyRuns { counts: counts.join(" * "), product }
     })
 }
 
@@ -99,13 +99,13 @@ pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
     values
 }
 
-/// What came of one motion.
+/// The summary of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
-    /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did
-    /// not.
+    /// The time at which the envelope fell to a tenth of the first swing, in units of 1/omega; or
+    /// why it did not.
     pub rest_time: Result<f64, NoRest>,
     /// The rest times of the same swing without a barrier and with a lossless one, where they were
     /// asked for.
@@ -122,20 +122,20 @@ pub struct Summary {
     pub end_x: f64,
     /// Velocity there, rad times omega.
     pub end_velocity: f64,
-    /// Why it ended.
-    pub stop: Stop,
+    /// The reason why it ended.
+    pub stop: SimulationStop,
 }
 
 impl Summary {
     /// Whether the motion was begun before all were asked to end.
     pub fn is_begun(&self) -> bool {
-        !matches!(self.stop, Stop::Interrupted { t } if t == 0.0)
+        !matches!(self.stop, SimulationStop::Interrupted { t } if t == 0.0)
     }
 
-    /// What there is to say of a motion.
-    pub fn of(motion: &Simulation) -> Self {
+    /// Summarises a motion.
+    pub fn from_motion(motion: &Simulation) -> Self {
         let largest =
-            |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
+            |value: fn(&ContactRecord) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
             impacts: motion.impacts.len(),
             rest_time: motion.rest().time,
@@ -157,7 +157,7 @@ impl Summary {
 }
 
 /// Follows every motion, on all threads of the current pool (on one without the feature
-/// `parallel`); `progress` hears how many more are done.
+/// `parallel`); `progress` is called with the number of motions that are newly done.
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.
@@ -188,13 +188,13 @@ pub fn sweep(
     };
     let chunks: Vec<_> = motions.chunks(CHUNK).enumerate().collect();
     let mut summaries = Vec::with_capacity(motions.len());
-    for part in each(&chunks, run) {
+    for part in par_map(&chunks, run) {
         summaries.extend(part?);
     }
     Ok(summaries)
 }
 
-/// From motions to what came of each: by Taylor series several in one instruction stream.
+/// Summarises motions: by Taylor series several in one instruction stream.
 fn summaries(
     motions: &[(Model, Start)],
     integrator: Integrator,
@@ -202,16 +202,16 @@ fn summaries(
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
     if integrator == Integrator::Taylor {
         let runs = simulate_many(motions, settings)?;
-        return Ok(runs.iter().map(Summary::of).collect());
+        return Ok(runs.iter().map(Summary::from_motion).collect());
     }
     let one = |(number, (model, start)): (usize, &(Model, Start))| {
         let run = simulate(model, *start, integrator, settings).map_err(|error| (number, error))?;
-        Ok(Summary::of(&run))
+        Ok(Summary::from_motion(&run))
     };
     motions.iter().enumerate().map(one).collect()
 }
 
-/// The same on so many threads.
+/// The sweep on this number of threads.
 ///
 /// # Errors
 /// As [`sweep`].

@@ -13,10 +13,10 @@ use super::derived::{DerivedContact, Flight, phases_of};
 use super::error::ImpactError;
 use super::judge::{Deviation, TrueImpact, assured_impact, deviation};
 use super::phases::ThreePhases;
-use super::setup::{ContactLoss, Equations, Setup};
+use super::setup::{ContactLoss, ImpactEquations, Setup};
 use crate::method;
-use crate::method::table::{Choice, Entry};
-use crate::numeric::ode::Options;
+use crate::method::table::{Choice, MethodEntry};
+use crate::numeric::ode::IntegrationOptions;
 use crate::solution::{Counts, Degrees, Method, Solution};
 
 /// A method that was tried for the derived column.
@@ -37,11 +37,11 @@ pub struct Attempt {
 /// The question of an impact with its true motion.
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
-    pub(super) equations: &'a Equations,
-    /// Where the cycle starts, in x: the release, or the turning point of a motion released inside
+    pub(super) equations: &'a ImpactEquations,
+    /// The start of the cycle, in x: the release, or the turning point of a motion released inside
     /// the barrier.
     pub(super) turning_point: f64,
-    /// What is judged, in z.
+    /// The collision, in z.
     pub(super) collision: Collision<'a>,
     pub(super) truth: TrueImpact,
     /// The speed at the touch from the energy.
@@ -60,7 +60,7 @@ pub(super) struct Derived {
     error: f64,
 }
 
-/// What a method is asked for: an order, or degrees.
+/// An order or degrees of a method.
 type Rung = (Option<u32>, Option<Degrees>);
 
 /// The highest order of a method that is tried where none is asked for: expansions and balances go
@@ -74,7 +74,7 @@ fn highest_order(method: Method) -> u32 {
     }
 }
 
-/// So many orders in a row that are no closer end the search.
+/// Number of consecutive orders without progress that end the search.
 const PATIENCE: usize = 4;
 
 impl Trial<'_> {
@@ -123,9 +123,9 @@ impl Trial<'_> {
             return Err(ImpactError::NoPower { force: force.to_string() });
         }
         let collision = Collision { damping, ..collision };
-        let options = Options {
+        let options = IntegrationOptions {
             maximum_steps: setup.step_limit as usize,
-            ..Options::with_tolerance(setup.integrator_tolerance)
+            ..IntegrationOptions::with_tolerance(setup.integrator_tolerance)
         };
         let truth = assured_impact(&collision, &options).map_err(|error| match error {
             ImpactError::Collision(error) => seen(error).into(),
@@ -157,9 +157,9 @@ impl Trial<'_> {
         let mut tried: Vec<Attempt> = Vec::new();
         let mut best: Option<Derived> = None;
         for &method in methods {
-            let (found, attempts) = self.climb(method);
+            let (found, attempts) = self.raise_order(method);
             tried.extend(attempts);
-            best = closer(best, found);
+            best = with_smaller_error(best, found);
             if best.as_ref().is_some_and(|best| best.error <= self.setup.tolerance) {
                 break;
             }
@@ -169,11 +169,11 @@ impl Trial<'_> {
 
     /// The derived phases of a method: at the order asked for, or at the lowest that passes, else
     /// at the best.
-    fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
+    fn raise_order(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
-        let takes = |choice| Entry::of(method).takes(choice);
+        let takes = |choice| MethodEntry::for_method(method).takes(choice);
         let same = |n| match method.counts() {
-            Counts::Degrees(count) => Degrees::of(&vec![n; count]),
+            Counts::Degrees(count) => Degrees::from_list(&vec![n; count]),
             _ => None,
         };
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
@@ -211,7 +211,7 @@ impl Trial<'_> {
                 continue;
             }
             last = solution.cloned();
-            // What refuses an order refuses those above it; the first may be too low.
+            // A method that refuses an order refuses those above it; the first may be too low.
             let refused = matches!(flight, Err(ImpactError::Refusal(_)))
                 && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
@@ -227,7 +227,7 @@ impl Trial<'_> {
                     .map(|found| found.error)
                     .map_err(|reason| reason.without_title(method)),
             });
-            best = closer(best, found.ok());
+            best = with_smaller_error(best, found.ok());
             // Orders that bring nothing closer for long: an expansion beyond its radius.
             let error = |attempt: &Attempt| attempt.error.clone().unwrap_or(f64::INFINITY);
             let stalls = tried.len() > PATIENCE && {
@@ -257,7 +257,7 @@ impl Trial<'_> {
         // by its flight.
         let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
         let numbers = self.number_errors(&phases);
-        // What misses a number is not followed through its phases.
+        // A motion with a wrong number is not compared phase by phase.
         let numbers = worst(if is_exact { &numbers } else { &numbers[..2] });
         let error = match (numbers <= self.setup.tolerance, is_exact) {
             (true, true) => worst(&self.errors(&phases)),
@@ -271,7 +271,9 @@ impl Trial<'_> {
     fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
         let touch = self.touch(speed);
         match self.setup.loss {
-            None => Ok(DerivedContact::Elastic(Box::new(touch.by(self.setup.contact_law)?))),
+            None => {
+                Ok(DerivedContact::Elastic(Box::new(touch.contact_by(self.setup.contact_law)?)))
+            }
             Some(_) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
@@ -282,7 +284,7 @@ impl Trial<'_> {
         }
     }
 
-    /// What meets at this speed.
+    /// The contact problem at this speed.
     fn touch(&self, speed: f64) -> Touch<'_> {
         let Collision { barrier, stiffness, restoring_force, elastic_force, .. } = self.collision;
         Touch {
@@ -330,15 +332,15 @@ impl Trial<'_> {
     }
 }
 
-/// That of two with the smaller error.
-fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
+/// The one with the smaller error.
+fn with_smaller_error(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
     match (one, other) {
         (Some(one), Some(other)) if other.error < one.error => Some(other),
         (one, other) => one.or(other),
     }
 }
 
-/// The largest of them in size; what is no number is the largest.
+/// The largest of them in size; what is not a number is the largest.
 pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
     errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
         true => f64::INFINITY,

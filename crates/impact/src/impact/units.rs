@@ -14,8 +14,8 @@
 //!    = (6 F E^2 / (pi^3 R^2))^(1/3)                                           the same, with the E of k
 //! ```
 //!
-//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu
-//! = 0.3 begin to yield, below the middle of the contact, where p0 reaches 1.6 times the yield limit
+//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu =
+//! 0.3 begin to yield, below the middle of the contact, where p0 reaches 1.6 times the yield limit
 //! Y of the softer one: above that the law of Hertz no longer holds (K. L. Johnson, *Contact
 //! Mechanics*, 1985, chapters 4 and 6).
 
@@ -44,11 +44,11 @@ impl Elastic {
 /// The modulus E of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Modulus {
-    /// That of the barrier alone, Pa, as in the paper's equation (3).
+    /// The modulus of the barrier alone, Pa, as in the paper's equation (3).
     BarrierAlone(f64),
-    /// That of an elastic barrier under a rigid sphere, E1/(1 - nu1^2).
+    /// The modulus of an elastic barrier under a rigid sphere, E1/(1 - nu1^2).
     RigidSphere(Elastic),
-    /// That of two elastic bodies.
+    /// The modulus of two elastic bodies.
     Both {
         /// The barrier, E1 and nu1.
         barrier: Elastic,
@@ -88,7 +88,7 @@ pub struct Units {
     pub gravity: f64,
     /// Radius of the sphere, m; without it no pressure is known.
     pub radius: Option<f64>,
-    /// The modulus that gamma follows from; nothing where gamma is given.
+    /// The modulus that gamma follows from; `None` if gamma is given.
     pub modulus: Option<Modulus>,
     /// Yield limit of the sphere, Pa, where one is stated.
     pub sphere_yield: Option<f64>,
@@ -123,7 +123,7 @@ impl Units {
     }
 
     /// The pressure p0 = 3 F/(2 pi R d) in the middle of a contact, Pa, by its force in N and its
-    /// depth in m; nothing without a radius.
+    /// depth in m; `None` without a radius.
     pub fn pressure(&self, force: f64, depth: f64) -> Option<f64> {
         Some(1.5 * force / (PI * self.radius? * depth))
     }
@@ -138,7 +138,7 @@ impl Units {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::{self, Design};
+    use crate::impact::hertz::{self, StiffnessDesign};
 
     #[test]
     fn the_equivalent_modulus_at_its_limits() {
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn force_and_pressure_are_those_of_hertz() {
-        let design = Design::default();
+        let design = StiffnessDesign::default();
         let gamma = design.stiffness().unwrap();
         let units = Units {
             mass: design.mass,

@@ -1,4 +1,4 @@
-//! What decides the best design: found by moving every variable alone, by designs drawn around it,
+//! The limits of the best design: found by moving every variable alone, by designs drawn around it,
 //! and by the unit of the rest time.
 //!
 //! ```text
@@ -16,24 +16,24 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
-use super::question::Question;
+use super::question::OptimizationProblem;
 use crate::genetic::{Space, generator};
 use crate::impact::Parameter;
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 
 /// A design this much worse, in parts, is as good for an engineer.
 pub const WITHIN: f64 = 0.01;
 
-/// What a variable has to do with the best design.
+/// The role of a variable in the best design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum VariableRole {
     /// Its whole range is as good.
     Flat,
-    /// It lies at its lower limit.
+    /// The variable lies at its lower limit.
     Lower,
-    /// It lies at its upper limit.
+    /// The variable lies at its upper limit.
     Upper,
     /// A constraint stops it.
     Limit,
@@ -41,7 +41,7 @@ pub enum Role {
     Trade,
 }
 
-impl Role {
+impl VariableRole {
     /// Every role.
     pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
 
@@ -57,24 +57,24 @@ impl Role {
     }
 }
 
-/// What one variable does at the best design.
+/// The effect of one variable at the best design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensitivity {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its value there.
     pub value: f64,
     /// Its limits.
     pub limits: [f64; 2],
-    /// (p/T) dT/dp of the objective T; nothing where it has no value on one side.
+    /// (p/T) dT/dp of the objective T; `None` if it has no value on one side.
     pub elasticity: Option<f64>,
     /// Between these values, the others held, the objective is no more than 1 % worse.
     pub alone: [f64; 2],
     /// The least and the greatest value of the objective on its whole range, the others held,
-    /// constraints aside; nothing where the motion does not rest somewhere.
+    /// constraints aside; `None` if the motion does not rest somewhere.
     pub range: Option<[f64; 2]>,
-    /// What follows.
-    pub role: Role,
+    /// The role that follows.
+    pub role: VariableRole,
 }
 
 /// What the unit of the rest time does.
@@ -93,7 +93,7 @@ pub struct Ends {
     pub best_lengths: [f64; 2],
 }
 
-/// What decides the best design.
+/// The factors that limit the best design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decision {
     /// The variables, in their order.
@@ -113,7 +113,7 @@ pub struct Decision {
     pub points: Vec<Vec<f64>>,
     /// The constraints that have no more than 1 % to spare.
     pub active: Vec<String>,
-    /// What the unit of the rest time does, where a rest time is the objective and the length is
+    /// The effect of the unit of the rest time, if a rest time is the objective and the length is
     /// searched.
     pub ends: Option<Ends>,
     /// The objective with every material, the best design otherwise; nothing for one that does not
@@ -135,7 +135,11 @@ const STEPS: i32 = 40;
 
 impl Decision {
     /// The sensitivities of this design, the best of its box, judged by integration.
-    pub(super) fn of(question: &Question, space: &Space, design: &Design) -> Self {
+    pub(super) fn new(
+        question: &OptimizationProblem,
+        space: &Space,
+        design: &EvaluatedDesign,
+    ) -> Self {
         let best: &[f64] = &design.point;
         let probe = Probe {
             question,
@@ -156,7 +160,7 @@ impl Decision {
         let mut near: Vec<[f64; 2]> =
             sensitivities.iter().map(|sensitivity| sensitivity.alone).collect();
         near.extend(space.bounds().iter().skip(near.len()));
-        // What is fixed at one value has no room of its own.
+        // A variable fixed at one value has no range of its own.
         for (range, [lower, upper]) in near.iter_mut().zip(space.bounds()) {
             let least = 1e-3 * (upper - lower);
             *range = [
@@ -196,9 +200,9 @@ impl Decision {
 
 /// Designs of one question, followed by closed forms.
 struct Probe<'a> {
-    question: &'a Question,
+    question: &'a OptimizationProblem,
     space: &'a Space,
-    /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold
+    /// The divisor of the number of designs: about ten for designs without closed forms, a hundred
     /// with a main mass, which has none.
     fewer: usize,
     /// The least objective so far of a design that keeps the constraints.
@@ -219,7 +223,7 @@ impl Probe<'_> {
 
     /// The objective of a point, constraints aside, and where it keeps them.
     fn judged(&self, point: &[f64]) -> [Option<f64>; 2] {
-        let evaluation = self.question.worth(point, self.least.get(), &mut 0);
+        let evaluation = self.question.bounded_evaluation(point, self.least.get(), &mut 0);
         let value = Some(evaluation.value()).filter(|value| value.is_finite());
         let kept =
             value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
@@ -227,8 +231,8 @@ impl Probe<'_> {
         [value, kept]
     }
 
-    /// The same point on the surface of the density, where there is one; nothing where that leaves
-    /// the box.
+    /// The point moved to the surface of the density, if there is one; `None` if that leaves the
+    /// box.
     fn on_surface(&self, mut point: Vec<f64>, moved: Option<usize>) -> Option<Vec<f64>> {
         let Some(density) = self.question.density else {
             return Some(point);
@@ -251,7 +255,7 @@ impl Probe<'_> {
         self.space.contains(&point).then_some(point)
     }
 
-    fn moved(&self, best: &[f64], index: usize, value: f64) -> Option<Vec<f64>> {
+    fn with_variable(&self, best: &[f64], index: usize, value: f64) -> Option<Vec<f64>> {
         let mut point = best.to_vec();
         point[index] = value;
         self.on_surface(point, Some(index))
@@ -259,7 +263,7 @@ impl Probe<'_> {
 
     /// Values from the best one to a limit, closer together near the smaller where the range has
     /// decades.
-    fn way(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+    fn values_towards(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let decades = (to / from).abs().max((from / to).abs()) > 10.0;
         let steps = if self.fewer > 1 { STEPS / 4 } else { STEPS };
         (1..=steps).map(move |step| {
@@ -277,19 +281,19 @@ impl Probe<'_> {
         let (parameter, value) = (variable.parameter, best[index]);
         let limits = [variable.lower, variable.upper];
         let good = |value: f64| {
-            let point = self.moved(best, index, value)?;
+            let point = self.with_variable(best, index, value)?;
             self.feasible(&point).filter(|objective| *objective <= level)
         };
         let reach = |limit: f64| {
             let mut last = value;
-            for next in self.way(value, limit) {
+            for next in self.values_towards(value, limit) {
                 if good(next).is_none() {
                     let halvings = if self.fewer > 1 { 12 } else { 30 };
                     let [inside, _] = bisect(
                         |value| good(value).is_some(),
                         last,
                         next,
-                        Until::Halvings(halvings),
+                        BisectionStop::Halvings(halvings),
                     );
                     return inside;
                 }
@@ -299,8 +303,8 @@ impl Probe<'_> {
         };
         let alone = limits.map(reach);
         // With a density some values are not to be had.
-        let tried = limits.into_iter().flat_map(|limit| self.way(value, limit));
-        let tried = tried.filter_map(|value| self.moved(best, index, value));
+        let tried = limits.into_iter().flat_map(|limit| self.values_towards(value, limit));
+        let tried = tried.filter_map(|value| self.with_variable(best, index, value));
         let tried: Vec<[Option<f64>; 2]> = tried.map(|point| self.judged(&point)).collect();
         let whole: Option<Vec<f64>> =
             tried.iter().map(|[value, _]| *value).chain([self.value(best)]).collect();
@@ -312,7 +316,7 @@ impl Probe<'_> {
         let least = kept.chain(self.value(best)).fold(f64::INFINITY, f64::min);
         // Whether the end is as good as anything on the way.
         let is_end = |end: usize| {
-            let point = self.moved(best, index, limits[end]);
+            let point = self.with_variable(best, index, limits[end]);
             let at_end = point.and_then(|point| self.feasible(&point));
             alone[end] == limits[end] && at_end.is_some_and(|at_end| at_end <= least * (1.0 + SAME))
         };
@@ -320,16 +324,16 @@ impl Probe<'_> {
         let is_forbidden = |end: usize| {
             let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
             alone[end] != limits[end]
-                && self.moved(best, index, beyond).is_none_or(|point| {
+                && self.with_variable(best, index, beyond).is_none_or(|point| {
                     self.value(&point).is_some_and(|objective| objective <= level)
                 })
         };
         let role = match range {
-            Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => Role::Flat,
-            _ if is_end(0) => Role::Lower,
-            _ if is_end(1) => Role::Upper,
-            _ if is_forbidden(0) || is_forbidden(1) => Role::Limit,
-            _ => Role::Trade,
+            Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => VariableRole::Flat,
+            _ if is_end(0) => VariableRole::Lower,
+            _ if is_end(1) => VariableRole::Upper,
+            _ if is_forbidden(0) || is_forbidden(1) => VariableRole::Limit,
+            _ => VariableRole::Trade,
         };
         Sensitivity {
             parameter,
@@ -342,7 +346,7 @@ impl Probe<'_> {
         }
     }
 
-    /// By motions that are integrated, one-sided at a limit.
+    /// The elasticity by integrated motions, one-sided at a limit.
     fn elasticity(&self, best: &[f64], index: usize) -> Option<f64> {
         const STEP: f64 = 0.01;
         let variable = self.question.variables[index];
@@ -353,7 +357,7 @@ impl Probe<'_> {
             (value * (1.0 + STEP)).min(variable.upper),
         ];
         let at = |end: f64| {
-            let point = self.moved(best, index, end).unwrap_or_else(|| {
+            let point = self.with_variable(best, index, end).unwrap_or_else(|| {
                 let mut point = best.to_vec();
                 point[index] = end;
                 point
@@ -366,7 +370,7 @@ impl Probe<'_> {
         Some((above / below).ln() / (ends[1] / ends[0]).ln()).filter(|slope| slope.is_finite())
     }
 
-    /// How many designs are drawn from the whole box, and from what is as good alone.
+    /// Numbers of designs drawn from the whole box, and from the ranges that are as good alone.
     fn drawn(&self) -> [usize; 2] {
         DRAWN.map(|count| count / self.fewer)
     }
@@ -403,7 +407,7 @@ impl Probe<'_> {
         }
     }
 
-    fn active(&self, best: &Design) -> Vec<String> {
+    fn active(&self, best: &EvaluatedDesign) -> Vec<String> {
         let evaluation = self.question.evaluation(best);
         let words = self.question.constraints();
         let mut active: Vec<String> = Vec::new();
@@ -443,7 +447,7 @@ impl Probe<'_> {
         let [(short, _), (long, _)] = [both(lengths[0])?, both(lengths[1])?];
         let mut least = [f64::INFINITY; 2];
         let mut best_lengths = [best[index]; 2];
-        let tried = lengths.into_iter().flat_map(|limit| self.way(best[index], limit));
+        let tried = lengths.into_iter().flat_map(|limit| self.values_towards(best[index], limit));
         for length in lengths.into_iter().chain([best[index]]).chain(tried) {
             let Some((times, true)) = both(length) else {
                 continue;

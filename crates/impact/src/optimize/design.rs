@@ -4,20 +4,20 @@
 //! damped swing, it is integrated. A pendulum that a main mass carries is followed together with
 //! it, always by integration.
 
-use super::question::Question;
+use super::question::OptimizationProblem;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
 use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    Case, Contact, Course, Integrator, Model, NoRest, Parameter, Settings, Simulation,
+    Case, ContactRecord, Integrator, Model, MotionToRest, NoRest, Parameter, Settings, Simulation,
     SimulationError, Start, Units, course, hertz, simulate,
 };
 
-/// How a design is judged.
+/// The way in which a design is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
-    /// By closed forms, and by integration where there are none.
+    /// Closed forms, and integration if there are none.
     Chain,
-    /// By integration.
+    /// Integration.
     Integration,
 }
 
@@ -28,14 +28,14 @@ pub struct HardestContact {
     pub force: f64,
     /// The pressure of Hertz at the greatest depth, Pa.
     pub pressure: f64,
-    /// The coefficient of restitution of the contact with the greatest force; `None` where it did
-    /// not begin with a touch or did not end.
+    /// The coefficient of restitution of the contact with the greatest force; `None` if it did not
+    /// begin with a touch or did not end.
     pub restitution: Option<f64>,
 }
 
 impl HardestContact {
     /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its
-    /// restitution. `None` where there is none.
+    /// restitution. `None` if there is none.
     fn from_contacts(
         model: &Model,
         units: &Units,
@@ -61,7 +61,7 @@ impl HardestContact {
 
 /// A design that was followed until it rests.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Design {
+pub struct EvaluatedDesign {
     /// The point of the box.
     pub point: Vec<f64>,
     /// The number of its material, where materials are tried.
@@ -70,13 +70,13 @@ pub struct Design {
     pub case: Case,
     /// The equation.
     pub model: Model,
-    /// What its numbers are in SI units.
+    /// The units of its numbers.
     pub units: Units,
     /// The rest time of the pendulum, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until it rests; all of them where it does not.
     pub impacts: usize,
-    /// The hardest of them; `None` where there was none, or it was not asked for.
+    /// The hardest of them; `None` if there was none, or it was not asked for.
     pub hardest: Option<HardestContact>,
     /// The rest time of the main mass, s; `None` without one.
     pub primary_rest_time: Option<Result<f64, NoRest>>,
@@ -84,7 +84,7 @@ pub struct Design {
     pub integrated: bool,
 }
 
-impl Question {
+impl OptimizationProblem {
     /// The case of a point of the box, and the number of its material.
     pub fn case_of(&self, point: &[f64]) -> (Case, Option<usize>) {
         let mut case = self.case;
@@ -120,7 +120,12 @@ impl Question {
     ///
     /// # Errors
     /// As [`simulate`](crate::impact::simulate()), and [`Case::motion`] in words.
-    pub fn follow(&self, point: &[f64], route: Route, contact: bool) -> Result<Design, String> {
+    pub fn follow(
+        &self,
+        point: &[f64],
+        route: Route,
+        contact: bool,
+    ) -> Result<EvaluatedDesign, String> {
         let (case, material) = self.case_of(point);
         let (model, start) = case.motion().map_err(|error| error.to_string())?;
         let units = Units {
@@ -134,10 +139,10 @@ impl Question {
         };
         let motion = DesignMotion { question: self, model, start, units, route, contact };
         let followed = match self.main_mass {
-            Some(main_mass) => motion.carried(&main_mass)?,
+            Some(main_mass) => motion.on_main_mass(&main_mass)?,
             None => motion.on_fixed_pivot().map_err(|error| error.to_string())?,
         };
-        Ok(Design {
+        Ok(EvaluatedDesign {
             point: point.to_vec(),
             material,
             case,
@@ -151,7 +156,7 @@ impl Question {
         })
     }
 
-    /// The default design as a point of this box, in it or not; nothing where materials are tried.
+    /// The default design as a point of this box, in it or not; `None` if materials are tried.
     pub fn default_point(&self) -> Option<Vec<f64>> {
         let usual = Case::default();
         let value = |parameter: Parameter| usual.get(parameter);
@@ -169,7 +174,7 @@ impl Question {
 
 /// The motion of a design that is to be followed.
 struct DesignMotion<'a> {
-    question: &'a Question,
+    question: &'a OptimizationProblem,
     model: Model,
     start: Start,
     units: Units,
@@ -178,7 +183,7 @@ struct DesignMotion<'a> {
 }
 
 /// The numbers of a motion that was followed.
-struct Followed {
+struct SimulatedMotion {
     rest_time: Result<f64, NoRest>,
     impacts: usize,
     hardest: Option<HardestContact>,
@@ -187,7 +192,7 @@ struct Followed {
 }
 
 impl DesignMotion<'_> {
-    fn on_fixed_pivot(&self) -> Result<Followed, SimulationError> {
+    fn on_fixed_pivot(&self) -> Result<SimulatedMotion, SimulationError> {
         let settings = Settings { stop_at_rest: true, keep_path: false, ..self.question.settings };
         let by_chain = match self.route {
             Route::Integration => None,
@@ -205,12 +210,12 @@ impl DesignMotion<'_> {
             None => {
                 let settings = Settings { keep_path: self.contact, ..settings };
                 let motion = simulate(&self.model, self.start, Integrator::Taylor, &settings)?;
-                let course = Course::from(&motion);
+                let course = MotionToRest::from(&motion);
                 let hardest = self.contact.then(|| self.hardest_of_motion(&motion, &course));
                 (course, hardest)
             }
         };
-        Ok(Followed {
+        Ok(SimulatedMotion {
             rest_time: course.rest_time,
             impacts: course.impacts.len(),
             hardest: hardest.flatten(),
@@ -220,15 +225,16 @@ impl DesignMotion<'_> {
     }
 
     /// Force and restitution of a contact in closed form: the swing's own forces are left out.
-    fn in_closed_form(&self, contact: &Contact) -> Option<(f64, f64, Option<f64>)> {
+    fn in_closed_form(&self, contact: &ContactRecord) -> Option<(f64, f64, Option<f64>)> {
         let ratio = self.model.mu / self.model.gamma;
         let force = peak_force(1.5, self.model.gamma, ratio, contact.speed_in)?;
         Some((force, contact.penetration, restitution(ratio * contact.speed_in).ok()))
     }
 
     /// The contact that is touched fastest, in closed form.
-    fn fastest_in_closed_form(&self, course: &Course) -> Option<HardestContact> {
-        let faster = |one: &&Contact, other: &&Contact| one.speed_in.total_cmp(&other.speed_in);
+    fn fastest_in_closed_form(&self, course: &MotionToRest) -> Option<HardestContact> {
+        let faster =
+            |one: &&ContactRecord, other: &&ContactRecord| one.speed_in.total_cmp(&other.speed_in);
         let fastest = course.impacts.iter().max_by(faster)?;
         let contacts = self.in_closed_form(fastest).into_iter();
         HardestContact::from_contacts(&self.model, &self.units, contacts)
@@ -236,7 +242,11 @@ impl DesignMotion<'_> {
 
     /// The hardest contact of a motion that was integrated. Of one too short for the clock the
     /// force is that of the closed form: the swing's own forces have no time to act.
-    fn hardest_of_motion(&self, motion: &Simulation, course: &Course) -> Option<HardestContact> {
+    fn hardest_of_motion(
+        &self,
+        motion: &Simulation,
+        course: &MotionToRest,
+    ) -> Option<HardestContact> {
         let contacts =
             course.impacts.iter().filter_map(|contact| match motion.peak_force(contact) {
                 Some(force) => Some((force, contact.penetration, contact.restitution)),
@@ -249,7 +259,7 @@ impl DesignMotion<'_> {
 
     /// The pendulum on the main mass that carries it: always by integration, for the two have no
     /// chain. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
-    fn carried(&self, main_mass: &MainMass) -> Result<Followed, String> {
+    fn on_main_mass(&self, main_mass: &MainMass) -> Result<SimulatedMotion, String> {
         let [displacement, speed] = main_mass.start(&self.units);
         let case = PrimaryCase {
             primary: main_mass.primary(&self.units),
@@ -278,7 +288,7 @@ impl DesignMotion<'_> {
             });
             HardestContact::from_contacts(&self.model, &self.units, contacts)
         });
-        Ok(Followed {
+        Ok(SimulatedMotion {
             rest_time: rest,
             impacts: impacts.count(),
             hardest: hardest.flatten(),

@@ -1,13 +1,13 @@
-//! What may be small, or limited: one row each.
+//! Objectives and limits: one row each.
 
-use super::design::Design;
+use super::design::EvaluatedDesign;
 
 /// A number of a design that is to be small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
     /// The rest time of the pendulum in seconds.
     RestTime,
-    /// The same in units of 1/omega of its small swings.
+    /// The rest time in units of 1/omega of the small swings.
     DimensionlessRestTime,
     /// The greatest force of a contact.
     PeakForce,
@@ -22,7 +22,7 @@ pub enum Objective {
 }
 
 /// Name, unit, meaning and value of an objective.
-type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>);
+type ObjectiveRow = (&'static str, &'static str, &'static str, fn(&EvaluatedDesign) -> Option<f64>);
 
 impl Objective {
     /// Every objective, in the order of the documentation.
@@ -36,7 +36,7 @@ impl Objective {
         Self::PrimaryRestTime,
     ];
 
-    fn row(self) -> Row {
+    fn row(self) -> ObjectiveRow {
         match self {
             Self::RestTime => ("rest_time", "s", "the rest time", |design| {
                 Some(design.rest_time.ok()? * design.units.time())
@@ -74,18 +74,18 @@ impl Objective {
         self.row().0
     }
 
-    /// Its unit, as it is typed; empty where it has none.
+    /// Its unit, as it is typed; empty if it has none.
     pub fn unit(self) -> &'static str {
         self.row().1
     }
 
-    /// What it is, in words: `the rest time`.
+    /// The meaning in words: `the rest time`.
     pub fn meaning(self) -> &'static str {
         self.row().2
     }
 
-    /// Its value of a design; nothing where it has none.
-    pub fn value(self, design: &Design) -> Option<f64> {
+    /// Its value of a design; `None` if it has none.
+    pub fn value(self, design: &EvaluatedDesign) -> Option<f64> {
         (self.row().3)(design).filter(|value| value.is_finite())
     }
 

@@ -1,10 +1,10 @@
-//! What is asked: which design, of which box, under which constraints, by which search.
+//! The optimisation problem: the box of designs, the constraints and the search.
 
 use std::f64::consts::PI;
 
 use thiserror::Error;
 
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
 use crate::decimal::{decimal, significant};
 use crate::genetic::{Evaluation, Options, SearchError, Space};
@@ -26,7 +26,7 @@ pub const DEFAULT_BOX: [(Parameter, f64, f64); 4] = [
 /// A number of the design that is searched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variable {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its lower limit.
     pub lower: f64,
@@ -37,7 +37,7 @@ pub struct Variable {
 /// A number of the design that must not be larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Which.
+    /// The objective.
     pub objective: Objective,
     /// The largest value.
     pub at_most: f64,
@@ -45,17 +45,17 @@ pub struct Limit {
 
 /// A search for the best design: the question.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Question {
-    /// What is held fixed, and what the variables do not say.
+pub struct OptimizationProblem {
+    /// The parameters held fixed, and all others that the variables leave open.
     pub case: Case,
-    /// What is searched.
+    /// The variables of the search.
     pub variables: Vec<Variable>,
-    /// The materials of the barrier that are tried, in place of its modulus; none where that is
+    /// The materials of the barrier that are tried, in place of its modulus; empty if that is
     /// searched or fixed.
     pub materials: Vec<Material>,
-    /// What is to be small; several at once make a front.
+    /// The objectives to be minimised; several at once make a front.
     pub objectives: Vec<Objective>,
-    /// What must not be larger.
+    /// The limits of other quantities.
     pub limits: Vec<Limit>,
     /// The density of the sphere, kg/m^3, where its mass is that of its radius.
     pub density: Option<f64>,
@@ -67,19 +67,19 @@ pub struct Question {
     pub barrier_yield: Option<f64>,
     /// The main mass that carries the pendulum, where its rest counts.
     pub main_mass: Option<MainMass>,
-    /// How long and how closely motions are followed.
+    /// Duration and accuracy of the motions.
     pub settings: Settings,
     /// The genetic algorithm.
-    pub genetic: Options,
-    /// How often it is run.
+    pub genetic: GeneticOptions,
+    /// Number of runs.
     pub runs: usize,
     /// The seed of all random numbers.
     pub seed: u64,
-    /// The dampings that nobody gave, which are then the defaults.
+    /// The dampings that were not given, for which the defaults are used.
     pub defaults: Vec<Parameter>,
 }
 
-impl Default for Question {
+impl Default for OptimizationProblem {
     /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the
     /// default dissipation.
     fn default() -> Self {
@@ -100,7 +100,7 @@ impl Default for Question {
             barrier_yield: None,
             main_mass: None,
             settings: Settings { duration: DEFAULT_DURATION, ..Settings::default() },
-            genetic: Options::default(),
+            genetic: GeneticOptions::default(),
             runs: 100,
             seed: 1,
             defaults: vec![Parameter::Lambda, Parameter::Zeta],
@@ -108,20 +108,20 @@ impl Default for Question {
     }
 }
 
-/// Why there is no search.
+/// The reason why there is no search.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OptimizeError {
     /// Limits that leave nothing.
     #[error("[limits] {0}")]
     Limits(String),
-    /// Nothing to be small.
+    /// There is no objective.
     #[error("[genetic] objective names nothing that is to be small: choose one or more of {}", Objective::ALL.map(Objective::name).join(", "))]
     NoObjective,
-    /// The same twice.
+    /// An objective that is named twice.
     #[error("[genetic] objective names `{0}` twice")]
     SameObjective(&'static str),
-    /// No run.
+    /// There is no run.
     #[error("[genetic] runs = {0}: a study needs 1 run or more, {MOST_RUNS} at most")]
     Runs(usize),
     /// Options that make no population.
@@ -135,17 +135,17 @@ pub enum OptimizeError {
     /// A design in the middle of the box that makes no motion.
     #[error("{0}")]
     Motion(String),
-    /// No design that rests.
+    /// No design comes to rest.
     #[error(
         "no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}"
     )]
     NoRest {
-        /// How long motions were followed.
+        /// The duration of the motions.
         duration: f64,
-        /// What the design in the middle of the box says.
+        /// The reason at the design in the middle of the box.
         reason: String,
     },
-    /// No design that keeps the constraints.
+    /// No design keeps the constraints.
     #[error(
         "no design was found in this box that comes to rest in the time allowed and keeps {constraints}: {nearest}"
     )]
@@ -168,7 +168,7 @@ pub enum OptimizeError {
 /// The most runs of a study.
 const MOST_RUNS: usize = 100_000;
 
-impl Question {
+impl OptimizationProblem {
     /// The box; a material is a number from 0 to their count.
     ///
     /// # Errors
@@ -238,7 +238,8 @@ impl Question {
         }
         self.genetic.check()?;
         let middle: Vec<f64> = space.bounds().iter().map(|_| 0.5).collect();
-        self.follow(&space.at(&middle), Route::Chain, false).map_err(OptimizeError::Motion)?;
+        self.follow(&space.point_at(&middle), Route::Chain, false)
+            .map_err(OptimizeError::Motion)?;
         Ok(space)
     }
 
@@ -255,8 +256,8 @@ impl Question {
         counting.any(|objective| objective.is_rest_time() || objective == Objective::Impacts)
     }
 
-    /// The reason for which a design has no value of an objective; `None` where it has all of them.
-    pub(super) fn missing_value(&self, design: &Design) -> Option<String> {
+    /// The reason for which a design has no value of an objective; `None` if it has all of them.
+    pub(super) fn missing_value(&self, design: &EvaluatedDesign) -> Option<String> {
         let missing = self.objectives.iter().find(|objective| objective.value(design).is_none())?;
         let rest = match missing.is_of_main_mass() {
             true => design.primary_rest_time.unwrap_or(design.rest_time),
@@ -269,7 +270,7 @@ impl Question {
     }
 
     /// The constraints that a design breaks, in words: `max_impacts = 9 (10)`.
-    pub fn broken(&self, design: &Design) -> Vec<String> {
+    pub fn broken(&self, design: &EvaluatedDesign) -> Vec<String> {
         let evaluation = self.evaluation(design);
         let words = self.constraints();
         let mut broken = Vec::new();
@@ -295,7 +296,7 @@ impl Question {
     }
 
     /// The lowest stated yield limit of the bodies of a design, Pa.
-    pub fn yield_limit(&self, design: &Design) -> Option<f64> {
+    pub fn yield_limit(&self, design: &EvaluatedDesign) -> Option<f64> {
         let barrier = match design.material {
             Some(number) => self.materials.get(number)?.yield_limit,
             None => self.barrier_yield,
@@ -303,8 +304,8 @@ impl Question {
         [self.sphere_yield, barrier].into_iter().flatten().reduce(f64::min)
     }
 
-    /// What a design is worth.
-    pub fn evaluation(&self, design: &Design) -> Evaluation {
+    /// Objectives and constraints of a design.
+    pub fn evaluation(&self, design: &EvaluatedDesign) -> Evaluation {
         let value = |objective: Objective| objective.value(design).unwrap_or(f64::INFINITY);
         let mut inequalities: Vec<f64> = self
             .limits

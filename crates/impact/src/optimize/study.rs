@@ -5,16 +5,16 @@
 //! record.
 
 use super::decision::Decision;
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
-use super::question::{LARGEST_EXCESS, OptimizeError, Question};
+use super::question::{LARGEST_EXCESS, OptimizationProblem, OptimizeError};
 use crate::decimal::significant;
 use crate::genetic::{
-    Evaluation, Individual, Options, Penalty, Run, Space, Stop, crowding, differential_evolution,
-    generator, non_dominated, random_search, search, search_front,
+    Evaluation, GeneticOptions, GeneticRun, GeneticStop, Individual, Penalty, Space, crowding,
+    differential_evolution, generator, non_dominated, random_search, search, search_front,
 };
 use crate::impact::hertz;
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// A design that a run found, as the search has it: by closed forms, by integration where there are
 /// none.
@@ -37,8 +37,8 @@ pub struct Found {
 pub struct SearchRun {
     /// Its number, from 0: the stream of its random numbers.
     pub number: usize,
-    /// What it found: the best design, or with several objectives its front; nothing where no
-    /// design rests and keeps the constraints.
+    /// The best design, or with several objectives the front; empty if no design rests and keeps
+    /// the constraints.
     pub found: Vec<Found>,
     /// The best value after the random population and after every generation, infinite while there
     /// is none; with several objectives the size of the front.
@@ -50,29 +50,30 @@ pub struct SearchRun {
     /// The number of designs that were integrated: they have no closed form, or would be the best
     /// if they keep the constraints.
     pub integrated: usize,
-    /// Why it ended.
-    pub stop: Stop,
+    /// The reason why it ended.
+    pub stop: GeneticStop,
 }
 
-/// Who looks on at a study; nobody by default.
-pub struct Watch<'a> {
+/// The observer of a study; by default there is none.
+pub struct StudyObserver<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
-    /// Hears of every run that has ended by itself.
+    /// Called with every run that has ended by itself.
     pub done: &'a (dyn Fn(&SearchRun) + Sync),
-    /// Hears of so many more generations, of those that [`Question::most_work`] counts.
+    /// Called with the number of generations newly done, of those that
+    /// [`OptimizationProblem::most_work`] counts.
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
 
-impl Default for Watch<'_> {
+impl Default for StudyObserver<'_> {
     fn default() -> Self {
         Self { stop: &|| false, done: &|_| (), progress: &|_| () }
     }
 }
 
-/// How a number is spread over the runs.
+/// The distribution of a number over the runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
+pub struct FiveNumberSummary {
     /// The least.
     pub best: f64,
     /// A quarter is no more than this.
@@ -85,9 +86,9 @@ pub struct Spread {
     pub worst: f64,
 }
 
-impl Spread {
-    /// Of these values; nothing where there is none. Quartiles lie between values in proportion.
-    pub fn of(values: &[f64]) -> Option<Self> {
+impl FiveNumberSummary {
+    /// The summary of these values; `None` if there are none. Quartiles are interpolated.
+    pub fn from_values(values: &[f64]) -> Option<Self> {
         let mut values = values.to_vec();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
@@ -109,23 +110,23 @@ impl Spread {
 
 /// Another search with as many evaluations, run as often.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rival {
+pub struct BaselineSearch {
     /// `random search`
     pub name: &'static str,
     /// Evaluations of one run.
     pub evaluations: usize,
-    /// The best value of every run; infinite where it found none.
+    /// The best value of every run; infinite if it found none.
     pub values: Vec<f64>,
     /// The median of the best values so far over the runs, after every population of evaluations.
     pub curve: Vec<f64>,
 }
 
-impl Rival {
-    /// How the values are spread over the runs that found one.
-    pub fn spread(&self) -> Option<Spread> {
+impl BaselineSearch {
+    /// The distribution of the best values over the runs that found one.
+    pub fn spread(&self) -> Option<FiveNumberSummary> {
         let found: Vec<f64> =
             self.values.iter().copied().filter(|value| value.is_finite()).collect();
-        Spread::of(&found)
+        FiveNumberSummary::from_values(&found)
     }
 }
 
@@ -137,8 +138,8 @@ pub struct Finalist {
     /// Its objectives by closed forms, where it has them; else by integration.
     pub by_chain: Vec<f64>,
     /// The design by integration.
-    pub design: Design,
-    /// Its objectives by integration; infinite where it has none.
+    pub design: EvaluatedDesign,
+    /// Its objectives by integration; infinite if it has none.
     pub values: Vec<f64>,
     /// Whether it rests and keeps the constraints by integration; no front has a design that does
     /// not.
@@ -149,8 +150,8 @@ pub struct Finalist {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Study {
-    /// What was asked.
-    pub question: Question,
+    /// The problem that was solved.
+    pub question: OptimizationProblem,
     /// The runs, by their numbers.
     pub runs: Vec<SearchRun>,
     /// Whether all runs and all that stands beside them were done.
@@ -159,14 +160,14 @@ pub struct Study {
     /// front.
     pub finalists: Vec<Finalist>,
     /// The default design under the same assumptions, by integration, in the box or not.
-    pub default_design: Option<Design>,
-    /// What decides the best design; with several objectives nothing.
+    pub default_design: Option<EvaluatedDesign>,
+    /// The factors that limit the best design; `None` with several objectives.
     pub decision: Option<Decision>,
     /// Other searches with the same number of evaluations; none with several objectives.
-    pub rivals: Vec<Rival>,
+    pub rivals: Vec<BaselineSearch>,
 }
 
-/// The best of so many runs are judged again.
+/// The best of this many runs are judged again.
 const FINALISTS: usize = 10;
 
 /// Closed forms are off by less than this part of a constraint.
@@ -175,7 +176,7 @@ const MOST_OFF: f64 = 0.25;
 /// Streams of random numbers of the rivals.
 const RIVALS: [u64; 2] = [1 << 32, 1 << 33];
 
-impl Question {
+impl OptimizationProblem {
     /// The most generations of the whole study, those of the rivals among them.
     pub fn most_work(&self) -> usize {
         let rivals = if self.objectives.len() == 1 { 2 } else { 0 };
@@ -188,7 +189,12 @@ impl Question {
     /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one
     /// as they may be off, which by them would be the best or on a front, is integrated. It keeps
     /// its value by closed forms where it keeps the constraints, so that values can be compared.
-    pub(super) fn worth(&self, point: &[f64], best: f64, integrated: &mut usize) -> Evaluation {
+    pub(super) fn bounded_evaluation(
+        &self,
+        point: &[f64],
+        best: f64,
+        integrated: &mut usize,
+    ) -> Evaluation {
         let follow = |route| match self.follow(point, route, self.needs_contact()) {
             Ok(design) => (self.evaluation(&design), design.integrated),
             Err(_) => {
@@ -224,7 +230,7 @@ impl Question {
     fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
         let mut best = f64::INFINITY;
         move |point| {
-            let evaluation = self.worth(point, best, integrated);
+            let evaluation = self.bounded_evaluation(point, best, integrated);
             if evaluation.is_feasible(self.genetic.constraint_tolerance) {
                 best = best.min(evaluation.value());
             }
@@ -232,7 +238,7 @@ impl Question {
         }
     }
 
-    fn run(&self, space: &Space, number: usize, watch: &Watch) -> SearchRun {
+    fn run(&self, space: &Space, number: usize, watch: &StudyObserver) -> SearchRun {
         let mut generator = generator(self.seed, number as u64);
         let mut integrated = 0;
         let mut go_on = |_| {
@@ -270,9 +276,9 @@ impl Question {
 /// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the
 /// constraints.
 pub fn optimize(
-    question: Question,
+    question: OptimizationProblem,
     known: Vec<SearchRun>,
-    watch: &Watch,
+    watch: &StudyObserver,
 ) -> Result<Study, OptimizeError> {
     let space = question.check()?;
     let missing: Vec<usize> =
@@ -285,12 +291,12 @@ pub fn optimize(
             return None;
         }
         let run = question.run(&space, number, watch);
-        if run.stop != Stop::Interrupted {
+        if run.stop != GeneticStop::Interrupted {
             (watch.done)(&run);
         }
         Some(run)
     };
-    let new = each(&missing, one);
+    let new = par_map(&missing, one);
     let mut runs: Vec<SearchRun> =
         known.into_iter().filter(|run| run.number < question.runs).collect();
     runs.extend(new.into_iter().flatten());
@@ -299,17 +305,17 @@ pub fn optimize(
         return Err(OptimizeError::Stopped);
     }
     let complete =
-        runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
+        runs.len() == question.runs && runs.iter().all(|run| run.stop != GeneticStop::Interrupted);
     if runs.iter().all(|run| run.found.is_empty()) {
-        return Err(nothing(&question, &space, watch, complete));
+        return Err(no_design_error(&question, &space, watch, complete));
     }
     let finalists = finalists(&question, &runs);
     if finalists.first().is_none_or(|best| !best.feasible) {
-        return Err(nothing(&question, &space, watch, complete));
+        return Err(no_design_error(&question, &space, watch, complete));
     }
     let (mut rivals, mut decision) = (vec![], None);
     if question.objectives.len() == 1 {
-        decision = finalists.first().map(|best| Decision::of(&question, &space, &best.design));
+        decision = finalists.first().map(|best| Decision::new(&question, &space, &best.design));
         if complete {
             rivals = self::rivals(&question, &space, &runs, watch);
         }
@@ -317,8 +323,10 @@ pub fn optimize(
     // All of the default design, also what is held fixed here.
     let default_design = question.default_point().and_then(|point| {
         let mut usual = question.clone();
-        usual.case.design =
-            hertz::Design { gravity: question.case.design.gravity, ..hertz::Design::default() };
+        usual.case.design = hertz::StiffnessDesign {
+            gravity: question.case.design.gravity,
+            ..hertz::StiffnessDesign::default()
+        };
         usual.follow(&point, Route::Integration, true).ok()
     });
     Ok(Study {
@@ -332,16 +340,16 @@ pub fn optimize(
     })
 }
 
-/// The same on so many threads.
+/// The optimisation on this number of threads.
 ///
 /// # Errors
 /// As [`optimize`].
 #[cfg(feature = "parallel")]
 pub fn optimize_on(
     threads: usize,
-    question: Question,
+    question: OptimizationProblem,
     known: Vec<SearchRun>,
-    watch: &Watch,
+    watch: &StudyObserver,
 ) -> Result<Study, OptimizeError> {
     crate::parallel::on_threads(threads, || optimize(question, known, watch))
 }
@@ -349,14 +357,19 @@ pub fn optimize_on(
 /// Population and generations of a search for the constraints alone, at least.
 const ENOUGH: [usize; 2] = [60, 100];
 
-/// Why nothing was found.
-fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) -> OptimizeError {
+/// The error of a search without a design.
+fn no_design_error(
+    question: &OptimizationProblem,
+    space: &Space,
+    watch: &StudyObserver,
+    complete: bool,
+) -> OptimizeError {
     if !complete {
         return OptimizeError::Stopped;
     }
     // Whether anything rests at all, constraints aside.
     let mut random = generator(question.seed, u64::MAX);
-    let middle = space.at(&vec![0.5; space.bounds().len()]);
+    let middle = space.point_at(&vec![0.5; space.bounds().len()]);
     let mut reason = None;
     let rests = (0..question.genetic.population.max(100)).any(|number| {
         let point = if number == 0 { middle.clone() } else { space.draw(&mut random) };
@@ -380,14 +393,14 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
     // Constraints alone: how far they are broken is what is to be small.
     let tolerance = question.genetic.constraint_tolerance;
     let evaluate = |point: &[f64]| {
-        let evaluation = question.worth(point, f64::INFINITY, &mut 0);
+        let evaluation = question.bounded_evaluation(point, f64::INFINITY, &mut 0);
         let has_values = evaluation.objectives.iter().all(|value| value.is_finite());
-        Evaluation::of(match has_values {
+        Evaluation::unconstrained(match has_values {
             true => evaluation.violation(tolerance),
             false => f64::INFINITY,
         })
     };
-    let mut options = Options { penalty: Penalty::Death, ..question.genetic };
+    let mut options = GeneticOptions { penalty: Penalty::Death, ..question.genetic };
     if question.main_mass.is_none() {
         // Closed forms cost little: enough of them to say that there is nothing.
         options.population = options.population.max(ENOUGH[0]);
@@ -421,7 +434,7 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
     }
 }
 
-fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
+fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist> {
     let mut found: Vec<(usize, &Found)> = runs
         .iter()
         .flat_map(|run| run.found.iter().map(move |found| (run.number, found)))
@@ -430,7 +443,7 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
         found.sort_by(|one, other| one.1.values[0].total_cmp(&other.1.values[0]));
         found = distinct(question, &found);
     } else {
-        found = front(&found, question.genetic.population);
+        found = merged_front(&found, question.genetic.population);
     }
     let judge = |&(run, found): &(usize, &Found)| {
         let design = question.follow(&found.point, Route::Integration, true).ok()?;
@@ -447,7 +460,7 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
             design,
         })
     };
-    let judged = each(&found, judge);
+    let judged = par_map(&found, judge);
     let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
     if question.objectives.len() > 1 {
         // By integration a design may break a constraint, or be worse than another in everything.
@@ -469,9 +482,12 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
     finalists
 }
 
-/// The first designs that differ from those before by more than a part of the limits that nobody
-/// builds to.
-fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize, &'a Found)> {
+/// The first designs that differ from those before by more than the tolerance of manufacture, as a
+/// part of the limits.
+fn distinct<'a>(
+    question: &OptimizationProblem,
+    found: &[(usize, &'a Found)],
+) -> Vec<(usize, &'a Found)> {
     const SAME: f64 = 1e-6;
     let same = |one: &Found, other: &Found| {
         let ranges = question.variables.iter().map(|variable| variable.upper - variable.lower);
@@ -493,8 +509,9 @@ fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize
     kept
 }
 
-/// Whom nobody dominates among the fronts of all runs; the loneliest where they are too many.
-fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
+/// The designs that are not dominated among the fronts of all runs; the most isolated ones if they
+/// are too many.
+fn merged_front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
     let evaluation =
         |found: &Found| Evaluation { objectives: found.values.clone(), ..Evaluation::default() };
     let all: Vec<Evaluation> = found.iter().map(|(_, found)| evaluation(found)).collect();
@@ -515,27 +532,33 @@ fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found
     left.into_iter().map(|index| found[index]).collect()
 }
 
-fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch) -> Vec<Rival> {
-    let Options { population, constraint_tolerance, generations, .. } = question.genetic;
+fn rivals(
+    question: &OptimizationProblem,
+    space: &Space,
+    runs: &[SearchRun],
+    watch: &StudyObserver,
+) -> Vec<BaselineSearch> {
+    let GeneticOptions { population, constraint_tolerance, generations, .. } = question.genetic;
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
-    let compete = |name: &'static str, work: &(dyn Fn(usize) -> Run + Sync)| {
-        let runs = each(runs, |run| {
+    let compete = |name: &'static str, work: &(dyn Fn(usize) -> GeneticRun + Sync)| {
+        let runs = par_map(runs, |run| {
             // Asked to stop, it is not used.
             let run = (!(watch.stop)()).then(|| work(run.number));
             (watch.progress)(generations);
             run
         });
-        let runs: Option<Vec<Run>> = runs.into_iter().collect();
+        let runs: Option<Vec<GeneticRun>> = runs.into_iter().collect();
         let runs = runs?;
         let length = runs.iter().map(|run| run.curve.len()).min().unwrap_or(0);
         let median = |index: usize| {
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
-            Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
+            FiveNumberSummary::from_values(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
-        let value =
-            |run: &Run| run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
-        Some(Rival {
+        let value = |run: &GeneticRun| {
+            run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
+        };
+        Some(BaselineSearch {
             name,
             evaluations: runs.first().map_or(0, |run| run.evaluations),
             values: runs.iter().map(value).collect(),
@@ -584,9 +607,9 @@ impl Study {
         self.runs.iter().filter_map(value).collect()
     }
 
-    /// How they are spread.
-    pub fn spread(&self) -> Option<Spread> {
-        Spread::of(&self.values())
+    /// The distribution of the values over the runs.
+    pub fn spread(&self) -> Option<FiveNumberSummary> {
+        FiveNumberSummary::from_values(&self.values())
     }
 
     /// All designs that the genetic algorithm followed, and those that were integrated for want of
@@ -603,13 +626,13 @@ impl Study {
         let at = |index: usize| {
             let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
             let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
-            Spread::of(&values).map(|spread| spread.median)
+            FiveNumberSummary::from_values(&values).map(|spread| spread.median)
         };
         (0..length).filter_map(at).collect()
     }
 
     /// The generation from which on the median run was within this part of its last value.
-    pub fn settled(&self, part: f64) -> Option<usize> {
+    pub fn generation_of_convergence(&self, part: f64) -> Option<usize> {
         let curve = self.median_curve();
         let last = *curve.last()?;
         curve.iter().position(|value| value - last <= part * last.abs())
@@ -627,7 +650,7 @@ mod tests {
 
     #[test]
     fn quartiles_lie_between_the_values() {
-        let spread = Spread::of(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
+        let spread = FiveNumberSummary::from_values(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
         let numbers = [
             spread.best,
             spread.lower_quartile,
@@ -636,7 +659,10 @@ mod tests {
             spread.worst,
         ];
         assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
-        assert_eq!(Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile), Some(1.25));
-        assert_eq!(Spread::of(&[]), None);
+        assert_eq!(
+            FiveNumberSummary::from_values(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
+            Some(1.25)
+        );
+        assert_eq!(FiveNumberSummary::from_values(&[]), None);
     }
 }

@@ -1,4 +1,4 @@
-//! How a point is written as genes: as its numbers, or each number as a string of bits.
+//! The genes of a point: its numbers, or each number as a string of bits.
 //!
 //! A gene of a string of bits is 0 or 1, the highest bit of a number first: with n bits it takes
 //! 2^n evenly spaced values from the lower to the upper bound, so every string is a point of the
@@ -8,13 +8,13 @@ use rand::{Rng, RngExt};
 
 use super::space::Space;
 
-/// How the genes of a population are to be read.
+/// The encoding of points as genes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Coding {
     /// A gene is a number.
     #[default]
     Real,
-    /// So many genes, each 0 or 1, are a number.
+    /// Bits: each number is a string of this many genes, 0 or 1.
     Bits(u32),
 }
 
@@ -51,7 +51,7 @@ impl Coding {
                     .chunks(bits.max(1) as usize)
                     .map(|genes| number(genes) / largest)
                     .collect();
-                space.at(&parts)
+                space.point_at(&parts)
             }
         }
     }

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 
 use super::space::Space;
 
-/// How two parents make a child.
+/// The operator that makes a child of two parents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Crossover {
     /// On the line from the worse to the better parent, beyond it: [`heuristic`], of this ratio.
@@ -87,7 +87,7 @@ mod tests {
         ) {
             let space = box_of(parts.len());
             let (worse, better): (Vec<f64>, Vec<f64>) = parts.iter().copied().unzip();
-            let (worse, better) = (space.at(&worse), space.at(&better));
+            let (worse, better) = (space.point_at(&worse), space.point_at(&better));
             let child = heuristic(&worse, &better, ratio, &space);
             prop_assert!(space.contains(&child));
             let widest = (0..parts.len()).max_by(|one, other| {

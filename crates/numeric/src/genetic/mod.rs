@@ -1,9 +1,9 @@
 //! Search by a genetic algorithm: a population of points of a box, better ones more often parents.
 //! It knows numbers and functions of them, nothing of what they mean.
 //!
-//! In: a [`Space`], a function that gives every point an [`Evaluation`], [`Options`], a generator
-//! of random numbers. Out: a [`Run`]: the best point that keeps the constraints, and how the best
-//! value came down from generation to generation. One generation is
+//! In: a [`Space`], a function that gives every point an [`Evaluation`], [`GeneticOptions`], a
+//! generator of random numbers. Out: a [`GeneticRun`]: the best point that keeps the constraints,
+//! and how the best value came down from generation to generation. One generation is
 //!
 //! ```text
 //! score -> scale by rank -> select parents -> elite + children by crossover + children by mutation -> score
@@ -30,11 +30,11 @@
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
-//! use lindstedt::genetic::{Evaluation, Options, Space, generator, search};
+//! use lindstedt::genetic::{Evaluation, GeneticOptions, Space, generator, search};
 //!
 //! let space = Space::new(vec![[-1.0, 2.0], [-1.0, 2.0]])?;
-//! let paraboloid = |point: &[f64]| Evaluation::of(point.iter().map(|x| x * x).sum());
-//! let run = search(&space, paraboloid, &Options::default(), &mut generator(1, 0), &mut |_| true);
+//! let paraboloid = |point: &[f64]| Evaluation::unconstrained(point.iter().map(|x| x * x).sum());
+//! let run = search(&space, paraboloid, &GeneticOptions::default(), &mut generator(1, 0), &mut |_| true);
 //! assert!(run.best.is_some_and(|best| best.evaluation.objectives[0] < 1e-6));
 //! # Ok::<(), lindstedt::genetic::SearchError>(())
 //! ```

@@ -21,7 +21,7 @@ use rand::{Rng, RngExt};
 
 use super::space::Space;
 
-/// How a parent makes a child alone.
+/// The operator that makes a child of one parent.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Mutation {
     /// [`adaptive_feasible`].
@@ -34,7 +34,7 @@ pub enum Mutation {
 /// D never falls below it.
 pub const SMALLEST_STEP: f64 = 1e-6;
 
-/// So often a child halves D for itself.
+/// Largest number of halvings of D for one child.
 const MOST_HALVINGS: usize = 8;
 
 /// D of the generation after this one, the first of number 0.
@@ -128,7 +128,7 @@ mod tests {
             parts in prop::collection::vec(0.0..=1.0_f64, 1..8), quarterings in 0..10, seed in any::<u64>()
         ) {
             let space = Space::new(parts.iter().map(|_| [-2.0, 3.0]).collect()).unwrap();
-            let parent = space.at(&parts);
+            let parent = space.point_at(&parts);
             let step = 0.25_f64.powi(quarterings);
             let child = adaptive_feasible(&parent, step, &space, &mut generator(seed, 0));
             prop_assert!(space.contains(&child));

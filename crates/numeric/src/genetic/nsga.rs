@@ -8,14 +8,15 @@
 use rand::{Rng, RngExt};
 
 use super::pareto::{crowding, non_dominated, ranks};
-use super::population::{Individual, Options, Run};
+use super::population::{GeneticOptions, GeneticRun, Individual};
 use super::space::{Evaluation, Space};
-use super::stopping::Stop;
+use super::stopping::GeneticStop;
 
-/// How near to their parents the children of a crossover are: the larger the nearer.
+/// Distribution index of the simulated binary crossover: the larger it is, the nearer the children
+/// are to their parents.
 const CROSSOVER_INDEX: f64 = 15.0;
 
-/// The same of a mutation.
+/// Distribution index of the polynomial mutation.
 const MUTATION_INDEX: f64 = 20.0;
 
 /// The probability that two parents are crossed at all.
@@ -67,10 +68,10 @@ pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl R
 pub fn search_front(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
-    options: &Options,
+    options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
-) -> (Vec<Individual>, Run) {
+) -> (Vec<Individual>, GeneticRun) {
     let (size, tolerance) = (options.population, options.constraint_tolerance);
     let mut evaluations = 0;
     let mut born = |point: Vec<f64>| {
@@ -79,18 +80,18 @@ pub fn search_front(
     };
     let mut population: Vec<Individual> = (0..size).map(|_| born(space.draw(generator))).collect();
     evaluations += size;
-    let (mut standing, mut loneliness) = standings(&population, tolerance);
+    let (mut standing, mut loneliness) = ranks_and_crowding(&population, tolerance);
     let mut curve = vec![front_size(&population, &standing, tolerance)];
     let mut generation = 0;
     let stop = loop {
         if generation >= options.generations {
-            break Stop::Generations;
+            break GeneticStop::Generations;
         }
         if options.budget.is_some_and(|budget| evaluations + size > budget) {
-            break Stop::Budget;
+            break GeneticStop::Budget;
         }
         if !go_on(generation + 1) {
-            break Stop::Interrupted;
+            break GeneticStop::Interrupted;
         }
         let winner = |generator: &mut _| {
             let [one, other] = [0, 1].map(|_| RngExt::random_range(generator, 0..size));
@@ -111,7 +112,7 @@ pub fn search_front(
         }
         population.extend(children.into_iter().map(&mut born));
         evaluations += size;
-        let (all, lonely) = standings(&population, tolerance);
+        let (all, lonely) = ranks_and_crowding(&population, tolerance);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| {
             all[*one].cmp(&all[*other]).then(lonely[*other].total_cmp(&lonely[*one]))
@@ -119,7 +120,7 @@ pub fn search_front(
         order.truncate(size);
         let mut places: Vec<Option<Individual>> = population.into_iter().map(Some).collect();
         population = order.iter().filter_map(|index| places[*index].take()).collect();
-        (standing, loneliness) = standings(&population, tolerance);
+        (standing, loneliness) = ranks_and_crowding(&population, tolerance);
         curve.push(front_size(&population, &standing, tolerance));
         generation += 1;
     };
@@ -128,13 +129,18 @@ pub fn search_front(
     let front = front.into_iter().map(|index| population[index].clone());
     let front: Vec<Individual> =
         front.filter(|member| member.evaluation.is_feasible(tolerance)).collect();
-    let run =
-        Run { best: front.first().cloned(), curve, generations: generation, evaluations, stop };
+    let run = GeneticRun {
+        best: front.first().cloned(),
+        curve,
+        generations: generation,
+        evaluations,
+        stop,
+    };
     (front, run)
 }
 
 /// Ranks, and how lonely everybody is among those of the same rank.
-fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
+fn ranks_and_crowding(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
     let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
     let ranks = ranks(&all, tolerance);
     let mut lonely = vec![0.0; all.len()];
@@ -148,7 +154,7 @@ fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>
     (ranks, lonely)
 }
 
-/// How many stand in the front and are feasible.
+/// Number of feasible individuals in the first front.
 fn front_size(population: &[Individual], ranks: &[usize], tolerance: f64) -> f64 {
     let standing = population.iter().zip(ranks);
     let front =
@@ -166,7 +172,7 @@ mod tests {
         #[test]
         fn children_stay_in_the_box_and_between_equal_parents(part in 0.0..=1.0_f64, other in 0.0..=1.0_f64, seed in any::<u64>()) {
             let space = Space::new(vec![[-3.0, 5.0]; 3]).unwrap();
-            let (one, other) = (space.at(&[part; 3]), space.at(&[other; 3]));
+            let (one, other) = (space.point_at(&[part; 3]), space.point_at(&[other; 3]));
             let mut generator = generator(seed, 0);
             prop_assert!(space.contains(&simulated_binary(&one, &other, &space, &mut generator)));
             let same = simulated_binary(&one, &one, &space, &mut generator);
@@ -175,8 +181,8 @@ mod tests {
         }
     }
 
-    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2)
-    /// = 2.
+    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2) =
+    /// 2.
     #[test]
     fn a_known_front_is_found_and_covered() {
         let space = Space::new(vec![[-100.0, 100.0]]).unwrap();
@@ -184,7 +190,7 @@ mod tests {
             objectives: vec![point[0].powi(2), (point[0] - 2.0).powi(2)],
             ..Evaluation::default()
         };
-        let options = Options { generations: 60, ..Options::default() };
+        let options = GeneticOptions { generations: 60, ..GeneticOptions::default() };
         let (front, run) =
             search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
         assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());

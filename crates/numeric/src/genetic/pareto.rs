@@ -24,7 +24,8 @@ pub fn dominates(one: &Evaluation, other: &Evaluation, tolerance: f64) -> bool {
     pairs().all(|(one, other)| one <= other) && pairs().any(|(one, other)| one < other)
 }
 
-/// The rank of everybody: 0 whom nobody dominates, 1 whom only those dominate, and so on.
+/// The rank of every individual: 0 if no other dominates it, 1 if only those of rank 0 do, and so
+/// on.
 pub fn ranks(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let count = all.len();
     let mut dominated: Vec<Vec<usize>> = vec![vec![]; count];
@@ -60,7 +61,7 @@ pub fn ranks(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     ranks
 }
 
-/// Those whom nobody dominates, by their numbers; of equals the first.
+/// Indices of the points that no other dominates; of equal ones the first.
 pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let stands = |index: &usize| {
         let is_worse = |(place, other): (usize, &&Evaluation)| {
@@ -74,13 +75,13 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     (0..all.len()).filter(stands).collect()
 }
 
-/// How lonely everybody is among these values: the sum over them of the distance between the
+/// Crowding distance of every individual: the sum over the objectives of the distance between its
 /// neighbours on either side, in parts of the whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
     let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);
     for value in 0..values {
-        // What is not there is as bad as can be.
+        // A missing objective counts as infinite.
         let of = |index: usize| all[index].objectives.get(value).copied().unwrap_or(f64::INFINITY);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|one, other| of(*one).total_cmp(&of(*other)));

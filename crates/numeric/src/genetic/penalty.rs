@@ -1,4 +1,4 @@
-//! What a point is worth that breaks a constraint: a score for every individual, to be small.
+//! The score of a point that violates a constraint: a number for every individual, to be small.
 //!
 //! - Death penalty: none at all, infinite.
 //! - Feasible first (K. Deb, *Comput. Methods Appl. Mech. Eng.* 186 (2000) 311): the worst value of
@@ -19,19 +19,19 @@
 
 use super::space::Evaluation;
 
-/// What becomes of points that break a constraint.
+/// The treatment of points that violate a constraint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Penalty {
-    /// They count for nothing.
+    /// Points that violate a constraint have an infinite score.
     #[default]
     Death,
-    /// They count for less than any that breaks none.
+    /// Points that violate a constraint rank behind all that violate none.
     FeasibleFirst,
-    /// They pay.
+    /// Points that violate a constraint pay a penalty.
     AugmentedLagrangian {
         /// rho at first.
         initial: f64,
-        /// What it is multiplied by.
+        /// The factor of the violation.
         factor: f64,
     },
 }
@@ -44,16 +44,16 @@ const LARGEST_WEIGHT: f64 = 1e10;
 pub struct Multipliers {
     /// rho.
     pub weight: f64,
-    /// Of the equalities.
+    /// Multipliers of the equalities.
     pub equalities: Vec<f64>,
-    /// Of the inequalities, none negative.
+    /// Multipliers of the inequalities, none negative.
     pub inequalities: Vec<f64>,
-    /// What the best point violated last.
+    /// Violation of the best point of the last generation.
     violation: f64,
 }
 
 impl Multipliers {
-    /// Those at the beginning.
+    /// The initial multipliers.
     pub fn new(initial: f64, like: &Evaluation) -> Self {
         Self {
             weight: initial,

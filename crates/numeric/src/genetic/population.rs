@@ -10,41 +10,40 @@ use super::penalty::{Multipliers, Penalty, scores};
 use super::scaling::rank_scaling;
 use super::selection::stochastic_uniform;
 use super::space::{Evaluation, Space};
-use super::stopping::{StallTest, Stop, has_stalled};
+use super::stopping::{GeneticStop, StallTest, has_stalled};
 
-/// How a population lives; the default has real numbers in place of bits, and a
-/// penalty that is one.
+/// Options of a genetic algorithm. The default has real numbers in place of bits, and a penalty.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct GeneticOptions {
     /// Individuals.
     pub population: usize,
     /// The best ones, which go on as they are.
     pub elite: usize,
     /// The part of the others that crossover makes; mutation makes the rest.
     pub crossover_fraction: f64,
-    /// How genes are written.
+    /// The encoding of points as genes.
     pub coding: Coding,
-    /// How two parents make a child.
+    /// The crossover of two parents.
     pub crossover: Crossover,
-    /// How one parent makes a child.
+    /// The mutation of a parent.
     pub mutation: Mutation,
-    /// What a broken constraint costs.
+    /// The penalty of a violated constraint.
     pub penalty: Penalty,
-    /// How far an equality may be from zero.
+    /// Largest value of an equality that counts as zero.
     pub constraint_tolerance: f64,
     /// The most generations after the random population.
     pub generations: usize,
-    /// Over so many generations the best value is watched.
+    /// Number of generations over which the best value is watched.
     pub stall_generations: usize,
-    /// Below this change it has ceased to change.
+    /// Change of the best value below which the search has stalled.
     pub function_tolerance: f64,
-    /// How that is measured.
+    /// The measure of that change.
     pub stall_test: StallTest,
     /// The most evaluations of a run, where there is such a limit.
     pub budget: Option<usize>,
 }
 
-impl Default for Options {
+impl Default for GeneticOptions {
     fn default() -> Self {
         Self {
             population: 100,
@@ -86,10 +85,10 @@ pub enum SearchError {
         "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
     )]
     Population(usize),
-    /// Nothing would happen.
+    /// There are no generations.
     #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
     Generations(usize),
-    /// Nobody would be left to change.
+    /// The elite is the whole population.
     #[error(
         "elite = {elite} leaves nobody of a population of {population} to change: it must be smaller"
     )]
@@ -99,7 +98,7 @@ pub enum SearchError {
         /// The population.
         population: usize,
     },
-    /// No fraction.
+    /// The crossover fraction is not between 0 and 1.
     #[error("crossover_fraction must lie between 0 and 1, not {0}")]
     Fraction(f64),
     /// A child short of the better parent.
@@ -107,7 +106,7 @@ pub enum SearchError {
         "crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent"
     )]
     Ratio(f64),
-    /// No probability.
+    /// The mutation rate is not a probability.
     #[error("mutation_rate must lie between 0 and 1, not {0}")]
     Rate(f64),
     /// Too few or too many.
@@ -118,9 +117,9 @@ pub enum SearchError {
         "{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`"
     )]
     NeedsNumbers {
-        /// What was asked for.
+        /// The operator asked for.
         operator: &'static str,
-        /// What works.
+        /// The operators that work instead.
         instead: &'static str,
     },
     /// An operator that needs bits.
@@ -136,7 +135,7 @@ pub enum SearchError {
         /// The value given.
         value: f64,
     },
-    /// Nothing to watch.
+    /// The window of the stall test is empty.
     #[error("stall_generations must be 1 or more")]
     Window,
     /// Less than the random population.
@@ -155,7 +154,7 @@ const MOST_INDIVIDUALS: usize = 100_000;
 /// The most generations.
 const MOST_GENERATIONS: usize = 1_000_000;
 
-impl Options {
+impl GeneticOptions {
     /// Refuses what makes no population.
     ///
     /// # Errors
@@ -223,13 +222,13 @@ impl Options {
         }
     }
 
-    /// How many children crossover makes, and how many mutation.
+    /// Numbers of children by crossover and by mutation.
     ///
     /// ```
     /// # use lindstedt_numeric as lindstedt;
-    /// use lindstedt::genetic::Options;
+    /// use lindstedt::genetic::GeneticOptions;
     ///
-    /// assert_eq!(Options::default().children(), (78, 20)); // of 100 with an elite of 2
+    /// assert_eq!(GeneticOptions::default().children(), (78, 20)); // of 100 with an elite of 2
     /// ```
     pub fn children(&self) -> (usize, usize) {
         let all = self.population.saturating_sub(self.elite);
@@ -251,14 +250,14 @@ impl Options {
 pub struct Individual {
     /// The point, in the box.
     pub point: Vec<f64>,
-    /// What it is worth.
+    /// Its objectives and constraints.
     pub evaluation: Evaluation,
 }
 
-/// What came of one run.
+/// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// The best of all points that break no constraint; nothing where there was none.
+pub struct GeneticRun {
+    /// The best of all points that break no constraint; `None` if there was none.
     pub best: Option<Individual>,
     /// Its value after the random population and after every generation; infinite while there was
     /// none.
@@ -267,11 +266,11 @@ pub struct Run {
     pub generations: usize,
     /// Points that were evaluated.
     pub evaluations: usize,
-    /// Why it ended.
-    pub stop: Stop,
+    /// The reason why it ended.
+    pub stop: GeneticStop,
 }
 
-/// After so many generations the multipliers of an augmented Lagrangian are corrected.
+/// After this many generations the multipliers of an augmented Lagrangian are corrected.
 const SUBPROBLEM: usize = 10;
 
 /// One individual as the search has it: the genes and their point.
@@ -282,19 +281,20 @@ struct Member {
 
 /// One run of the genetic algorithm: the smallest first objective under the constraints.
 ///
-/// `go_on` hears the number of the generation before it begins, and may end the run there.
+/// `go_on` is called with the number of each generation before it begins, and may end the run
+/// there.
 pub fn search(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
-    options: &Options,
+    options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
-) -> Run {
+) -> GeneticRun {
     let mut nursery =
-        Nursery { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
+        PopulationBuilder { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
     let mut population = Vec::with_capacity(options.population);
     for _ in 0..options.population {
-        population.push(nursery.born(options.coding.draw(space, generator)));
+        population.push(nursery.evaluate_genes(options.coding.draw(space, generator)));
     }
     let mut multipliers = match (options.penalty, population.first()) {
         (Penalty::AugmentedLagrangian { initial, .. }, Some(first)) => {
@@ -314,7 +314,7 @@ pub fn search(
             break stop;
         }
         if !go_on(generation + 1) {
-            break Stop::Interrupted;
+            break GeneticStop::Interrupted;
         }
         let scored = score(&population, multipliers.as_ref());
         let expected = rank_scaling(&scored, 2 * crossed + mutated);
@@ -325,7 +325,7 @@ pub fn search(
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
         let elite = order.iter().take(options.elite);
         population = elite.filter_map(|index| places[*index].take()).collect();
-        population.extend(children.into_iter().map(|genes| nursery.born(genes)));
+        population.extend(children.into_iter().map(|genes| nursery.evaluate_genes(genes)));
         let before = order.first().map_or(f64::INFINITY, |index| scored[*index]);
         let now = score(&population, multipliers.as_ref());
         let leader = (0..now.len()).min_by(|one, other| now[*one].total_cmp(&now[*other]));
@@ -341,7 +341,7 @@ pub fn search(
             multipliers.update(evaluation, factor, options.constraint_tolerance);
         }
     };
-    Run {
+    GeneticRun {
         best: nursery.best,
         curve,
         generations: generation,
@@ -350,17 +350,18 @@ pub fn search(
     }
 }
 
-/// Where genes become members of the population; remembers the best that breaks no constraint.
-struct Nursery<'a, E> {
+/// Decodes and evaluates the genes of new members of the population; keeps the best point that
+/// violates no constraint.
+struct PopulationBuilder<'a, E> {
     space: &'a Space,
-    options: &'a Options,
+    options: &'a GeneticOptions,
     evaluate: &'a mut E,
     best: Option<Individual>,
     evaluations: usize,
 }
 
-impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
-    fn born(&mut self, genes: Vec<f64>) -> Member {
+impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
+    fn evaluate_genes(&mut self, genes: Vec<f64>) -> Member {
         let point = self.options.coding.point(&genes, self.space);
         let evaluation = (self.evaluate)(&point);
         self.evaluations += 1;
@@ -381,18 +382,23 @@ impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
     }
 }
 
-/// Why no further generation is begun, where one of the limits is reached.
-fn ended(options: &Options, curve: &[f64], generation: usize, evaluations: usize) -> Option<Stop> {
+/// The reason why no further generation is begun, where one of the limits is reached.
+fn ended(
+    options: &GeneticOptions,
+    curve: &[f64],
+    generation: usize,
+    evaluations: usize,
+) -> Option<GeneticStop> {
     let (crossed, mutated) = options.children();
     if has_stalled(curve, options.stall_generations, options.function_tolerance, options.stall_test)
     {
-        return Some(Stop::Stalled);
+        return Some(GeneticStop::Stalled);
     }
     if generation >= options.generations {
-        return Some(Stop::Generations);
+        return Some(GeneticStop::Generations);
     }
     let spent = |budget: usize| evaluations + crossed + mutated > budget;
-    options.budget.is_some_and(spent).then_some(Stop::Budget)
+    options.budget.is_some_and(spent).then_some(GeneticStop::Budget)
 }
 
 /// The genes of the children: of two parents each first, then of one.
@@ -400,7 +406,7 @@ fn children(
     population: &[Member],
     scored: &[f64],
     parents: &[usize],
-    (space, options, step): (&Space, &Options, f64),
+    (space, options, step): (&Space, &GeneticOptions, f64),
     generator: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
     let (crossed, mutated) = options.children();
@@ -435,28 +441,28 @@ mod tests {
 
     fn rastrigin(point: &[f64]) -> Evaluation {
         let term = |x: &f64| x * x - 10.0 * (std::f64::consts::TAU * x).cos() + 10.0;
-        Evaluation::of(point.iter().map(term).sum())
+        Evaluation::unconstrained(point.iter().map(term).sum())
     }
 
     fn run(
         bounds: [f64; 2],
         evaluate: fn(&[f64]) -> Evaluation,
-        options: &Options,
+        options: &GeneticOptions,
         stream: u64,
-    ) -> Run {
+    ) -> GeneticRun {
         let space = Space::new(vec![bounds; 2]).unwrap();
         search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
     }
 
     #[test]
     fn one_of_the_lowest_of_many_valleys_is_found() {
-        let bits = Options {
+        let bits = GeneticOptions {
             coding: Coding::Bits(16),
             crossover: Crossover::Scattered,
             mutation: Mutation::BitFlips(0.02),
-            ..Options::default()
+            ..GeneticOptions::default()
         };
-        for options in [Options::default(), bits] {
+        for options in [GeneticOptions::default(), bits] {
             let found = (0..10).filter(|stream| {
                 let run = run([-5.0, 5.5], rastrigin, &options, *stream);
                 assert!(run.curve.windows(2).all(|pair| pair[1] <= pair[0]));
@@ -475,9 +481,9 @@ mod tests {
     /// file.
     #[test]
     fn a_seed_gives_the_same_run_for_ever() {
-        let first = run([-5.0, 5.5], rastrigin, &Options::default(), 0);
-        assert_eq!(first, run([-5.0, 5.5], rastrigin, &Options::default(), 0));
-        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve);
+        let first = run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 0);
+        assert_eq!(first, run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 0));
+        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 1).curve);
         assert_eq!(first.curve[0], GOLDEN);
     }
 
@@ -501,7 +507,7 @@ mod tests {
             (Penalty::FeasibleFirst, true),
             (lagrangian, true),
         ] {
-            let options = Options { penalty, ..Options::default() };
+            let options = GeneticOptions { penalty, ..GeneticOptions::default() };
             let evaluate = |point: &[f64]| {
                 if equality { on_a_line(point) } else { beyond(point) }
             };
@@ -517,32 +523,32 @@ mod tests {
 
     #[test]
     fn a_run_ends_where_it_is_told() {
-        let few = Options { generations: 7, ..Options::default() };
-        let run_of = |options: &Options| run([-5.0, 5.5], rastrigin, options, 0);
+        let few = GeneticOptions { generations: 7, ..GeneticOptions::default() };
+        let run_of = |options: &GeneticOptions| run([-5.0, 5.5], rastrigin, options, 0);
         let ended = run_of(&few);
-        assert_eq!((ended.stop, ended.generations), (Stop::Generations, 7));
-        let little = Options { budget: Some(450), ..Options::default() };
+        assert_eq!((ended.stop, ended.generations), (GeneticStop::Generations, 7));
+        let little = GeneticOptions { budget: Some(450), ..GeneticOptions::default() };
         let ended = run_of(&little);
-        assert_eq!((ended.stop, ended.evaluations), (Stop::Budget, 100 + 3 * 98));
+        assert_eq!((ended.stop, ended.evaluations), (GeneticStop::Budget, 100 + 3 * 98));
         let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
         let mut until = |generation| generation <= 4;
         let ended =
-            search(&space, rastrigin, &Options::default(), &mut generator(7, 0), &mut until);
-        assert_eq!((ended.stop, ended.generations), (Stop::Interrupted, 4));
-        let whole = run_of(&Options::default());
+            search(&space, rastrigin, &GeneticOptions::default(), &mut generator(7, 0), &mut until);
+        assert_eq!((ended.stop, ended.generations), (GeneticStop::Interrupted, 4));
+        let whole = run_of(&GeneticOptions::default());
         assert_eq!(ended.curve[..], whole.curve[..5]);
     }
 
     #[test]
     fn what_makes_no_population_is_refused_by_name() {
-        let usual = Options::default();
-        let population = Options { population: 1, ..usual };
-        let elite = Options { elite: 100, ..usual };
-        let generations = Options { generations: 0, ..usual };
-        let fraction = Options { crossover_fraction: f64::NAN, ..usual };
-        let bits = Options { coding: Coding::Bits(8), ..usual };
-        let flips = Options { mutation: Mutation::BitFlips(0.1), ..usual };
-        let budget = Options { budget: Some(99), ..usual };
+        let usual = GeneticOptions::default();
+        let population = GeneticOptions { population: 1, ..usual };
+        let elite = GeneticOptions { elite: 100, ..usual };
+        let generations = GeneticOptions { generations: 0, ..usual };
+        let fraction = GeneticOptions { crossover_fraction: f64::NAN, ..usual };
+        let bits = GeneticOptions { coding: Coding::Bits(8), ..usual };
+        let flips = GeneticOptions { mutation: Mutation::BitFlips(0.1), ..usual };
+        let budget = GeneticOptions { budget: Some(99), ..usual };
         for (options, words) in [
             (population, "population"),
             (elite, "elite"),

@@ -1,5 +1,4 @@
-//! What a genetic algorithm is to be measured by: points drawn at random, and differential
-//! evolution.
+//! Baselines for a genetic algorithm: random points, and differential evolution.
 //!
 //! The latter is that of the crate `basin`, DE/rand/1/bin with its default weights (R. Storn and K.
 //! Price, *J. Glob. Optim.* 11 (1997) 341). Both get the same number of evaluations; constraints by
@@ -14,12 +13,12 @@ use basin::{
 };
 use rand::Rng;
 
-use super::population::{Individual, Run};
+use super::population::{GeneticRun, Individual};
 use super::space::{Evaluation, Space};
-use super::stopping::Stop;
+use super::stopping::GeneticStop;
 
 /// The best of what was evaluated, and how it came down.
-struct Watch<F> {
+struct BestTracker<F> {
     evaluate: F,
     tolerance: f64,
     every: usize,
@@ -28,12 +27,12 @@ struct Watch<F> {
     count: usize,
 }
 
-impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
+impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
     fn new(evaluate: F, tolerance: f64, every: usize) -> Self {
         Self { evaluate, tolerance, every, best: None, curve: vec![], count: 0 }
     }
 
-    fn see(&mut self, point: &[f64]) -> Evaluation {
+    fn evaluate_point(&mut self, point: &[f64]) -> Evaluation {
         let evaluation = (self.evaluate)(point);
         self.count += 1;
         let better = |best: &Individual| evaluation.value() < best.evaluation.value();
@@ -50,8 +49,8 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
     }
 
-    fn finish(self, stop: Stop) -> Run {
-        Run {
+    fn finish(self, stop: GeneticStop) -> GeneticRun {
+        GeneticRun {
             generations: self.curve.len(),
             evaluations: self.count,
             best: self.best,
@@ -61,7 +60,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
     }
 }
 
-/// So many points drawn evenly from the box; the curve has the best value after every `every` of
+/// Draws this many points evenly from the box; the curve has the best value after every `every` of
 /// them.
 pub fn random_search(
     space: &Space,
@@ -69,17 +68,17 @@ pub fn random_search(
     (evaluations, every): (usize, usize),
     tolerance: f64,
     generator: &mut impl Rng,
-) -> Run {
-    let mut watch = Watch::new(evaluate, tolerance, every.max(1));
+) -> GeneticRun {
+    let mut watch = BestTracker::new(evaluate, tolerance, every.max(1));
     for _ in 0..evaluations {
-        watch.see(&space.draw(generator));
+        watch.evaluate_point(&space.draw(generator));
     }
-    watch.finish(Stop::Budget)
+    watch.finish(GeneticStop::Budget)
 }
 
 /// The problem as the library wants it.
 struct Boxed<F> {
-    watch: RefCell<Watch<F>>,
+    watch: RefCell<BestTracker<F>>,
     lower: Vec<f64>,
     upper: Vec<f64>,
 }
@@ -92,8 +91,8 @@ impl<F> Constraints for &Boxed<F> {
     }
 }
 
-/// What a point costs that breaks a constraint, or has no value: more than any that has one, and
-/// finite.
+/// Cost of a point that violates a constraint or has no value: larger than that of any other point,
+/// and finite.
 const BROKEN: f64 = 1e100;
 
 impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
@@ -104,7 +103,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     fn cost(&self, point: &Vec<f64>) -> Result<f64, Infallible> {
         let mut watch = self.watch.borrow_mut();
         let tolerance = watch.tolerance;
-        let evaluation = watch.see(point);
+        let evaluation = watch.evaluate_point(point);
         Ok(match evaluation.violation(tolerance) {
             0.0 if evaluation.value().is_finite() => evaluation.value().clamp(-BROKEN, BROKEN),
             violation => BROKEN * (1.0 + violation.min(1e6)),
@@ -112,7 +111,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     }
 }
 
-/// Differential evolution with ten individuals for every variable, for about so many evaluations.
+/// Differential evolution with ten individuals for every variable, for about this many evaluations.
 /// The curve has the best value after every `every` evaluations.
 pub fn differential_evolution(
     space: &Space,
@@ -120,12 +119,15 @@ pub fn differential_evolution(
     (evaluations, every): (usize, usize),
     tolerance: f64,
     seed: u64,
-) -> Run {
+) -> GeneticRun {
     let (lower, upper): (Vec<f64>, Vec<f64>) =
         space.bounds().iter().map(|[lower, upper]| (*lower, *upper)).unzip();
     let size = De::<f64>::default_pop_size(lower.len()).min(evaluations / 2).max(4);
-    let problem =
-        Boxed { watch: RefCell::new(Watch::new(evaluate, tolerance, every.max(1))), lower, upper };
+    let problem = Boxed {
+        watch: RefCell::new(BestTracker::new(evaluate, tolerance, every.max(1))),
+        lower,
+        upper,
+    };
     // The first population is one more.
     let generations = (evaluations / size).saturating_sub(1).max(1) as u64;
     let start = PopulationProgress::<Vec<f64>>::empty();
@@ -134,7 +136,7 @@ pub fn differential_evolution(
         .max_iter(generations)
         .run();
     drop(ended);
-    problem.watch.into_inner().finish(Stop::Budget)
+    problem.watch.into_inner().finish(GeneticStop::Budget)
 }
 
 #[cfg(test)]
@@ -145,7 +147,9 @@ mod tests {
     #[test]
     fn both_use_their_budget_and_one_of_them_finds_the_valley() {
         let space = Space::new(vec![[-5.0, 5.0]; 4]).unwrap();
-        let bowl = |point: &[f64]| Evaluation::of(point.iter().map(|x| (x - 1.0).powi(2)).sum());
+        let bowl = |point: &[f64]| {
+            Evaluation::unconstrained(point.iter().map(|x| (x - 1.0).powi(2)).sum())
+        };
         let drawn = random_search(&space, bowl, (4000, 100), 1e-3, &mut generator(1, 0));
         assert_eq!((drawn.evaluations, drawn.curve.len()), (4000, 40));
         let evolved = differential_evolution(&space, bowl, (4000, 100), 1e-3, 1);
@@ -163,7 +167,7 @@ mod tests {
             equalities: vec![],
             inequalities: vec![0.5 - point[0]],
         };
-        let never = |_: &[f64]| Evaluation::of(f64::INFINITY);
+        let never = |_: &[f64]| Evaluation::unconstrained(f64::INFINITY);
         for best in [
             random_search(&space, beyond, (500, 100), 1e-3, &mut generator(1, 0)).best,
             differential_evolution(&space, beyond, (500, 100), 1e-3, 1).best,

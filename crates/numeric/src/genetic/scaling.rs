@@ -4,7 +4,7 @@
 /// that all together are the number of parents. `scores` are to be small; equal ones keep their
 /// order.
 ///
-/// How far apart scores are plays no part, so neither does the unit of what is sought.
+/// The differences of the scores play no part, and neither does the unit of the objective.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

@@ -7,8 +7,8 @@ use rand::{Rng, RngExt};
 /// on a line, and equal steps along it from a random place in the first one; the parent is whose
 /// part is met. Parents come in random order.
 ///
-/// Of an individual with the share w of all weights and n parents, n w rounded down or up are
-/// chosen, never more or fewer.
+/// Stochastic universal sampling: an individual with the share w of all weights is chosen n w
+/// times, rounded down or up, for n parents.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

@@ -39,7 +39,7 @@ impl Space {
     }
 
     /// The point at these parts of the ranges, 0 the lower and 1 the upper bound, never outside.
-    pub fn at(&self, parts: &[f64]) -> Vec<f64> {
+    pub fn point_at(&self, parts: &[f64]) -> Vec<f64> {
         let place = |(part, [lower, upper]): (&f64, &[f64; 2])| {
             (lower + part * (upper - lower)).clamp(*lower, *upper)
         };
@@ -49,34 +49,34 @@ impl Space {
     /// A point drawn evenly from the box.
     pub fn draw(&self, generator: &mut impl Rng) -> Vec<f64> {
         let parts: Vec<f64> = self.0.iter().map(|_| generator.random()).collect();
-        self.at(&parts)
+        self.point_at(&parts)
     }
 }
 
-/// What a point is worth.
+/// Objectives and constraints of a point.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Evaluation {
-    /// What is to be small; infinite where there is no value.
+    /// Objectives to be minimised; infinite if they have no value.
     pub objectives: Vec<f64>,
-    /// What is to be zero, in parts of something that makes 1 a lot.
+    /// Equalities, to be zero, scaled so that 1 is a large violation.
     pub equalities: Vec<f64>,
-    /// What is to be no more than zero, likewise.
+    /// Inequalities, to be at most zero, scaled likewise.
     pub inequalities: Vec<f64>,
 }
 
 impl Evaluation {
     /// One value without constraints.
-    pub fn of(value: f64) -> Self {
+    pub fn unconstrained(value: f64) -> Self {
         Self { objectives: vec![value], ..Self::default() }
     }
 
-    /// The first objective; infinite where it is no number.
+    /// The first objective; infinite if it is not a number.
     pub fn value(&self) -> f64 {
         let value = self.objectives.first().copied().unwrap_or(f64::INFINITY);
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// By how much it breaks its constraints, all together; an equality holds up to the tolerance.
+    /// Sum of the violations of all constraints; an equality is violated beyond the tolerance.
     pub fn violation(&self, tolerance: f64) -> f64 {
         let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
         let inequalities = self.inequalities.iter().map(|value| value.max(0.0));

@@ -12,7 +12,7 @@
 //! run before generation 51: a run of exactly 51 generations is one whose best value hardly moved
 //! after the first.
 
-/// How the change of the best value over a window is measured.
+/// The measure of the change of the best value over a window of generations.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum StallTest {
     /// Its average.
@@ -22,20 +22,20 @@ pub enum StallTest {
     Weighted,
 }
 
-/// Why a run ended.
+/// The reason why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
+pub enum GeneticStop {
     /// The best value has ceased to change.
     Stalled,
     /// The last generation allowed.
     Generations,
-    /// No evaluations were left for another generation.
+    /// The budget of evaluations is spent.
     Budget,
-    /// Somebody asked it to.
+    /// The run was interrupted.
     Interrupted,
 }
 
-impl Stop {
+impl GeneticStop {
     /// Every reason.
     pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
 

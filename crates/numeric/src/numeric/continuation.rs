@@ -13,12 +13,12 @@
 use nalgebra::allocator::Allocator;
 use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
 
-/// What comes of a step.
+/// The result of one continuation step.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step<Point, End> {
+pub enum ContinuationStep<Point, End> {
     /// The next point, and the ratio of the next step to this one.
     Taken(Point, f64),
-    /// Nothing: the next one is half as long.
+    /// The step failed, and is repeated with half its length.
     TooLong,
     /// The end of the branch, with its last point if that is not the one before.
     Ended(Option<Point>, End),
@@ -29,7 +29,7 @@ pub enum Step<Point, End> {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::continuation::{Step, bordered, follow, tangent};
+/// use lindstedt::numeric::continuation::{ContinuationStep, bordered, follow, tangent};
 /// use lindstedt::numeric::ode::newton::{Progress, newton};
 /// use nalgebra::{DMatrix, DVector};
 ///
@@ -49,9 +49,9 @@ pub enum Step<Point, End> {
 ///     };
 ///     let found = newton(guess.clone(), 5, equations, judged);
 ///     match found.and_then(|at| Some((tangent(&bordered(&slopes(&at), along).lu())?, at))) {
-///         None => Step::TooLong,
-///         Some((_, at)) if here[1] < 0.0 && at[1] >= 0.0 => Step::Ended(Some((at, along.clone())), "around"),
-///         Some((along, at)) => Step::Taken((at, along), 1.4),
+///         None => ContinuationStep::TooLong,
+///         Some((_, at)) if here[1] < 0.0 && at[1] >= 0.0 => ContinuationStep::Ended(Some((at, along.clone())), "around"),
+///         Some((along, at)) => ContinuationStep::Taken((at, along), 1.4),
 ///     }
 /// };
 /// let (points, end) = follow((vector(1.0, 0.0), vector(0.0, 1.0)), 0.01, 0.3, step);
@@ -61,17 +61,17 @@ pub fn follow<Point, End>(
     first: Point,
     mut length: f64,
     longest: f64,
-    mut step: impl FnMut(&[Point], &mut f64) -> Step<Point, End>,
+    mut step: impl FnMut(&[Point], &mut f64) -> ContinuationStep<Point, End>,
 ) -> (Vec<Point>, End) {
     let mut points = vec![first];
     loop {
         match step(&points, &mut length) {
-            Step::Taken(point, ratio) => {
+            ContinuationStep::Taken(point, ratio) => {
                 points.push(point);
                 length = longest.min(ratio * length);
             }
-            Step::TooLong => length *= 0.5,
-            Step::Ended(last, end) => {
+            ContinuationStep::TooLong => length *= 0.5,
+            ContinuationStep::Ended(last, end) => {
                 points.extend(last);
                 return (points, end);
             }

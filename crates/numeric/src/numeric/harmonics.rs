@@ -59,7 +59,7 @@ impl std::fmt::Debug for Transform {
 }
 
 impl Transform {
-    /// Of so many samples a period.
+    /// The transform of this many samples per period.
     pub fn new(samples: usize) -> Self {
         Self(FftPlanner::new().plan_fft_forward(samples))
     }

@@ -8,11 +8,11 @@
 //! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` holds the
 //! wall.
 
-pub use crate::numeric::ode::energy::{Force, PeriodError, turning_point};
+pub use crate::numeric::ode::energy::{PeriodError, PiecewiseForce, turning_point};
 
-use crate::numeric::ode::energy::Rates;
+use crate::numeric::ode::energy::TimePerAngle;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
 /// Tolerance per step of the Runge-Kutta runs that find a return.
 const STEP_TOLERANCE: f64 = 1e-13;
@@ -24,14 +24,14 @@ const STEP_TOLERANCE: f64 = 1e-13;
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::period::{Force, conservative_period};
+/// use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 ///
-/// let period = conservative_period(&Force::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
+/// let period = conservative_period(&PiecewiseForce::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
 /// assert!((std::f64::consts::TAU / period - 0.860_608_346_679_613).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
 /// ```
 pub fn conservative_period(
-    force: &Force,
+    force: &PiecewiseForce,
     equilibrium: f64,
     start: f64,
 ) -> Result<f64, PeriodError> {
@@ -42,12 +42,12 @@ pub fn conservative_period(
 ///
 /// # Errors
 /// See [`PeriodError`].
-pub fn period_between(force: &Force, start: f64, end: f64) -> Result<f64, PeriodError> {
-    period_of_rates(&Rates::new(force, &|_| 1.0, start, end)?)
+pub fn period_between(force: &PiecewiseForce, start: f64, end: f64) -> Result<f64, PeriodError> {
+    period_of_rates(&TimePerAngle::new(force, &|_| 1.0, start, end)?)
 }
 
 /// `T = 2 int (dt/dphi) dphi`, piece by piece.
-fn period_of_rates(rates: &Rates) -> Result<f64, PeriodError> {
+fn period_of_rates(rates: &TimePerAngle) -> Result<f64, PeriodError> {
     let (mut half, mut estimate) = (0.0, 0.0);
     for piece in 0..rates.angles.len() - 1 {
         let mut failure = None;
@@ -96,7 +96,7 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// The same where positions were distances from `origin`.
+    /// Returns the motion with `origin` added to all positions.
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
         self.equilibrium += origin;
@@ -109,8 +109,8 @@ impl Swing {
     }
 
     /// Position and velocity at a time from zero to the period.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
-        let (x, v) = self.path.at((t / self.time).min(self.path.end().t))?;
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
+        let (x, v) = self.path.phase_point_at((t / self.time).min(self.path.end().t))?;
         Some((self.equilibrium + self.length * x, self.length / self.time * v))
     }
 
@@ -192,7 +192,7 @@ pub fn swing_with_cuts(
         state,
         longest / time,
         &events,
-        &Options::with_tolerance(STEP_TOLERANCE),
+        &IntegrationOptions::with_tolerance(STEP_TOLERANCE),
     )?;
     let swing = Swing { path, equilibrium, length, time };
     match swing.path.stop_reason() {
@@ -212,7 +212,7 @@ fn ending(
     start: f64,
     state: State,
 ) -> PeriodError {
-    /// So many amplitudes away nothing is swinging.
+    /// Number of amplitudes beyond which a motion does not oscillate.
     const FAR: f64 = 1e6;
     /// Times the force at rest, beyond which it is the speed that drives the motion.
     const DRIVEN: f64 = 1e3;
@@ -238,7 +238,7 @@ mod tests {
         equilibrium: f64,
         start: f64,
     ) -> Result<f64, PeriodError> {
-        conservative_period(&Force::smooth(force), equilibrium, start)
+        conservative_period(&PiecewiseForce::smooth(force), equilibrium, start)
     }
 
     #[test]
@@ -261,7 +261,7 @@ mod tests {
     fn an_uneven_well_has_its_own_turning_point() {
         // V = x^2/2 + x^3/3 at x = 1/4: V(x_1) = V(1/4) is a cubic with root 1/4, leaving a
         // quadratic.
-        let end = turning_point(&Force::smooth(&|x: f64| x + x * x), 0.0, 0.25).unwrap();
+        let end = turning_point(&PiecewiseForce::smooth(&|x: f64| x + x * x), 0.0, 0.25).unwrap();
         let quadratic = |x: f64| x * x + 1.75 * x + 0.4375;
         assert!(quadratic(end).abs() < 1e-15, "{end}");
         let period = period_of(&|x: f64| x + x * x, 0.0, 0.25).unwrap();
@@ -295,13 +295,15 @@ mod tests {
     fn a_motion_in_another_well_is_told_from_one_over_all() {
         let wells = |x: f64| x - x.powi(3) + 0.2 * x.powi(5);
         assert!(matches!(
-            conservative_period(&Force::smooth(&wells), 0.0, 2.0),
+            conservative_period(&PiecewiseForce::smooth(&wells), 0.0, 2.0),
             Err(PeriodError::OtherWell { .. })
         ));
-        assert!((turning_point(&Force::smooth(&wells), 0.0, 2.5).unwrap() + 2.5).abs() < 1e-14);
+        assert!(
+            (turning_point(&PiecewiseForce::smooth(&wells), 0.0, 2.5).unwrap() + 2.5).abs() < 1e-14
+        );
         let uneven = |x: f64| wells(x) + 0.01;
         assert!(matches!(
-            conservative_period(&Force::smooth(&uneven), -0.01, -2.0),
+            conservative_period(&PiecewiseForce::smooth(&uneven), -0.01, -2.0),
             Err(PeriodError::OtherWell { .. })
         ));
     }

@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use num_complex::Complex;
 
-use crate::numeric::ode::{Options, State, Trajectory, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, Trajectory, integrate};
 
 /// An orbit of N states that comes back to its start after a period.
 #[derive(Clone, Debug)]
@@ -58,8 +58,8 @@ impl<const N: usize, Path> PeriodicOrbit<N, Path> {
 
 impl PeriodicOrbit {
     /// Position and velocity at a time between zero and the period.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        self.path.at(t).unwrap_or((f64::NAN, f64::NAN))
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
+        self.path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
@@ -67,7 +67,7 @@ impl PeriodicOrbit {
         const SAMPLES: usize = 4096;
         let sample = |k: usize| {
             let part = k as f64 / SAMPLES as f64;
-            let x = self.at(part * self.period).0;
+            let x = self.phase_point_at(part * self.period).0;
             let angle = TAU * f64::from(number) * part;
             (x * angle.cos(), x * angle.sin())
         };
@@ -105,17 +105,18 @@ pub struct Shooting<'a, const N: usize> {
     pub solve: fn(DMatrix<f64>, DVector<f64>) -> Option<DVector<f64>>,
     /// Newton's steps after which the search ends.
     pub most: usize,
-    /// How far the start may move, in the sizes, and the period, in its guess.
+    /// Largest change of the start, in units of the sizes, and of the period, in units of its
+    /// guess.
     pub far: f64,
     /// The starts of orbits that are not looked for.
     pub known: &'a [[f64; N]],
 }
 
 impl<const N: usize> Shooting<'_, N> {
-    /// The orbit; `None` where one cannot be followed over a period, or Newton's steps do not
-    /// settle. `follow` gives the state after a period from a start, its derivative by the start
-    /// and the path; `settled` hears how far an orbit is from closing and how far Newton's method
-    /// would move it, both in the sizes, and says whether it is the one.
+    /// The orbit; `None` if one cannot be followed over a period, or Newton's steps do not settle.
+    /// `follow` gives the state after a period from a start, its derivative by the start and the
+    /// path; `settled` is called with the distance of an orbit from closing and the step of
+    /// Newton's method, both in units of the sizes, and returns whether it has converged.
     pub fn orbit<Path>(
         &self,
         mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,
@@ -176,15 +177,14 @@ impl<const N: usize> Shooting<'_, N> {
     }
 }
 
-/// What [`Shooting::orbit`] has to know of a motion, its derivative by central differences:
-/// `follow` gives the state after a period from a start, and the path; `sizes` are those of the
-/// states.
+/// The arguments of [`Shooting::orbit`] with the derivative by central differences: `follow`
+/// returns the state after a period from a start, and the path; `sizes` are those of the states.
 pub fn by_differences<const N: usize, Path>(
     start: [f64; N],
     sizes: [f64; N],
     mut follow: impl FnMut([f64; N]) -> Option<([f64; N], Path)>,
 ) -> Option<([f64; N], SMatrix<f64, N, N>, Path)> {
-    /// Beside the size: far above the error of integration.
+    /// Step of the differences over the size of a state, far above the error of integration.
     const DIFFERENCE: f64 = 1e-5;
     let (end, path) = follow(start)?;
     let mut derivative = SMatrix::<f64, N, N>::zeros();
@@ -203,8 +203,7 @@ pub fn by_differences<const N: usize, Path>(
 
 /// The periodic motion of `x'' = acceleration(t, x, x')`, which has this period in `t`, near a
 /// start, position and velocity at `t = 0`, that is none of those that begin at the known places;
-/// `size` is about how large it is. `None` where none was found near there, or it cannot be
-/// followed.
+/// `size` is about how large it is. `None` if none was found near there, or it cannot be followed.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -226,7 +225,10 @@ pub fn periodic_motion(
     /// A step so short is the last.
     const SETTLED: f64 = 1e-11;
     let (sizes, far) = ([size, size * (TAU / period)], f64::INFINITY);
-    let options = Options { absolute_tolerance: 1e-13 * size, ..Options::with_tolerance(1e-12) };
+    let options = IntegrationOptions {
+        absolute_tolerance: 1e-13 * size,
+        ..IntegrationOptions::with_tolerance(1e-12)
+    };
     let follow = |[x, v]: [f64; 2]| {
         let path = integrate(acceleration, State { t: 0.0, x, v }, period, &[], &options).ok()?;
         path.is_complete().then(|| ([path.end().x, path.end().v], path))
@@ -265,7 +267,7 @@ mod tests {
         };
         let (guess, period, sizes) = ([0.2; 4], TAU / omega, [1.0; 4]);
         let follow = |start: [f64; 4]| {
-            let options = Options::with_tolerance(1e-12);
+            let options = IntegrationOptions::with_tolerance(1e-12);
             let begin = Point { t: 0.0, y: start };
             let path = integrate_first_order(rates, begin, period, &[], &options).ok()?;
             Some((path.end().y, ()))
@@ -328,7 +330,7 @@ mod tests {
         };
         let (guess, sizes) = ([2.0, 2.0, 0.0, 0.0], [2.0; 4]);
         let follow = |start: [f64; 4], period: f64| {
-            let options = Options::with_tolerance(1e-12);
+            let options = IntegrationOptions::with_tolerance(1e-12);
             let in_time = |_: f64, y: &[f64; 4], out: &mut [f64; 4]| *out = rates(*y);
             let begin = Point { t: 0.0, y: start };
             let path = integrate_first_order(in_time, begin, period, &[], &options).ok()?;

@@ -18,13 +18,12 @@
 //! Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
 
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
 
-/// What a return may miss its start by, relative to it, where it is the accuracy of the steps that
-/// decides.
+/// Relative error of a return to the start that is accepted if the accuracy of the steps decides.
 const ROUNDING: f64 = 1e-11;
 
 /// Tolerance per step of the implicit method, and what its returns may miss their start by.
@@ -37,7 +36,7 @@ const STEPS_OF_SEARCH: usize = 20_000;
 const STEPS_OF_RELAXATION: usize = 40_000;
 const STIFF_STEPS: usize = 40_000;
 
-/// How long a return may take, in radians of the linear frequency.
+/// The longest time of a return, in radians of the linear frequency.
 const LONGEST: f64 = 1e4;
 const STIFF_LONGEST: f64 = 1e12;
 
@@ -45,31 +44,30 @@ const STIFF_LONGEST: f64 = 1e12;
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
-/// How many amplitudes away a motion that has not turned is gone for good: no cycle that is looked
-/// for reaches as far.
+/// Distance, in amplitudes, beyond which a motion that has not turned is lost: no cycle that is
+/// looked for reaches as far.
 const GONE: f64 = 1e4;
 
 /// Rings on end without a return after which a side is given up.
 const LOST_RINGS: usize = 4;
 
 /// `x'' = acceleration(x, x')`, and what to measure it with.
-pub struct Equation<'a> {
+pub struct AutonomousEquation<'a> {
     /// The acceleration.
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
-    /// Where the motion swings about.
+    /// The equilibrium about which the motion oscillates.
     pub equilibrium: f64,
-    /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found.
-    /// Positive.
+    /// Approximate amplitude of the cycle, positive: the one nearest to it, by ratio, is found.
     pub amplitude: f64,
-    /// About the linear frequency. Positive.
+    /// Approximate linear frequency, positive.
     pub frequency: f64,
 }
 
-/// Why no cycle was found.
+/// The reason why no cycle was found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoLimitCycle {
-    /// There seems to be none.
+    /// There seems to be no limit cycle.
     #[error(
         "no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time"
     )]
@@ -95,7 +93,7 @@ pub enum NoLimitCycle {
 }
 
 /// A true limit cycle, from its turning point right of the equilibrium.
-pub struct LimitCycle {
+pub struct NumericalLimitCycle {
     path: Trajectory,
     attracts: bool,
     equilibrium: f64,
@@ -103,7 +101,7 @@ pub struct LimitCycle {
     frequency: f64,
 }
 
-impl LimitCycle {
+impl NumericalLimitCycle {
     /// The period.
     pub fn period(&self) -> f64 {
         self.path.end().t / self.frequency
@@ -115,13 +113,13 @@ impl LimitCycle {
     }
 
     /// Displacement and velocity; `t = 0` is the turning point, and times repeat with the period.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let place = (t / self.period()).rem_euclid(1.0) * self.path.end().t;
         let (place, sign) = match self.attracts {
             true => (place, 1.0),
             false => (self.path.end().t - place, -1.0),
         };
-        let (x, v) = self.path.at(place).unwrap_or((f64::NAN, f64::NAN));
+        let (x, v) = self.path.phase_point_at(place).unwrap_or((f64::NAN, f64::NAN));
         let x = self.equilibrium + self.amplitude * x;
         (x, sign * self.amplitude * self.frequency * v)
     }
@@ -135,10 +133,10 @@ impl LimitCycle {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::return_map::{Equation, nearest_limit_cycle};
+/// use lindstedt::numeric::return_map::{AutonomousEquation, nearest_limit_cycle};
 ///
 /// // Van der Pol with mu = 1: the period of the cycle is 6.6632868593.
-/// let equation = Equation {
+/// let equation = AutonomousEquation {
 ///     acceleration: &|x, v| (1.0 - x * x) * v - x,
 ///     equilibrium: 0.0,
 ///     amplitude: 2.0,
@@ -149,9 +147,9 @@ impl LimitCycle {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn nearest_limit_cycle(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     attracts: Option<bool>,
-) -> Result<LimitCycle, NoLimitCycle> {
+) -> Result<NumericalLimitCycle, NoLimitCycle> {
     let directions: &[&[bool]] = match attracts {
         Some(true) => &[&[true], &[false]],
         Some(false) => &[&[false], &[true]],
@@ -190,27 +188,32 @@ pub fn nearest_limit_cycle(
     })
 }
 
-/// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the
-/// cycle to the last digit.
-fn at_once(equation: &Equation, attracts: bool) -> Result<Option<LimitCycle>, NoReturn> {
-    let explicit = returns(ROUNDING, equation, attracts, &|start| {
+/// Finds a cycle of strong attraction, as that of a relaxation oscillation, directly: after two
+/// returns the motion is on it to the last digit.
+fn at_once(
+    equation: &AutonomousEquation,
+    attracts: bool,
+) -> Result<Option<NumericalLimitCycle>, NoReturn> {
+    let explicit = cycle_by_returns(ROUNDING, equation, attracts, &|start| {
         swing(equation, attracts, start, STEPS_OF_RELAXATION)
     });
     match explicit {
-        Err(NoReturn::TooManySteps) => returns(STIFF_ROUNDING, equation, attracts, &|start| {
-            stiff_swing(equation, attracts, start)
-        }),
+        Err(NoReturn::TooManySteps) => {
+            cycle_by_returns(STIFF_ROUNDING, equation, attracts, &|start| {
+                stiff_swing(equation, attracts, start)
+            })
+        }
         explicit => explicit,
     }
 }
 
 /// The cycle onto which a few returns lead, to this accuracy.
-fn returns(
+fn cycle_by_returns(
     rounding: f64,
-    equation: &Equation,
+    equation: &AutonomousEquation,
     attracts: bool,
     swing: &dyn Fn(f64) -> Result<Trajectory, NoReturn>,
-) -> Result<Option<LimitCycle>, NoReturn> {
+) -> Result<Option<NumericalLimitCycle>, NoReturn> {
     const RETURNS: usize = 3;
     let mut start = 1.0;
     for _ in 0..RETURNS {
@@ -225,7 +228,7 @@ fn returns(
 }
 
 /// The first ring about the amplitude in which the return map changes from growing to shrinking.
-fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
+fn by_rings(equation: &AutonomousEquation, directions: &[bool]) -> Option<NumericalLimitCycle> {
     let growth = |attracts: bool, start: f64| {
         let path = swing(equation, attracts, start, STEPS_OF_SEARCH);
         path.map_or(f64::NAN, |path| path.end().x - start)
@@ -238,8 +241,8 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
     for ring in 1..=RINGS {
         for ((&attracts, ends), lost) in directions.iter().zip(&mut ends).zip(&mut lost) {
             for (side, sign) in [(0, -1), (1, 1)] {
-                // Where motions do not come back from several rings on end, they do not from
-                // beyond.
+                // If motions from several neighbouring rings do not return, those from beyond do
+                // not either.
                 if lost[side] == LOST_RINGS {
                     continue;
                 }
@@ -263,8 +266,8 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
     None
 }
 
-fn cycle(equation: &Equation, attracts: bool, path: Trajectory) -> LimitCycle {
-    LimitCycle {
+fn cycle(equation: &AutonomousEquation, attracts: bool, path: Trajectory) -> NumericalLimitCycle {
+    NumericalLimitCycle {
         path,
         attracts,
         equilibrium: equation.equilibrium,
@@ -273,46 +276,51 @@ fn cycle(equation: &Equation, attracts: bool, path: Trajectory) -> LimitCycle {
     }
 }
 
-/// Why a motion was not seen to come back.
+/// The reason why a motion was not seen to come back.
 enum NoReturn {
     Away,
     Escapes,
     TooManySteps,
 }
 
-/// From rest at `start` amplitudes to the next turning point on the same side, forward in time or
-/// backward.
+/// The motion from rest at `start` amplitudes to the next turning point on the same side, forward
+/// in time or backward.
 fn swing(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     forward: bool,
     start: f64,
     maximum_steps: usize,
 ) -> Result<Trajectory, NoReturn> {
-    let options = Options { maximum_steps, ..Options::with_tolerance(STEP_TOLERANCE) };
+    let options =
+        IntegrationOptions { maximum_steps, ..IntegrationOptions::with_tolerance(STEP_TOLERANCE) };
     follow(equation, forward, start, LONGEST, &options)
 }
 
-/// The same by an implicit method, however long it takes.
-fn stiff_swing(equation: &Equation, forward: bool, start: f64) -> Result<Trajectory, NoReturn> {
-    let options = Options {
+/// The half swing by an implicit method, whatever the number of steps.
+fn stiff_swing(
+    equation: &AutonomousEquation,
+    forward: bool,
+    start: f64,
+) -> Result<Trajectory, NoReturn> {
+    let options = IntegrationOptions {
         maximum_steps: STIFF_STEPS,
         // Between its jumps a relaxation oscillation moves at a small fraction of its largest
         // speed.
         absolute_tolerance: 1e-4 * STIFF_TOLERANCE,
         stiff: true,
-        ..Options::with_tolerance(STIFF_TOLERANCE)
+        ..IntegrationOptions::with_tolerance(STIFF_TOLERANCE)
     };
     follow(equation, forward, start, STIFF_LONGEST, &options)
 }
 
 fn follow(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     forward: bool,
     start: f64,
     longest: f64,
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, NoReturn> {
-    let Equation { acceleration, equilibrium, amplitude, frequency } = equation;
+    let AutonomousEquation { acceleration, equilibrium, amplitude, frequency } = equation;
     let speed = amplitude * frequency * if forward { 1.0 } else { -1.0 };
     let unit = amplitude * frequency * frequency;
     let scaled =
@@ -347,13 +355,13 @@ mod tests {
     use super::*;
 
     /// The cycle of x'' = acceleration about zero, found from a guess.
-    fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> LimitCycle {
+    fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> NumericalLimitCycle {
         let equation =
-            Equation { acceleration, equilibrium: 0.0, amplitude: guess, frequency: 1.0 };
+            AutonomousEquation { acceleration, equilibrium: 0.0, amplitude: guess, frequency: 1.0 };
         nearest_limit_cycle(&equation, None).expect("a limit cycle")
     }
 
-    fn van_der_pol(mu: f64) -> LimitCycle {
+    fn van_der_pol(mu: f64) -> NumericalLimitCycle {
         found(&move |x, v| mu * (1.0 - x * x) * v - x, 2.0)
     }
 
@@ -438,11 +446,16 @@ mod tests {
             assert_eq!(cycle.attracts(), mu > 0.0);
             // Turning points: 2 + alpha mu^(-4/3)/3 + ...
             let turning = 2.0 + 2.338_107 * next / 3.0;
-            assert!((cycle.at(0.0).0 - turning).abs() < next, "{}", cycle.at(0.0).0);
+            assert!(
+                (cycle.phase_point_at(0.0).0 - turning).abs() < next,
+                "{}",
+                cycle.phase_point_at(0.0).0
+            );
             // Half a period later the mirror image.
             for k in 0..50 {
                 let t = period * f64::from(k) / 50.0;
-                let (there, opposite) = (cycle.at(t).0, cycle.at(t + 0.5 * period).0);
+                let (there, opposite) =
+                    (cycle.phase_point_at(t).0, cycle.phase_point_at(t + 0.5 * period).0);
                 assert!((there + opposite).abs() < 1e-5, "{mu} {t}: {there} {opposite}");
             }
         }
@@ -452,7 +465,7 @@ mod tests {
     fn beyond_double_precision_there_is_no_period() {
         for mu in [1e12, 1e20, 1e30, 1e100] {
             let acceleration = move |x: f64, v: f64| mu * (1.0 - x * x) * v - x;
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 2.0,
@@ -473,7 +486,7 @@ mod tests {
     fn the_implicit_method_agrees_with_the_explicit_one() {
         for mu in [5.0, 30.0] {
             let acceleration = |x: f64, v: f64| mu * (1.0 - x * x) * v - x;
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 2.0,
@@ -486,7 +499,7 @@ mod tests {
             assert!((implicit.period() / explicit.period() - 1.0).abs() < 1e-8);
             for k in 0..200 {
                 let t = 0.005 * f64::from(k) * explicit.period();
-                let ((x, v), (y, w)) = (implicit.at(t), explicit.at(t));
+                let ((x, v), (y, w)) = (implicit.phase_point_at(t), explicit.phase_point_at(t));
                 assert!(
                     (x - y).abs() < 1e-6 && (v - w).abs() < 1e-4 * mu,
                     "{mu} {t}: {x} {y} {v} {w}"
@@ -502,7 +515,7 @@ mod tests {
             let cycle = van_der_pol(mu);
             let place = |k: i32| cycle.period() * f64::from(k) / 20_000.0;
             let work = |weight: &dyn Fn(f64) -> f64| {
-                let powers = (0..20_000).map(|k| cycle.at(place(k)));
+                let powers = (0..20_000).map(|k| cycle.phase_point_at(place(k)));
                 powers.map(|(x, v)| weight(x) * v * v).sum::<f64>()
             };
             let (net, whole) = (work(&|x| 1.0 - x * x), work(&|x| (1.0 - x * x).abs()));
@@ -518,7 +531,7 @@ mod tests {
             assert!((forward.period() / backward.period() - 1.0).abs() < 1e-10);
             for k in 0..20 {
                 let t = 0.05 * f64::from(k) * forward.period();
-                let ((x, v), (y, w)) = (forward.at(t), backward.at(-t));
+                let ((x, v), (y, w)) = (forward.phase_point_at(t), backward.phase_point_at(-t));
                 assert!(
                     (x - y).abs() < 1e-7 && (v + w).abs() < 1e-6 * mu,
                     "mu = {mu}, t = {t}: {x} {y} {v} {w}"
@@ -535,7 +548,7 @@ mod tests {
                 let (x, v) = (x / length, v / (length * rate));
                 length * rate * rate * (2.0 * (1.0 - x * x) * v - x)
             };
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 3.0 * length,
@@ -543,7 +556,10 @@ mod tests {
             };
             let cycle = nearest_limit_cycle(&equation, None).expect("a limit cycle");
             assert!((cycle.period() * rate / plain.period() - 1.0).abs() < 1e-10);
-            assert!((cycle.at(0.0).0 / length / plain.at(0.0).0 - 1.0).abs() < 1e-10);
+            assert!(
+                (cycle.phase_point_at(0.0).0 / length / plain.phase_point_at(0.0).0 - 1.0).abs()
+                    < 1e-10
+            );
         }
     }
 
@@ -557,9 +573,9 @@ mod tests {
             for (guess, amplitude) in [(0.5, inner), (1.5, inner), (1.9, outer), (4.0, outer)] {
                 let cycle = found(&acceleration, guess);
                 assert!(
-                    (cycle.at(0.0).0 / amplitude - 1.0).abs() < 1e-4,
+                    (cycle.phase_point_at(0.0).0 / amplitude - 1.0).abs() < 1e-4,
                     "{guess}: {}",
-                    cycle.at(0.0).0
+                    cycle.phase_point_at(0.0).0
                 );
                 assert_eq!(cycle.attracts(), (amplitude == outer) == (eps > 0.0));
             }
@@ -570,8 +586,12 @@ mod tests {
     fn where_there_is_none_the_search_ends() {
         let damped = |x: f64, v: f64| -0.1 * v - x;
         let search = |acceleration: &dyn Fn(f64, f64) -> f64| {
-            let equation =
-                Equation { acceleration, equilibrium: 0.0, amplitude: 2.0, frequency: 1.0 };
+            let equation = AutonomousEquation {
+                acceleration,
+                equilibrium: 0.0,
+                amplitude: 2.0,
+                frequency: 1.0,
+            };
             nearest_limit_cycle(&equation, None).err()
         };
         assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));

@@ -1,4 +1,4 @@
-//! Where a force may turn fast: corners, steep walls and narrow bumps, found from the structure of
+//! Narrow features of a force: corners, steep walls and narrow bumps, found from the structure of
 //! its expression.
 //!
 //! A grid of points, however fine, misses a bump narrower than itself:
@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 pub struct Feature {
     /// The position.
     pub place: f64,
-    /// Over what distance the force may turn; zero at a corner, a jump or a pole.
+    /// The distance over which the force may change; zero at a corner, a jump or a pole.
     pub width: f64,
     /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the
     /// faster the closer.
@@ -46,16 +46,16 @@ pub struct Features {
     parts: Vec<InnerFunction>,
 }
 
-/// How a function answers to its argument.
+/// The behaviour of a function that decides where it varies on a short scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FunctionKind {
-    /// It breaks where the argument is zero.
+    /// A corner if the argument is zero.
     Corner,
-    /// It breaks where the argument is plus or minus one.
+    /// A corner if the argument is plus or minus one.
     Inverse,
-    /// It changes when the argument changes by one; whether it does so again and again.
+    /// A change on the scale of one in the argument; the flag says whether it repeats.
     Scale { waves: bool },
-    /// It changes when the argument changes by its own size over this exponent.
+    /// A change on the scale of the argument over this exponent.
     Power(f64),
 }
 
@@ -78,7 +78,7 @@ const MOST_POINTS: usize = 4096;
 /// A power this high is a bump or a wall.
 const HIGH_POWER: f64 = 8.0;
 
-/// How many times wider each panel beside a narrow place is than the one before.
+/// Ratio of the widths of neighbouring panels beside a narrow place.
 const GROWTH: f64 = 4.0;
 
 impl Features {
@@ -151,9 +151,10 @@ impl Features {
         found
     }
 
-    /// Where to cut the interval from `from` to `to` so that the force is smooth on each piece and
-    /// turns no faster than the piece is long: corners, and steps of growing length on both sides
-    /// of a narrow place. Without the ends, in order.
+    /// Points that divide the interval from `from` to `to` so that on each piece the force is
+    /// smooth and varies on no shorter scale than the length of the piece: corners, and steps of
+    /// growing length on both sides of a narrow place. The ends are left out; the order is
+    /// ascending.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts = graded(&self.between(low, high), low, high);
@@ -171,7 +172,7 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
         // Beside a singular place the force is as narrow as that is far.
         let outside = f64::max(low - feature.place, feature.place - high).max(0.0);
         let width = if feature.singular { 0.5 * outside } else { feature.width };
-        // What is as wide as the interval is no feature of it.
+        // A feature as wide as the interval needs no cut.
         if width > length / 16.0 {
             continue;
         }
@@ -188,8 +189,8 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     points
 }
 
-/// What a node adds: its argument, where that contains the coordinate and the node can break or
-/// turn fast.
+/// The inner function of a node: its argument, if that contains the coordinate and the node can
+/// have a corner, a pole or a steep slope.
 fn part(expr: &Expr, coordinate: Symbol) -> Option<InnerFunction> {
     let (kind, argument) = match expr.node() {
         Node::Power(base, exponent) if exponent.contains(coordinate) => {
@@ -258,7 +259,7 @@ fn polynomial(expr: &Expr, coordinate: Symbol) -> Option<Vec<f64>> {
     Some(coefficients)
 }
 
-/// How far the argument of a wave goes up and down along a grid.
+/// Total variation of the argument of a sine or cosine along a grid.
 fn variation(argument: &CompiledFunction, grid: &[f64]) -> f64 {
     let values: Vec<f64> = grid.iter().map(|&x| argument.call(&[x])).collect();
     let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());

@@ -19,7 +19,7 @@ use super::features::Features;
 use crate::exact::Rational;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
@@ -31,13 +31,13 @@ const DEGREE: u32 = 10;
 const DEGREE_OF_HIGHER_POWERS: u32 = 32;
 
 /// A force as a function of the distance from its equilibrium.
-pub struct Force {
+pub struct CentredForce {
     of: Rc<AtNumbers>,
     near: Option<NearRest>,
     evaluations: Cell<u64>,
 }
 
-/// What does not depend on the size of the motion.
+/// The part of a force that does not depend on the size of the motion.
 struct AtNumbers {
     force: Expr,
     coordinate: Symbol,
@@ -77,9 +77,9 @@ impl NearRest {
     }
 }
 
-impl Force {
-    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None`
-    /// where a symbol has no number.
+impl CentredForce {
+    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None` if
+    /// a symbol has no number.
     pub fn new(
         force: &Expr,
         coordinate: Symbol,
@@ -109,8 +109,7 @@ impl Force {
         Some(Self::of_amplitude(Rc::new(of), amplitude))
     }
 
-    /// The same force for motions of about another amplitude: what was found out about it is not
-    /// found out again.
+    /// The force for motions of about another amplitude; everything known about it is shared.
     #[must_use]
     pub fn with_amplitude(&self, amplitude: f64) -> Self {
         Self::of_amplitude(Rc::clone(&self.of), amplitude)
@@ -133,12 +132,12 @@ impl Force {
     }
 
     /// The force at the distance `y` from the equilibrium.
-    pub fn at(&self, y: f64) -> f64 {
+    pub fn value(&self, y: f64) -> f64 {
         let near = self.near.as_ref().and_then(|near| near.value(y));
         near.unwrap_or_else(|| self.call(&self.of.value, y))
     }
 
-    /// The polynomial that stands in for the force near rest; `None` where the force itself has all
+    /// The polynomial that stands in for the force near rest; `None` if the force itself has all
     /// its digits there.
     pub fn polynomial_near_rest(&self) -> Option<&NearRest> {
         self.near.as_ref()
@@ -165,7 +164,7 @@ impl Force {
     }
 
     /// The work against the force from one distance to another, with a bound of its error; `None`
-    /// where it has no value between.
+    /// if it has no value between.
     pub fn work(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         const TOLERANCE: f64 = 1e-14;
         let mut ends = self.cuts(from, to);
@@ -173,7 +172,7 @@ impl Force {
         ends.sort_by(f64::total_cmp);
         let (mut sum, mut error) = (0.0, 0.0);
         for pair in ends.windows(2) {
-            let piece = match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
+            let piece = match integrate_smooth(|y| self.value(y), pair[0], pair[1], TOLERANCE) {
                 Ok(piece) => piece,
                 Err(QuadratureError::NotConverged { value, error_estimate, .. })
                     if error_estimate < 1e-9 * value.abs() =>
@@ -188,8 +187,8 @@ impl Force {
         Some((if from <= to { sum } else { -sum }, error))
     }
 
-    /// How often the force or its slope was evaluated so far: a measure of work that is the same on
-    /// every machine.
+    /// Number of evaluations of the force or its slope so far: a measure of work that is the same
+    /// on every machine.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
@@ -201,7 +200,7 @@ impl Force {
         function.call(&arguments)
     }
 
-    /// Where to cut an interval of distances so that the force is smooth on each piece.
+    /// Distances that divide an interval so that the force is smooth on each piece.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
         let at = self.equilibrium();
         let cuts = self.of.features().cuts(at + from, at + to);
@@ -218,8 +217,8 @@ impl Force {
     fn near_rest(&self, amplitude: f64) -> Option<NearRest> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
-        /// How many amplitudes the polynomial may reach: farther than the search for the edge of a
-        /// well.
+        /// Largest ratio of a distance to the amplitude at which the polynomial is used: beyond the
+        /// range of the search for the edge of a well.
         const FARTHEST: f64 = 1e12;
         let (coordinate, numbers, place) =
             (self.of.coordinate, &self.of.numbers, self.equilibrium());
@@ -287,8 +286,8 @@ impl Force {
         let (from, to) = (from.min(to), from.max(to));
         let size = from.abs().max(to.abs());
         let defined = |y: f64| {
-            self.at(y).is_finite()
-                || [-1e-9, 1e-9].iter().all(|d| self.at(y + d * size).is_finite())
+            self.value(y).is_finite()
+                || [-1e-9, 1e-9].iter().all(|d| self.value(y + d * size).is_finite())
         };
         let sample = |k: usize| {
             let half = 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64).cos();
@@ -302,7 +301,7 @@ impl Force {
             let inside = samples.iter().copied().filter(|&y| defined(y));
             let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
             let [_, outside] =
-                bisect(defined, nearest.unwrap_or(outside), outside, Until::Halvings(60));
+                bisect(defined, nearest.unwrap_or(outside), outside, BisectionStop::Halvings(60));
             return Some(self.equilibrium() + outside);
         }
         if self.of.features().is_empty() {
@@ -328,12 +327,12 @@ impl Force {
             })
     }
 
-    /// What of the force is beyond double precision at the distance `y`, in words, where that is
-    /// why it has no finite value there.
+    /// The part of the force that is beyond double precision at the distance `y`, in words; `None`
+    /// if the force is finite there or has no value for another reason.
     pub fn overflow(&self, y: f64) -> Option<String> {
         let mut there = self.of.numbers.clone();
         there.insert(self.of.coordinate, self.equilibrium() + y);
-        match self.at(y).is_finite() {
+        match self.value(y).is_finite() {
             true => None,
             false => self.of.force.overflow(&there),
         }
@@ -384,7 +383,7 @@ impl AtNumbers {
         })
     }
 
-    /// The Taylor coefficients about the equilibrium; `None` where there are none.
+    /// The Taylor coefficients about the equilibrium; `None` if there are none.
     fn expanded(&self) -> Option<Vec<f64>> {
         let moved = Expr::from(self.coordinate) + self.equilibrium.0.clone();
         let about = self.force.substitute(self.coordinate, &moved).ok()?;
@@ -406,7 +405,7 @@ impl AtNumbers {
     }
 }
 
-/// The force at a place; `None` where it has no finite value there.
+/// The force at a place; `None` if it has no finite value there.
 fn value_at(
     force: &Expr,
     coordinate: Symbol,
@@ -422,9 +421,9 @@ fn value_at(
 mod tests {
     use super::*;
 
-    fn force(text: &str, equilibrium: &str, amplitude: f64) -> Force {
+    fn force(text: &str, equilibrium: &str, amplitude: f64) -> CentredForce {
         let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().unwrap());
-        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
+        CentredForce::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
     }
 
     #[test]
@@ -441,7 +440,7 @@ mod tests {
                 let amplitude = 10.0_f64.powi(-power);
                 let found = force(text, equilibrium, amplitude);
                 for y in [amplitude, -0.37 * amplitude, 0.01 * amplitude] {
-                    let error = found.at(y) / truth(y) - 1.0;
+                    let error = found.value(y) / truth(y) - 1.0;
                     // A hundredth of the amplitude may lose what does not count beside the whole.
                     assert!(
                         error.abs() < 3e-14 * amplitude / y.abs() * 10.0,
@@ -459,18 +458,18 @@ mod tests {
         let cosine = |y: f64| 2.0 * (0.5 * y).sin().powi(2) / y;
         for amplitude in [2.0, 0.5, 1e-3, 1e-9] {
             let found = force("(1 - cos(x))/x", "0", amplitude);
-            assert_eq!(found.at(0.0), 0.0);
+            assert_eq!(found.value(0.0), 0.0);
             assert!((found.slope(0.0) - 0.5).abs() < 1e-15);
             for y in [amplitude, -0.37 * amplitude, 1e-3 * amplitude, 1e-7 * amplitude] {
-                let error = (found.at(y) - cosine(y)).abs() / cosine(amplitude);
+                let error = (found.value(y) - cosine(y)).abs() / cosine(amplitude);
                 assert!(error < 1e-13, "{y}: {error:e}");
             }
             let other = force("(exp(x) - 1)/x - 1", "0", amplitude);
-            assert_eq!(other.at(0.0), 0.0);
+            assert_eq!(other.value(0.0), 0.0);
             assert!((other.slope(1e-12 * amplitude) - 0.5).abs() < 1e-11);
         }
         // A pole is not filled in.
-        assert!(!force("x - 1/x^3", "0", 0.5).at(0.0).is_finite());
+        assert!(!force("x - 1/x^3", "0", 0.5).value(0.0).is_finite());
     }
 
     #[test]

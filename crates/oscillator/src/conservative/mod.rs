@@ -10,9 +10,9 @@
 //! ```
 //!
 //! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as
-//! expressions, or `None` where a term has no closed form here: the methods fall back on quadrature
-//! and say so. With numbers for all symbols out goes a [`Force`], which has a value, a slope and a
-//! turning point as near to rest as one likes, and knows where it turns fast; its
+//! expressions, or `None` if a term has no closed form here: the methods fall back on quadrature
+//! and say so. With numbers for all symbols out goes a [`CentredForce`], which has a value, a slope
+//! and a turning point as near to rest as one likes, and knows where it turns fast; its
 //! [well](well::Well) has ends.
 
 pub mod features;
@@ -25,7 +25,7 @@ pub(crate) mod power;
 pub(crate) mod projection;
 pub mod well;
 
-pub use force::Force;
+pub use force::CentredForce;
 pub use parity::is_odd;
 pub use potential::potential;
 pub use projection::cosine_coefficient;
@@ -65,7 +65,7 @@ pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
     has_root == Ok(false)
 }
 
-/// Slope and constant of an argument `slope*x + constant`; `None` where it is not linear in `x`, or
+/// Slope and constant of an argument `slope*x + constant`; `None` if it is not linear in `x`, or
 /// constant.
 pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Expr)> {
     let slope = argument.differentiate(coordinate).ok()?.expand().ok()?;

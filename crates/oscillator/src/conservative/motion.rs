@@ -1,15 +1,15 @@
-//! Where a motion of a force about its equilibrium, released at rest, turns back
-//! ([`crate::numeric::ode::energy`]), in distances from the equilibrium, so that nothing is lost
-//! near rest. What lies between the turning points is integrated by who asks for it.
+//! Turning points of a motion released from rest ([`crate::numeric::ode::energy`]), in distances
+//! from the equilibrium, so that no digits are lost near rest. The integral between the turning
+//! points is left to the caller.
 
-use super::force::Force;
+use super::force::CentredForce;
 use super::well::Well;
 use crate::decimal::rounded_to;
 use crate::exact::rational::to_f64;
 use crate::numeric::ode::energy::{self, PeriodError};
 use crate::solution::AmplitudeConvention;
 
-impl Force {
+impl CentredForce {
     /// The distance from the equilibrium of the other turning point of a motion released at the
     /// distance `start`.
     ///
@@ -19,18 +19,18 @@ impl Force {
         self.between_turning_points(start, |_, end| Ok(end))
     }
 
-    /// What `run` makes of the force and the other turning point, where no pole stands in the way:
-    /// one so weak that rounding hides its energy would be passed unseen.
+    /// Calls `run` with the force and the other turning point. Poles between them are an error: one
+    /// so weak that rounding hides its energy would be passed unseen.
     ///
     /// # Errors
     /// See [`PeriodError`]; places are positions.
     pub fn between_turning_points<T>(
         &self,
         start: f64,
-        run: impl FnOnce(&energy::Force, f64) -> Result<T, PeriodError>,
+        run: impl FnOnce(&energy::PiecewiseForce, f64) -> Result<T, PeriodError>,
     ) -> Result<T, PeriodError> {
-        let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
-        let force = energy::Force::with_cuts(&value, &cuts);
+        let (value, cuts) = (|y| self.value(y), |from, to| self.cuts(from, to));
+        let force = energy::PiecewiseForce::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
             Some(term) => PeriodError::Overflow { place: distance, term },
             None => PeriodError::Pole { place: distance },
@@ -58,13 +58,14 @@ impl Force {
         found.map_err(|error| error.moved(self.equilibrium()))
     }
 
-    /// Why a motion released at the distance `start` has no period, where a search or a quadrature
-    /// has failed with `error`: at the separatrix that ends the well neither knows what it met. It
-    /// takes a search for the rims of the well, so this is for messages.
+    /// The reason why a motion released at the distance `start` has no period, where a search or a
+    /// quadrature has failed with `error`: at the separatrix that ends the well neither knows what
+    /// it met. It takes a search for the rims of the well, so this is for messages.
     pub fn why_no_period(&self, start: f64, error: PeriodError) -> PeriodError {
-        /// As near to the end of the well, relatively, as its place is known.
+        /// Relative distance from the end of the well within which its position is known.
         const ON: f64 = 1e-13;
-        /// So near the time that the motion takes is a quadrature of rounding.
+        /// Relative distance from the end of the well within which the period is an integral of
+        /// rounding errors.
         const NEAR: f64 = 1e-6;
         let lost = matches!(error, PeriodError::Quadrature(_) | PeriodError::Root(_));
         let gone = matches!(

@@ -42,7 +42,7 @@ pub fn twice_even_part(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprErr
     let mirrored = force.substitute(coordinate, &-&Expr::from(coordinate))?;
     let sum = (&mirrored + force).expand()?;
     let vanishes = || Ok::<bool, ExprError>(in_steps(&sum, coordinate)?.is_zero());
-    // What is too long to be written in steps keeps the parity that its own form shows.
+    // A sum too long to be written in steps keeps the parity that its own form shows.
     match sum.is_zero() || vanishes().unwrap_or(false) {
         true => Ok(Expr::zero()),
         false => Ok(sum),

@@ -13,8 +13,8 @@
 //! which holds in ranges of `A`: each begins where `V` is that of the highest hilltop before, and
 //! ends at the next one.
 
-use super::force::Force;
-use super::well::{Rim, end_of_force, rise, sign_change};
+use super::force::CentredForce;
+use super::well::{WellBoundary, end_of_force, rise, sign_change};
 use crate::numeric::ode::root::find_root;
 
 /// One range of amplitudes; of a motion of either sign the size counts.
@@ -22,14 +22,15 @@ use crate::numeric::ode::root::find_root;
 pub struct Passage {
     /// The amplitude that all of its motions exceed; zero where they begin at rest.
     pub from: f64,
-    /// How far from the equilibrium the hilltop is that they pass and the motion of that amplitude
-    /// does not: zero for the equilibrium itself.
+    /// Distance from the equilibrium of the hilltop that these motions pass and the motion of
+    /// amplitude `from` does not; zero for the equilibrium itself.
     pub over: f64,
-    /// Where the range ends, if it does: the place as a distance from the equilibrium.
-    pub to: Option<Rim>,
+    /// The boundary at which the range ends, at its distance from the equilibrium; `None` if it
+    /// does not end.
+    pub to: Option<WellBoundary>,
 }
 
-/// How many decades on either side of the unit are searched, and the growth of the steps.
+/// Number of decades searched on either side of the unit, and the growth of the steps.
 const DECADES: i32 = 12;
 const GROWTH: f64 = 1.02;
 
@@ -38,10 +39,10 @@ const MOST: usize = 24;
 
 /// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of what is
 /// looked at.
-pub fn pushes_away(force: &Force, unit: f64) -> bool {
+pub fn pushes_away(force: &CentredForce, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
-    let felt = distances.map(|distance| [force.at(distance), -force.at(-distance)]);
+    let felt = distances.map(|distance| [force.value(distance), -force.value(-distance)]);
     let first =
         felt.into_iter().find(|sides| sides.iter().all(|side| side.is_finite() && *side != 0.0));
     first.is_some_and(|sides| sides.iter().all(|side| *side < 0.0))
@@ -49,7 +50,7 @@ pub fn pushes_away(force: &Force, unit: f64) -> bool {
 
 /// The ranges of amplitudes of an odd force, outwards, up to twenty-four equilibria or twelve
 /// decades beyond the unit.
-pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
+pub fn passages(force: &CentredForce, unit: f64) -> Vec<Passage> {
     let Some(side) = Side::new(force, unit.abs()) else {
         return vec![];
     };
@@ -64,7 +65,7 @@ pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
             break;
         }
         let rim = match place {
-            Some(place) => Some(Rim { place, separatrix: true }),
+            Some(place) => Some(WellBoundary { place, separatrix: true }),
             None => side.end,
         };
         let begin = if number == 0 { 0.0 } else { side.places[number - 1] };
@@ -92,8 +93,8 @@ pub fn passage_at(passages: &[Passage], amplitude: f64) -> Option<&Passage> {
 
 /// The first amplitude from a bottom at `begin` on at which the potential exceeds a height, before
 /// the end; zero at rest.
-fn beginning(force: &Force, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
-    /// Of the depth: less is rounding.
+fn beginning(force: &CentredForce, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
+    /// Relative part of the depth below which a difference is rounding.
     const VISIBLE: f64 = 1e-9;
     if begin == 0.0 {
         return Some(0.0);
@@ -126,21 +127,21 @@ fn beginning(force: &Force, begin: f64, end: Option<f64>, height: f64) -> Option
 
 /// The right side of a force, from its equilibrium outwards.
 struct Side {
-    /// Where it changes its sign.
+    /// Distances at which the force changes its sign.
     places: Vec<f64>,
     /// Whether it pulls back up to each of these, and beyond the last.
     pulls: Vec<bool>,
-    /// Where it ends, or has a pole.
-    end: Option<Rim>,
+    /// The end of the force, or a pole.
+    end: Option<WellBoundary>,
     /// Whether all of it was looked at.
     is_whole: bool,
 }
 
 impl Side {
-    fn new(force: &Force, unit: f64) -> Option<Self> {
+    fn new(force: &CentredForce, unit: f64) -> Option<Self> {
         let equilibrium = force.equilibrium();
-        let value = |distance: f64| force.at(distance);
-        let ends_at = |place: f64| Rim { place, separatrix: false };
+        let value = |distance: f64| force.value(distance);
+        let ends_at = |place: f64| WellBoundary { place, separatrix: false };
         let first = unit * 10.0_f64.powi(-DECADES);
         let farthest = unit * 10.0_f64.powi(DECADES);
         // The last place at which the force has a value other than zero.
@@ -216,9 +217,10 @@ mod tests {
 
     fn ranges(text: &str, unit: f64) -> Vec<(f64, f64, Option<f64>)> {
         let force: Expr = text.parse().unwrap();
-        let force = Force::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
+        let force =
+            CentredForce::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
         let found = passages(&force, unit).into_iter();
-        let end = |rim: Rim| rim.place;
+        let end = |rim: WellBoundary| rim.place;
         found.map(|range| (range.from, range.over, range.to.map(end))).collect()
     }
 
@@ -263,7 +265,7 @@ mod tests {
     fn a_hilltop_is_told_from_a_bottom() {
         let away = |text: &str, at: &str, unit: f64| {
             let [force, at]: [Expr; 2] = [text, at].map(|text| text.parse().unwrap());
-            let force = Force::new(&force, "x".into(), &at, &BTreeMap::new(), unit).unwrap();
+            let force = CentredForce::new(&force, "x".into(), &at, &BTreeMap::new(), unit).unwrap();
             pushes_away(&force, unit)
         };
         for unit in [1e-5, 1.0, 1e5] {

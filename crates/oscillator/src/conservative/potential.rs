@@ -19,7 +19,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::{Symbol, fresh};
 
-/// An antiderivative of a force in `coordinate`; `None` where a term has no closed form here.
+/// An antiderivative of a force in `coordinate`; `None` if a term has no closed form here.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -45,7 +45,7 @@ fn of_term(term: &Expr, coordinate: Symbol) -> Option<Expr> {
 /// `h(g(x)) g'(x)`, whose integral is that of `h` at `g`, for one of the functions that the term is
 /// made of as `g`.
 fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
-    /// So many are tried.
+    /// Largest number of candidates that are tried.
     const CANDIDATES: usize = 8;
     let (outside, inside) = split(term, coordinate);
     let integrand = Expr::product(inside);
@@ -100,7 +100,7 @@ fn power_of(term: &Expr, variable: Symbol) -> Option<Expr> {
     Some(outside * value.ok()?)
 }
 
-/// An expression written in `variable = part`; `None` where something of the coordinate is left.
+/// An expression written in `variable = part`; `None` if something of the coordinate is left.
 fn in_terms_of(part: &Expr, variable: Symbol, of: &Expr, coordinate: Symbol) -> Option<Expr> {
     let name = Expr::from(variable);
     let even_power = |expr: &Expr| {

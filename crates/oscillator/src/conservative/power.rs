@@ -24,7 +24,7 @@ impl Power {
     }
 
     /// Takes a factor in, where it is a power of the variable, its size or its sign.
-    pub(crate) fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
+    pub(crate) fn absorb(&mut self, factor: &Expr, variable: Symbol) -> bool {
         let (base, exponent) = factor.base_and_exponent();
         let number = exponent.as_number();
         let of_variable =
@@ -54,7 +54,7 @@ impl Power {
     }
 
     /// The whole number that it is a power by, where it is one of the variable itself.
-    pub(crate) fn whole(&self) -> Option<usize> {
+    pub(crate) fn integer_exponent(&self) -> Option<usize> {
         let number = self.exponent.as_number()?;
         let whole = number.is_integer() && self.odd == number.numer().is_odd();
         let count = number.to_integer().to_usize()?;
@@ -65,7 +65,7 @@ impl Power {
     pub(crate) fn in_terms_of(&self, variable: Symbol) -> Option<Expr> {
         let size = Expr::function(Function::Absolute, vec![Expr::from(variable)]).ok()?;
         let power = Expr::power(&size, &self.exponent).ok()?;
-        if let Some(count) = self.whole() {
+        if let Some(count) = self.integer_exponent() {
             return Expr::from(variable).integer_power(count as i64).ok();
         }
         match self.odd {

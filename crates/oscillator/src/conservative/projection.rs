@@ -26,7 +26,7 @@ use crate::symbol::Symbol;
 const HIGHEST_POWER: usize = 24;
 
 /// `c_k` of a force in `coordinate` for the motion `amplitude * cos(theta)`, `amplitude > 0`;
-/// `None` where a term has no closed form here.
+/// `None` if a term has no closed form here.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -189,8 +189,8 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
 
 /// `c_k` of `|cos|^n`, or of `sgn(cos) |cos|^n` where `odd`.
 fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
-    // Where the cosine is zero those of its odd multiples are, too: one power of it more that an
-    // integral may take.
+    // The odd multiples of the cosine vanish together with it, so the integral converges with a
+    // power lower by one.
     let lowest = if odd { ratio(-2, 1) } else { ratio(-1, 1) };
     if *exponent <= lowest {
         return None;
@@ -386,7 +386,8 @@ mod tests {
     use std::collections::BTreeMap;
     use std::f64::consts::PI;
 
-    /// By quadrature between the corners of the force, which the formulas know nothing of.
+    /// The coefficient by quadrature between the corners of the force, of which the formulas do not
+    /// know.
     fn by_quadrature(text: &str, amplitude: f64, k: usize, corners: &[f64]) -> f64 {
         let force: Expr = text.parse().unwrap();
         let force = CompiledFunction::new(&force, &["x".into()]).unwrap();

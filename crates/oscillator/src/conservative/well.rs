@@ -14,18 +14,18 @@
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
-use super::force::Force;
+use super::force::CentredForce;
 use super::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 use crate::symbol::Symbol;
 
-/// Where a well ends on one side.
+/// The boundary of a well on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rim {
-    /// The unstable equilibrium, or the place where the force ends; infinite where the force dies
-    /// away so fast that its potential levels off.
+pub struct WellBoundary {
+    /// The unstable equilibrium, or the place where the force ends; infinite if the force dies away
+    /// so fast that its potential levels off.
     pub place: f64,
     /// Whether it is an unstable equilibrium; otherwise the force has no value beyond it.
     pub separatrix: bool,
@@ -34,49 +34,49 @@ pub struct Rim {
 /// A rim and the potential there above the bottom of the well.
 #[derive(Clone, Copy)]
 struct Wall {
-    rim: Rim,
-    /// `None` where it is infinite, or not asked for yet.
+    rim: WellBoundary,
+    /// `None` if it is infinite, or not asked for yet.
     height: Option<f64>,
 }
 
 impl Wall {
     fn new(place: f64, separatrix: bool) -> Self {
-        Self { rim: Rim { place, separatrix }, height: None }
+        Self { rim: WellBoundary { place, separatrix }, height: None }
     }
 }
 
 /// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it
 /// would leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct WellEnd {
     /// The amplitude, measured from the equilibrium.
     pub amplitude: f64,
-    /// What lies beyond.
-    pub rim: Rim,
+    /// The boundary of the well beyond this amplitude.
+    pub rim: WellBoundary,
 }
 
-/// The well in which a conservative motion swings; an end is `None` where none was found.
+/// The well in which a conservative motion swings; an end is `None` if none was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Well {
     /// On the negative side.
-    pub low: Option<End>,
+    pub low: Option<WellEnd>,
     /// On the positive side.
-    pub high: Option<End>,
-    /// Where the motions begin, if not at rest.
-    pub inner: Option<Inner>,
+    pub high: Option<WellEnd>,
+    /// The smallest amplitude of motions over several wells; `None` if the motions begin at rest.
+    pub inner: Option<SmallestCrossWellAmplitude>,
 }
 
 /// The least amplitude of motions through an unstable equilibrium, over the wells on both sides of
 /// it: smaller ones stay in one well.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inner {
+pub struct SmallestCrossWellAmplitude {
     /// Its size, which all motions exceed.
     pub amplitude: f64,
     /// The unstable equilibrium that the motion of this amplitude does not pass.
     pub place: f64,
 }
 
-/// How far the search for the rims of a well goes, in units of the amplitude.
+/// Range of the search for the boundaries of a well, in units of the amplitude.
 const FARTHEST: f64 = 1e10;
 
 /// Steps of the search over the first amplitude, and the growth of later ones.
@@ -86,7 +86,7 @@ const GROWTH: f64 = 1.02;
 impl Well {
     /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale
     /// of the search.
-    pub fn new(force: &Force, amplitude: f64) -> Option<Self> {
+    pub fn new(force: &CentredForce, amplitude: f64) -> Option<Self> {
         let unit = amplitude.abs();
         if pushes_away(force, unit) {
             return Self::over_hilltops(force, unit);
@@ -97,7 +97,11 @@ impl Well {
     /// The well where the inertia depends on the position: `weighted` is the slope `M f` of the
     /// potential, `force` the force as it stands in the equation. The product may go on where the
     /// motion does not, beside a zero of `M` at which `f` is infinite.
-    pub fn with_inertia(weighted: &Force, force: &Force, amplitude: f64) -> Option<Self> {
+    pub fn with_inertia(
+        weighted: &CentredForce,
+        force: &CentredForce,
+        amplitude: f64,
+    ) -> Option<Self> {
         let unit = amplitude.abs();
         if pushes_away(weighted, unit) {
             return None;
@@ -112,7 +116,7 @@ impl Well {
     }
 
     /// The well between the rims on both sides of an equilibrium.
-    fn between(force: &Force, unit: f64, rim: impl Fn(f64) -> Option<Wall>) -> Option<Self> {
+    fn between(force: &CentredForce, unit: f64, rim: impl Fn(f64) -> Option<Wall>) -> Option<Self> {
         /// Relative differences of two heights below this are rounding.
         const EVEN: f64 = 1e-8;
         let equilibrium = force.equilibrium();
@@ -128,7 +132,7 @@ impl Well {
         let end = |side: f64, own: Option<Wall>, other: Option<Wall>| {
             let own_end = own
                 .filter(|wall| wall.rim.place.is_finite())
-                .map(|wall| End { amplitude: wall.rim.place - equilibrium, rim: wall.rim });
+                .map(|wall| WellEnd { amplitude: wall.rim.place - equilibrium, rim: wall.rim });
             // Released on this side, the motion may also leave over the other rim.
             let Some((rim, height)) = other.and_then(|wall| Some((wall.rim, wall.height?))) else {
                 return own_end;
@@ -154,7 +158,7 @@ impl Well {
                 && let Ok(size) =
                     find_root(|size| if size == 0.0 { -1.0 } else { excess(size) }, low, high)
             {
-                return Some(End { amplitude: side * size, rim });
+                return Some(WellEnd { amplitude: side * size, rim });
             }
             own_end
         };
@@ -164,19 +168,22 @@ impl Well {
 
     /// The motions of an odd force through an unstable equilibrium: those of the amplitude, or the
     /// next larger ones.
-    fn over_hilltops(force: &Force, amplitude: f64) -> Option<Self> {
+    fn over_hilltops(force: &CentredForce, amplitude: f64) -> Option<Self> {
         let (passages, equilibrium) = (passages(force, amplitude), force.equilibrium());
         let passage = passage_at(&passages, amplitude)?;
         let end = |side: f64| {
-            passage.to.map(|rim| End {
+            passage.to.map(|rim| WellEnd {
                 amplitude: side * rim.place,
-                rim: Rim { place: equilibrium + side * rim.place, ..rim },
+                rim: WellBoundary { place: equilibrium + side * rim.place, ..rim },
             })
         };
         Some(Self {
             low: end(-1.0),
             high: end(1.0),
-            inner: Some(Inner { amplitude: passage.from, place: equilibrium + passage.over }),
+            inner: Some(SmallestCrossWellAmplitude {
+                amplitude: passage.from,
+                place: equilibrium + passage.over,
+            }),
         })
     }
 
@@ -186,13 +193,13 @@ impl Well {
     }
 
     /// The end on the side of an amplitude.
-    pub fn on_side(&self, amplitude: f64) -> Option<End> {
+    pub fn on_side(&self, amplitude: f64) -> Option<WellEnd> {
         if amplitude < 0.0 { self.low } else { self.high }
     }
 
-    /// Where the motion is periodic, in words; `name` is the letter of the amplitude.
+    /// Describes the range of periodic motions in words; `name` is the letter of the amplitude.
     pub fn in_words(&self, name: Symbol, coordinate: Symbol) -> String {
-        let because = |rim: Rim| {
+        let because = |rim: WellBoundary| {
             let place = significant(rim.place, 6);
             match rim.separatrix {
                 true => {
@@ -205,7 +212,7 @@ impl Well {
                 false => format!("the force ends at {coordinate} = {place}"),
             }
         };
-        let number = |end: End| significant(end.amplitude, 6);
+        let number = |end: WellEnd| significant(end.amplitude, 6);
         if let Some(inner) = self.inner {
             let (least, hilltop) = (significant(inner.amplitude, 6), significant(inner.place, 6));
             return match self.high {
@@ -252,14 +259,14 @@ impl Well {
 /// followed through them.
 const MOST_PIECES: usize = 256;
 
-/// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond
+/// The potential above the bottom of the well at a distance; `None` if it is infinite, or beyond
 /// too many pieces.
-pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
+pub(super) fn rise(force: &CentredForce, to: f64) -> Option<f64> {
     rise_between(force, 0.0, to)
 }
 
 /// The difference of the potential at two distances; `None` as for [`rise`].
-fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
+fn rise_between(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
     let mut knots = vec![to.min(from)];
     knots.extend(force.cuts(from, to));
     knots.push(to.max(from));
@@ -268,7 +275,7 @@ fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
     }
     let mut sum = 0.0;
     for pair in knots.windows(2) {
-        sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {
+        sum += match integrate_smooth(|y| force.value(y), pair[0], pair[1], 1e-10) {
             Ok((value, _)) => value,
             Err(QuadratureError::NotConverged { value, error_estimate, .. })
                 if error_estimate < 1e-6 * value.abs() =>
@@ -286,10 +293,10 @@ fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
 /// The potential above the bottom of the well infinitely far away on one side, where the force dies
 /// away so fast that it is finite: the work over distances that double is then soon a geometric
 /// series, whose remainder is its last term times `q/(1 - q)`.
-fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
+fn rise_to_infinity(force: &CentredForce, side: f64, unit: f64) -> Option<f64> {
     const DOUBLINGS: i32 = 1000;
-    /// Of the height: a remainder below this is rounding, one below the other is good enough where
-    /// the force has no digits beyond.
+    /// Relative parts of the height: a remainder below the first is rounding, one below the second
+    /// is small enough if the force has no digits beyond.
     const NEGLIGIBLE: f64 = 1e-14;
     const SMALL: f64 = 1e-8;
     /// A quotient closer to one than this belongs to a potential that grows without end, as a
@@ -335,7 +342,7 @@ fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
 /// The work towards a place where the force is infinite but its potential is not, as that of
 /// `1/sqrt(1 - x)` at 1, counted from the left: with the distance from there as the sixth power of
 /// a variable the integrand is bounded. `None` at a pole.
-fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
+fn towards_the_end(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
     /// Closer than this, relatively, the distance is rounding, and what it would add below the
     /// tolerance.
     const CLOSEST: f64 = 1e-15;
@@ -344,7 +351,7 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
     }
     let integrand = |s: f64| match s.powi(6) {
         distance if distance < CLOSEST => 0.0,
-        distance => 6.0 * s.powi(5) * force.at(to + (from - to) * distance),
+        distance => 6.0 * s.powi(5) * force.value(to + (from - to) * distance),
     };
     let work = match integrate_smooth(integrand, 0.0, 1.0, 1e-10) {
         Ok((value, _)) => value,
@@ -360,9 +367,9 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
 
 /// The first place on one side where the force turns its sign or ends; infinity where its potential
 /// levels off.
-fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
+fn rim(force: &CentredForce, side: f64, unit: f64) -> Option<Wall> {
     let equilibrium = force.equilibrium();
-    let pull = |distance: f64| side * force.at(side * distance);
+    let pull = |distance: f64| side * force.value(side * distance);
     let mut strongest = 0.0_f64;
     let (mut distance, mut step) = (unit / STEPS, unit / STEPS);
     let mut window = distance;
@@ -431,7 +438,7 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
 
 /// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in
 /// the end, where its potential is finite there.
-fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall> {
+fn levels_off(force: &CentredForce, side: f64, unit: f64, weakened: f64) -> Option<Wall> {
     /// A force that has not weakened by this over ten decades, a million units far, does not die
     /// away as fast as its inverse distance.
     const DIES_AWAY: f64 = 1e-3;
@@ -442,15 +449,16 @@ fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall
     Some(Wall { height: Some(height), ..Wall::new(side * f64::INFINITY, false) })
 }
 
-/// Where a force ends between a distance at which it has a value and one at which it has none, from
-/// outside.
+/// The distance at which a force ends, from outside, between one at which it has a value and one at
+/// which it has none.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
-    let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
+    let [_, end] =
+        bisect(|size| pull(size).is_finite(), inside, outside, BisectionStop::Halvings(60));
     end
 }
 
-/// Where the force turns its sign between two distances, and whether through zero; `None` where it
-/// has only died away.
+/// The distance at which the force changes its sign between two others, and whether it passes
+/// through zero; `None` if the force has only become negligible.
 pub(super) fn sign_change(
     pull: &dyn Fn(f64) -> f64,
     from: f64,
@@ -478,13 +486,14 @@ mod tests {
 
     fn ends(text: &str, amplitude: f64) -> (Option<f64>, Option<f64>, String) {
         let expression = parse_expression(text).unwrap();
-        let force = Force::new(&expression, "x".into(), &Expr::zero(), &BTreeMap::new(), amplitude)
-            .unwrap();
+        let force =
+            CentredForce::new(&expression, "x".into(), &Expr::zero(), &BTreeMap::new(), amplitude)
+                .unwrap();
         let well = Well::new(&force, amplitude);
         let Some(well) = well else {
             return (None, None, String::new());
         };
-        let amplitude = |end: Option<End>| end.map(|end| end.amplitude);
+        let amplitude = |end: Option<WellEnd>| end.map(|end| end.amplitude);
         (amplitude(well.low), amplitude(well.high), well.in_words("A".into(), "x".into()))
     }
 

@@ -9,27 +9,27 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero;
 
-use super::Place;
+use super::EquilibriumPosition;
 use super::inverse::inverted;
 use super::search::{Zero as SignChange, polynomial_zeros, zeros};
-use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved};
-use crate::conservative::force::Force as AtNumbers;
+use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, shifted_force};
+use crate::conservative::force::CentredForce as AtNumbers;
 use crate::conservative::passage::{Passage, passages, pushes_away};
 use crate::conservative::{is_odd, potential};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::exact::real_roots::sign_changing_part;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::oscillator::{Equilibria, OscillatorError, Others};
+use crate::oscillator::{Equilibria, FurtherEquilibria, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::solution::note::{CrossWell, CrossWellEnd, Position};
 use crate::symbol::Symbol;
 
-/// How a force that is infinite at `x = 0` pulls towards it.
+/// The strength of the attraction by a force that is infinite at `x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pull {
-    /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings
-    /// through.
+pub(super) enum SingularAttraction {
+    /// Weak attraction: the potential is finite there, as for `sgn(x)/abs(x)^(1/3)`, and the motion
+    /// passes through.
     Passed,
     /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those
     /// of weaker powers, which swing through.
@@ -42,14 +42,14 @@ pub(super) enum Pull {
 }
 
 /// A force of the position alone.
-pub(super) struct Force<'a> {
+pub(super) struct PositionForce<'a> {
     force: &'a Expr,
     coordinate: Symbol,
     /// The force as a function, where it has no parameters.
     value: Option<CompiledFunction>,
 }
 
-impl<'a> Force<'a> {
+impl<'a> PositionForce<'a> {
     pub(super) fn new(force: &'a Expr, coordinate: Symbol) -> Self {
         Self { force, coordinate, value: CompiledFunction::new(force, &[coordinate]).ok() }
     }
@@ -113,15 +113,15 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// How a force that is infinite at zero pulls towards it from both sides; `None` where it does
-    /// not.
-    pub(super) fn pull_without_bound(&self) -> Option<Pull> {
+    /// Classifies a force that is infinite at zero and attracts from both sides; `None` for any
+    /// other force.
+    pub(super) fn pull_without_bound(&self) -> Option<SingularAttraction> {
         /// Two exponents that differ by less than this are the same: over seventy decades rounding
         /// makes one of 1e-17.
         const SAME: f64 = 1e-12;
         let value = self.at_numbers(&self.sample(1.0))?;
-        // By how much force times distance falls from far to near, in decades a decade: p + 1 of a
-        // power p.
+        // Decay of force times distance from far to near, in decades per decade: p + 1 for a power
+        // p.
         let falls = |side: f64| {
             let work = |decade: i32| {
                 let distance = 10.0_f64.powi(-decade);
@@ -132,10 +132,12 @@ impl<'a> Force<'a> {
         };
         let (right, left) = (falls(1.0)?, falls(-1.0)?);
         Some(match f64::min(right, left) {
-            least if least > SAME => Pull::Passed,
-            least if least < -SAME => Pull::Endless,
-            _ if is_odd(self.force, self.coordinate).unwrap_or(false) => Pull::Inverse,
-            _ => Pull::UnevenInverse,
+            least if least > SAME => SingularAttraction::Passed,
+            least if least < -SAME => SingularAttraction::Endless,
+            _ if is_odd(self.force, self.coordinate).unwrap_or(false) => {
+                SingularAttraction::Inverse
+            }
+            _ => SingularAttraction::UnevenInverse,
         })
     }
 
@@ -216,9 +218,9 @@ impl<'a> Force<'a> {
     }
 
     /// A number with the closed form that belongs to it, where one is known.
-    pub(super) fn exact_or_rounded(&self, position: f64) -> Place {
+    pub(super) fn exact_or_rounded(&self, position: f64) -> EquilibriumPosition {
         if let Some(exact) = exact_zero(self.force, self.coordinate, position) {
-            return Place::Exact(exact);
+            return EquilibriumPosition::Exact(exact);
         }
         let belongs = |form: &Expr| {
             let value = form.evaluate(&BTreeMap::new());
@@ -226,10 +228,10 @@ impl<'a> Force<'a> {
         };
         let forms = closed_forms(self.force, self.coordinate);
         let form = forms.into_iter().find(belongs);
-        form.map_or(Place::Rounded(position), Place::Exact)
+        form.map_or(EquilibriumPosition::Rounded(position), EquilibriumPosition::Exact)
     }
 
-    /// What the equilibria of a force with parameters may be.
+    /// Candidates for the equilibria of a force with parameters, in closed form.
     fn forms(&self) -> Vec<Expr> {
         let forms = closed_forms(self.force, self.coordinate);
         match forms.is_empty() {
@@ -240,7 +242,7 @@ impl<'a> Force<'a> {
 
     /// The closed form of the stable equilibrium in the parameters, chosen where loads are small,
     /// and where no pole hides it if that can be.
-    pub(super) fn stable_closed_form(&self) -> Option<Place> {
+    pub(super) fn stable_closed_form(&self) -> Option<EquilibriumPosition> {
         let forms = self.forms();
         let samples = self.samples();
         let nearest = |hidden_too: bool| {
@@ -252,7 +254,7 @@ impl<'a> Force<'a> {
             })
         };
         let (_, form) = nearest(false).or_else(|| nearest(true))?;
-        Some(Place::Exact(form))
+        Some(EquilibriumPosition::Exact(form))
     }
 
     /// Whether the force has no value somewhere between zero and a position, with these numbers for
@@ -318,8 +320,8 @@ impl<'a> Force<'a> {
     /// between them; `position` is where zero is. With letters it is one where it is for positive
     /// ones of all sizes.
     pub(super) fn cross_well(&self, position: &Expr) -> Option<CrossWell> {
-        /// How far a closed form may be from the number found: that is good to the quadrature of
-        /// the energy.
+        /// Largest relative difference of a closed form and the number found, which is as accurate
+        /// as the quadrature of the energy.
         const AGREEMENT: f64 = 1e-7;
         let samples = match self.value {
             Some(_) => vec![BTreeMap::new()],
@@ -383,8 +385,8 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// What the amplitude may be at which the potential is again that at zero: `near` is its value
-    /// for numbers.
+    /// Candidates for the amplitude at which the potential is again that at zero; `near` is its
+    /// numerical value.
     fn edges(&self, near: f64) -> Vec<Expr> {
         let x = self.coordinate;
         let risen = || {
@@ -431,8 +433,8 @@ impl<'a> Force<'a> {
             _ => Position::Number(position),
         };
         let others = match period {
-            Some(period) => Some(Others::Every(period)),
-            None => more.then_some(Others::FartherOut),
+            Some(period) => Some(FurtherEquilibria::Every(period)),
+            None => more.then_some(FurtherEquilibria::FartherOut),
         };
         Equilibria {
             others: others.filter(|_| !positions.is_empty()),
@@ -459,7 +461,7 @@ impl<'a> Force<'a> {
         let periods =
             slopes.iter().map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
         periods.into_iter().find(|period| {
-            let moved = moved(self.force, self.coordinate, period);
+            let moved = shifted_force(self.force, self.coordinate, period);
             let difference = moved.and_then(|moved| (&moved - self.force).expand());
             difference.is_ok_and(|difference| difference.is_zero())
         })

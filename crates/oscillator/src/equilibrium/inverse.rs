@@ -14,8 +14,8 @@
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
 //!
-//! Which of them is real depends on the values of the letters, and is left to who puts some in. In:
-//! a force and its coordinate. Out: candidates, some of which may be zeros for no values at all.
+//! The values of the letters decide which of them are real; that is left to the caller. In: a force
+//! and its coordinate. Out: candidates, some of which may be zeros for no values at all.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -27,7 +27,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// The places at which an expression may be zero; empty where it cannot be inverted.
+/// The places at which an expression may be zero; empty if it cannot be inverted.
 pub(super) fn inverted(expression: &Expr, coordinate: Symbol) -> Vec<Expr> {
     zeros(expression, coordinate).unwrap_or_default()
 }
@@ -53,12 +53,12 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
     let parts: Option<Vec<(Expr, Expr)>> = moving.iter().map(|term| split(term, x)).collect();
     if let Some([(factor, function)]) = parts.as_deref() {
-        return before(function, &Expr::divide(&other_side, factor)?, x);
+        return solve_for_argument(function, &Expr::divide(&other_side, factor)?, x);
     }
     if let Some([one, other]) = parts.as_deref()
         && let Some((angle, values)) = angles([one, other], &other_side)?
     {
-        return through(&angle, values, x);
+        return zeros_at_values(&angle, values, x);
     }
     let roots = of_polynomial(expression, x)?;
     match parts {
@@ -79,8 +79,8 @@ fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
     Some((Expr::product(still.chain([Expr::number(number)])), (*moving).clone()))
 }
 
-/// Where `function` has the value `y`.
-fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+/// Solves `function = y` for x.
+fn solve_for_argument(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let both = |value: Expr| vec![value.clone(), -value];
     let call = |function, argument: Expr| Expr::function(function, vec![argument]);
     let squared = y.integer_power(2)?;
@@ -121,11 +121,11 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
         Node::Sum(_) => (function, vec![y.clone()]),
         _ => return Ok(vec![]),
     };
-    through(inner, values, x)
+    zeros_at_values(inner, values, x)
 }
 
-/// Where `inner` has one of these values.
-fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+/// Solves `inner = value` for x, for each of these values.
+fn zeros_at_values(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let found: Result<Vec<Vec<Expr>>, ExprError> =
         values.iter().map(|value| zeros(&(inner - value), x)).collect();
     Ok(found?.into_iter().flatten().collect())
@@ -168,14 +168,14 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
         Some([d, c, b, a]) => cubic_roots(a, b, c, d),
         Some([d, between @ .., a]) if !between.is_empty() && between.iter().all(Expr::is_zero) => {
             let degree = Expr::from(between.len() as i64 + 1);
-            before(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
+            solve_for_argument(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
         }
         _ => Ok(vec![]),
     }
 }
 
-/// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial
-/// in one of them, up to a factor.
+/// Solves a sum of powers of one base, or of exponentials, equal to `r`: up to a factor it is a
+/// polynomial in one of them.
 fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let powers: Option<Vec<Vec<Power>>> = parts.iter().map(|part| powers(part, x)).collect();
     let powers = powers.unwrap_or_default().concat();
@@ -221,7 +221,7 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         None => Expr::function(Function::Exp, vec![exponent])?,
     };
     let found: Result<Vec<Vec<Expr>>, ExprError> =
-        roots.iter().map(|root| before(&function, root, x)).collect();
+        roots.iter().map(|root| solve_for_argument(&function, root, x)).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -233,7 +233,8 @@ struct Power {
     exponent: Expr,
 }
 
-/// What moves, times its factor, as powers: one, or the two exponentials of a hyperbolic function.
+/// A function of x times its factor as powers: one, or the two exponentials of a hyperbolic
+/// function.
 fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
     let exponential = |factor: Expr, exponent: Expr| Power { factor, base: None, exponent };
     let (base, exponent) = function.base_and_exponent();
@@ -263,7 +264,7 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
 }
 
 /// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all
-/// coefficients from the lowest on; nothing beyond the third degree.
+/// coefficients from the lowest on; `None` beyond the third degree.
 fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
     const DEGREE: usize = 3;
     let lowest = places.iter().map(|place| &place.0).min()?;
@@ -337,7 +338,7 @@ mod tests {
 
     use super::*;
 
-    /// What is put in for the letters, and how many places have a value there: each has to be a
+    /// Values of the letters, and the number of candidates that are real for them: each has to be a
     /// zero of the force.
     #[test]
     fn every_real_candidate_is_a_zero() {

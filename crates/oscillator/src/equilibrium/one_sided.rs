@@ -13,7 +13,7 @@ use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
 /// The refusal of a force that has a value on one side of `x = 0` alone; letters inside its root
-/// are taken to be positive. `None` where no root of it begins there.
+/// are taken to be positive. `None` if no root of it begins there.
 pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<OscillatorError> {
     let coordinate = oscillator.coordinate;
     let mut found = None;

@@ -14,7 +14,7 @@ use crate::numeric::ode::root::{find_minimum, find_root};
 /// A zero of the force at which it changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zero {
-    /// Where.
+    /// Its position.
     pub position: f64,
     /// Whether the force pulls back: from negative on the left to positive on the right.
     pub stable: bool,
@@ -42,7 +42,7 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     let at_zero = value(0.0) == 0.0;
     let felt = |side: f64| {
         let mut forces =
-            places(side, &[]).into_iter().map(value).take_while(|force| force.is_finite());
+            grid_of_side(side, &[]).into_iter().map(value).take_while(|force| force.is_finite());
         forces.find(|force| *force != 0.0).unwrap_or(0.0)
     };
     let (left, right) = match at_zero {
@@ -60,14 +60,14 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
         found.push(Zero { position, stable: right > 0.0, reachable: true });
     }
     for side in [1.0, -1.0] {
-        ZeroSearch::outwards(value, &places(side, centres), &mut found);
+        ZeroSearch::search_outwards(value, &grid_of_side(side, centres), &mut found);
     }
     found
 }
 
 /// The grid of one side, from the nearest place to the farthest. No place is a round number, where
 /// poles like to be.
-fn places(side: f64, centres: &[f64]) -> Vec<f64> {
+fn grid_of_side(side: f64, centres: &[f64]) -> Vec<f64> {
     const PER_DECADE_OF_A_CENTRE: i32 = 16;
     const DECADES_OF_A_CENTRE: i32 = 9;
     let power =
@@ -96,7 +96,7 @@ struct ZeroSearch<'a> {
 }
 
 impl ZeroSearch<'_> {
-    fn outwards(value: &dyn Fn(f64) -> f64, places: &[f64], found: &mut Vec<Zero>) {
+    fn search_outwards(value: &dyn Fn(f64) -> f64, places: &[f64], found: &mut Vec<Zero>) {
         let mut walk = ZeroSearch { value, reachable: true, found: vec![] };
         // The last two places at which the force has a value other than zero, and the zeros since.
         let (mut before, mut last): (Option<ForceSample>, Option<ForceSample>) = (None, None);
@@ -132,7 +132,7 @@ impl ZeroSearch<'_> {
         found.append(&mut walk.found);
     }
 
-    /// What lies between the last place and this one, or about the last.
+    /// Looks for zeros between the last point and this one, and for a double zero about the last.
     fn between(&mut self, before: Option<ForceSample>, last: ForceSample, now: ForceSample) {
         if last.1.signum() != now.1.signum() {
             self.change_of_sign(last.0, now.0);
@@ -187,7 +187,7 @@ impl ZeroSearch<'_> {
     }
 }
 
-/// Where a function changes its sign; `None` where it has no value on the way.
+/// The point at which a function changes its sign; `None` if it has no value on the way.
 fn crossing(value: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
     find_root(value, from, to).ok()
 }

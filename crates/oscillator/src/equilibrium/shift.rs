@@ -30,7 +30,11 @@ pub(super) fn value_at(
 }
 
 /// The force in the deviation from a position.
-pub(super) fn moved(force: &Expr, coordinate: Symbol, position: &Expr) -> Result<Expr, ExprError> {
+pub(super) fn shifted_force(
+    force: &Expr,
+    coordinate: Symbol,
+    position: &Expr,
+) -> Result<Expr, ExprError> {
     with_known_angles(&force.substitute(coordinate, &(Expr::from(coordinate) + position))?)
 }
 
@@ -89,7 +93,7 @@ fn sine_of(half_turns: &Rational) -> Option<Expr> {
     Some(if whole.to_integer().is_odd() { -size } else { size })
 }
 
-/// The exact form of the zero of a force near a number, the simplest first; `None` where none is
+/// The exact form of the zero of a force near a number, the simplest first; `None` if none is
 /// found.
 pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<Expr> {
     let pi = |multiple: Rational| Expr::pi() * Expr::number(multiple);
@@ -165,7 +169,7 @@ pub(super) fn linear_zeros(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
 }
 
 /// The coefficients of an expression as a polynomial in the coordinate, lowest power first; `None`
-/// where it is none.
+/// if it is none.
 pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<Expr>> {
     let mut coefficients: Vec<Vec<Expr>> = Vec::new();
     for term in expression.expand().ok()?.terms() {

@@ -23,11 +23,11 @@
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
-use crate::conservative::force::Force;
-use crate::derivation::Line;
+use crate::conservative::force::CentredForce;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Note, Solution, note::Instant};
+use crate::solution::{Method, Note, Solution, note::CollocationInstant};
 use crate::symbol::fresh_stem;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
@@ -60,20 +60,22 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
     let [one, two] = &trials;
     solution.derivation = vec![
-        Line::equation(first_trial, one)
+        DerivationLine::equation(first_trial, one)
             .because(format!("first trial motion {AMPLITUDE}*cos({first_name}*t)")),
-        Line::equation(second_trial, two)
+        DerivationLine::equation(second_trial, two)
             .because(format!("second trial motion {AMPLITUDE}*cos({second_name}*t)")),
-        Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
-        Line::equation(r2, second),
-        Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),
+        DerivationLine::equation(r1, first)
+            .because("residuals where the square of the cosine is 3/4"),
+        DerivationLine::equation(r2, second),
+        DerivationLine::equal([omega?.into(), mixed.into(), law.into()])
+            .because("weighted by the residuals"),
     ];
-    solution.validity.push(Note::Collocated(Instant::CosineSquared));
+    solution.validity.push(Note::Collocated(CollocationInstant::CosineSquared));
     Ok(solution)
 }
 
 /// `f(c A)/(c A)`, `c = sqrt(3)/2`, in numbers, which have no error but rounding.
-pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+pub(super) fn by_definition(force: &CentredForce, amplitude: f64) -> Option<(f64, f64)> {
     let place = 0.75_f64.sqrt() * amplitude;
-    Some((force.at(place) / place, 0.0))
+    Some((force.value(place) / place, 0.0))
 }

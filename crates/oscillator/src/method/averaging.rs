@@ -45,11 +45,11 @@ use num_traits::Zero;
 
 use self::pure_power::PurePower;
 use self::small_terms::SmallTerms;
-use super::limit_cycle::{AmplitudeEquation, Units};
+use super::limit_cycle::{AmplitudeEquation, FrequencyUnits};
 use super::multiple_scales::scaling::has_quadratic_terms;
 use super::secular::bounded;
 use super::{Options, Reason, Refusal, not_polynomial, transient};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
@@ -57,7 +57,7 @@ use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, PerturbedForce, Term};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{
     AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Modulation, Note,
     Solution,
@@ -84,7 +84,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let choice = super::table::Choice::Resonance;
         return refuse(Reason::NoSuchChoice(choice));
     }
-    if let Some(restoring) = PurePower::of(&parts, oscillator.coordinate) {
+    if let Some(restoring) = PurePower::from_parts(&parts, oscillator.coordinate) {
         return pure_power::solve(oscillator, &parts, &restoring, options);
     }
     let order = match options.order.unwrap_or(1) {
@@ -97,7 +97,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if convention == AmplitudeConvention::Initial && !conserves {
         return refuse(Reason::SlowAmplitude);
     }
-    let small = SmallTerms::of(oscillator, options)?;
+    let small = SmallTerms::from_oscillator(oscillator, options)?;
     let mut averaged = match small.expand(order) {
         Ok(mut force) => {
             force.write_with_frequency(&oscillator.names());
@@ -107,7 +107,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
             averaged
         }
-        // A series in what marks the terms is no polynomial in the coordinate and its velocity;
+        // A series in what marks the terms is not a polynomial in the coordinate and its velocity;
         // steps at a letter are none either, whose force at rest is known not to act.
         Err(
             OscillatorError::NotPolynomial(_)
@@ -147,12 +147,12 @@ struct DerivationLetters {
 }
 
 impl DerivationLetters {
-    fn beside(taken: &[Symbol]) -> Self {
+    fn avoiding(taken: &[Symbol]) -> Self {
         Self { taken: taken.to_vec(), phase: fresh("psi", taken) }
     }
 
     /// `g1`, `u1`, `A2`, `B2`.
-    fn of(&self, letter: &str, order: u32) -> Symbol {
+    fn symbol(&self, letter: &str, order: u32) -> Symbol {
         Symbol::new(&format!("{}{order}", fresh_stem(letter, &self.taken)))
     }
 }
@@ -172,7 +172,7 @@ struct Averaged {
     release: Release,
     steady: Vec<LeadingCycle>,
     notes: Vec<Note>,
-    derivation: Vec<Line>,
+    derivation: Vec<DerivationLine>,
 }
 
 impl Averaged {
@@ -244,7 +244,7 @@ impl Averaged {
             limit_cycle: None,
             modulation: Some(Modulation {
                 amplitude: a,
-                phase: DerivationLetters::beside(&taken).phase,
+                phase: DerivationLetters::avoiding(&taken).phase,
                 amplitude_rate,
                 phase_rate,
                 small_with,
@@ -270,7 +270,7 @@ fn small_in_words(small: &SmallTerms, order: u32) -> (Symbol, Vec<Symbol>, Note)
     let mut names = small.letters().iter().copied();
     let first = names.next().unwrap_or(small.delta());
     let small_with: Vec<Symbol> = names.collect();
-    let cut = Note::Cut(Cut::Truncated {
+    let cut = Note::Cut(Truncation::Truncated {
         small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
         order,
         marks: small.letters().is_empty().then(Expr::one),
@@ -296,19 +296,24 @@ fn of_polynomial(
     taken.extend(definitions.iter().map(|definition| definition.symbol));
     let a = AmplitudeConvention::FirstHarmonic.symbol();
 
-    let letters = DerivationLetters::beside(&oscillator.names());
-    let slow = Slow::new(force, &omega0, a);
+    let letters = DerivationLetters::avoiding(&oscillator.names());
+    let slow = FirstOrderAverage::new(force, &omega0, a);
     let mut derivation = vec![
-        Line::equation(oscillator.coordinate, slow.position.clone()).because("along"),
-        Line::equation(oscillator.velocity(), slow.velocity.clone()),
-        Line::equation(letters.of("g", 1), slow.force[0].clone()).because("the small terms are"),
+        DerivationLine::equation(oscillator.coordinate, slow.position.clone()).because("along"),
+        DerivationLine::equation(oscillator.velocity(), slow.velocity.clone()),
+        DerivationLine::equation(letters.symbol("g", 1), slow.force[0].clone())
+            .because("the small terms are"),
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
     let (rate, phase) = (Expr::from(a.derivative()), Expr::from(letters.phase.derivative()));
-    derivation
-        .push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
+    derivation.push(
+        DerivationLine::equation(&twice * &rate, &slow.secular_sine)
+            .because("what sin(θ) asks for"),
+    );
     let cosine = &twice * &Expr::from(a) * (&phase - &Expr::from(&omega0));
-    derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"));
+    derivation.push(
+        DerivationLine::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"),
+    );
     let [mut amplitude_rate, mut phase_rate] =
         [slow.first[0].clone(), omega0.clone() + slow.first[1].clone()];
     let leading = [Expr::from(&amplitude_rate), Expr::from(&phase_rate)];
@@ -319,14 +324,14 @@ fn of_polynomial(
         let [second_amplitude, second_phase] = slow.second(force);
         release = slow.release()?;
         derivation.push(
-            Line::equation(letters.of("u", 1), correction.clone())
-                .because(format!("what {} leaves over", letters.of("g", 1))),
+            DerivationLine::equation(letters.symbol("u", 1), correction.clone())
+                .because(format!("what {} leaves over", letters.symbol("g", 1))),
         );
         derivation.push(
-            Line::equation(letters.of("A", 2), &second_amplitude)
+            DerivationLine::equation(letters.symbol("A", 2), &second_amplitude)
                 .because("the same at second order"),
         );
-        derivation.push(Line::equation(letters.of("B", 2), &second_phase));
+        derivation.push(DerivationLine::equation(letters.symbol("B", 2), &second_phase));
         amplitude_rate = amplitude_rate + second_amplitude;
         phase_rate = phase_rate + second_phase;
     }
@@ -360,13 +365,13 @@ fn steady(
     delta: Symbol,
     taken: &[Symbol],
 ) -> (Vec<LeadingCycle>, Vec<Note>) {
-    let units = Units::new(force, omega0.clone());
+    let units = FrequencyUnits::new(force, omega0.clone());
     let Some(equation) = AmplitudeEquation::new(force, &units) else {
         return (vec![], vec![]);
     };
     let z = fresh("z", taken);
     match equation.cycles(delta, omega0, taken) {
-        // What marks the orders is one.
+        // The bookkeeping parameter is one.
         Ok(cycles) => {
             let leading = cycles.iter().map(|cycle| cycle.to_leading(delta, z));
             (leading.collect(), vec![])
@@ -379,7 +384,7 @@ fn steady(
 }
 
 /// The first order of a polynomial force, and what the second is made of.
-struct Slow {
+struct FirstOrderAverage {
     a: Symbol,
     omega0: Polynomial,
     /// `a cos(psi)` and `-a omega0 sin(psi)`.
@@ -410,7 +415,7 @@ fn differentiated(polynomial: &Polynomial, by: Symbol) -> Polynomial {
     slope
 }
 
-impl Slow {
+impl FirstOrderAverage {
     fn new(force: &PerturbedForce, omega0: &Polynomial, a: Symbol) -> Self {
         let amplitude = constant(&Polynomial::symbol(a));
         let position = amplitude.product(&Series::cos(POLYNOMIALS, 1));
@@ -448,8 +453,8 @@ impl Slow {
         }
     }
 
-    /// Where a motion released at `A` begins: `a = A - u_1(A, 0)` and, so that it is at rest,
-    /// `psi = (A_1/omega0 + u_1'(A, 0))/A`.
+    /// The initial amplitude and phase of a motion released at `A`: `a = A - u_1(A, 0)` and, so
+    /// that it is at rest, `psi = (A_1/omega0 + u_1'(A, 0))/A`.
     fn release(&self) -> Result<Release, ExprError> {
         let start = AmplitudeConvention::Initial.symbol();
         let at_start = |value: &Expr| value.substitute(self.a, &Expr::from(start))?.expand();
@@ -524,8 +529,8 @@ struct Projected {
 
 impl Projected {
     /// # Errors
-    /// Nothing restores, or a term whose projection has no closed form.
-    fn of(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
+    /// There is no restoring force, or a term whose projection has no closed form.
+    fn new(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
         let linear = small.linear_part()?;
         let (omega0, root) = linear.linear_frequency(&oscillator.names());
         let mut definitions: Vec<Definition> = root.iter().cloned().collect();
@@ -563,21 +568,22 @@ impl Projected {
     }
 
     /// The motion, its velocity and the small terms, as lines of a derivation.
-    fn along(
+    fn derivation_lines(
         &self,
         oscillator: &Oscillator,
         amplitude: &Expr,
         letters: &DerivationLetters,
-    ) -> Result<Vec<Line>, ExprError> {
+    ) -> Result<Vec<DerivationLine>, ExprError> {
         let theta = Expr::from(oscillator.phase());
         Ok(vec![
-            Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?)
+            DerivationLine::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?)
                 .because("along"),
-            Line::equation(
+            DerivationLine::equation(
                 Expr::from(oscillator.velocity()),
                 -(amplitude * &self.omega0 * theta.sin()?),
             ),
-            Line::equation(letters.of("g", 1), self.terms.clone()).because("the small terms are"),
+            DerivationLine::equation(letters.symbol("g", 1), self.terms.clone())
+                .because("the small terms are"),
         ])
     }
 }
@@ -598,17 +604,18 @@ fn with_frequency(term: &Expr, linear: &Expr, omega0: &Expr) -> Result<Option<Ex
 fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Averaged, Refusal> {
     let a = AmplitudeConvention::FirstHarmonic.symbol();
     let amplitude = Expr::from(a);
-    let found = Projected::of(oscillator, small, &amplitude)?;
-    let letters = DerivationLetters::beside(&oscillator.names());
-    let mut derivation = found.along(oscillator, &amplitude, &letters)?;
+    let found = Projected::new(oscillator, small, &amplitude)?;
+    let letters = DerivationLetters::avoiding(&oscillator.names());
+    let mut derivation = found.derivation_lines(oscillator, &amplitude, &letters)?;
     let Projected { omega0, root, definitions, sine, cosine, .. } = found;
     let twice = Expr::from(2) * &omega0;
     let amplitude_rate = Expr::divide(&sine, &twice)?.expand()?;
     let phase_rate = (&omega0 + &Expr::divide(&cosine, &(&twice * &amplitude))?).expand()?;
     let psi = Expr::from(letters.phase.derivative());
     derivation.extend([
-        Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(θ) asks for"),
-        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine)
+        DerivationLine::equation(&twice * &Expr::from(a.derivative()), sine)
+            .because("what sin(θ) asks for"),
+        DerivationLine::equation(&twice * &amplitude * (&psi - &omega0), cosine)
             .because("what cos(θ) asks for"),
     ]);
     let steady = transient::steady(a, &amplitude_rate);

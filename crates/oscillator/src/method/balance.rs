@@ -33,20 +33,20 @@ use super::numbers::NoNumbers;
 use crate::conservative::force::Force;
 use crate::conservative::passage::{passage_at, passages, pushes_away};
 use crate::exact::Doubles;
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, bordered, follow};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 use crate::series::FourierSeries;
 
 /// A balance solved by numbers.
-pub struct Balance {
+pub struct BalanceSolution {
     /// omega^2.
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
     pub motion: FourierSeries<Doubles>,
-    /// Where the branch from rest ends before this amplitude: the motion is then one followed down
-    /// from large amplitudes.
+    /// The largest amplitude that the branch from rest reaches, if that is less than this one: the
+    /// motion was then followed down from large amplitudes.
     pub rest_ends_at: Option<f64>,
     /// Whether it passes other equilibria on its way.
     pub over_several_wells: bool,
@@ -57,26 +57,26 @@ pub struct Balance {
 /// of from rest.
 #[derive(Debug, Default)]
 pub struct Continuation {
-    states: RefCell<Vec<State>>,
-    /// How much finer than usual the sums had to be for the last of them; none yet is 0.
+    states: RefCell<Vec<BalanceUnknowns>>,
+    /// Refinement factor of the sums of the last solution; 0 if there is none yet.
     fineness: Cell<usize>,
-    /// How often a motion over several wells was followed in vain.
-    in_vain: Cell<usize>,
+    /// Number of failed continuations of motions over several wells.
+    failures: Cell<usize>,
 }
 
 impl Continuation {
     /// The motion of the known amplitude nearest to this one, on its side.
-    fn nearest(&self, amplitude: f64) -> Option<State> {
+    fn nearest(&self, amplitude: f64) -> Option<BalanceUnknowns> {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
-        let distance = |state: &State| (state.logarithm() - goal).abs();
+        let distance = |state: &BalanceUnknowns| (state.logarithm() - goal).abs();
         let reached = known.iter().filter(|state| state.side() == amplitude.signum());
         reached.min_by(|one, other| distance(one).total_cmp(&distance(other))).cloned()
     }
 
     /// The motion of the largest amplitude known that is no larger than this one, which is on this
     /// side.
-    fn below(&self, amplitude: f64) -> Option<State> {
+    fn below(&self, amplitude: f64) -> Option<BalanceUnknowns> {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
         let reached = known
@@ -92,7 +92,7 @@ impl Continuation {
 /// # Errors
 /// [`NoNumbers`].
 pub fn balance(
-    force: &Force,
+    force: &CentredForce,
     degree: Option<u32>,
     harmonics: &[usize],
     amplitude: f64,
@@ -123,7 +123,7 @@ pub fn balance(
     {
         return Err(NoNumbers::BalanceGap { place });
     }
-    Ok(Balance {
+    Ok(BalanceSolution {
         frequency_squared: state.frequency_squared(),
         motion,
         rest_ends_at,
@@ -132,7 +132,7 @@ pub fn balance(
 }
 
 /// The last of these motions up to which, from the first on, nothing changes.
-fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
+fn converged<'s>(motions: &[&'s (BalanceUnknowns, f64)]) -> Option<&'s (BalanceUnknowns, f64)> {
     let first = motions.first()?.1;
     let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
     same.last().copied()
@@ -140,9 +140,9 @@ fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
 
 /// `ln w`, `b_k`, `ln alpha`.
 #[derive(Clone, Debug)]
-struct State(DVector<f64>);
+struct BalanceUnknowns(DVector<f64>);
 
-impl State {
+impl BalanceUnknowns {
     fn frequency_squared(&self) -> f64 {
         self.0[0].exp()
     }
@@ -155,32 +155,32 @@ impl State {
         self.0[self.0.len() - 1]
     }
 
-    /// That of the release, by `sum_k b_k = +-1`.
+    /// The side of the release, by `sum_k b_k = +-1`.
     fn side(&self) -> f64 {
         self.0.rows(1, self.0.len() - 2).sum().signum()
     }
 }
 
-struct Problem<'a> {
-    force: &'a Force,
+struct BalanceProblem<'a> {
+    force: &'a CentredForce,
     harmonics: &'a [usize],
     count: usize,
-    /// Where the first harmonic stands.
+    /// Index of the first harmonic.
     first: usize,
     /// Points of equal steps that are enough for a polynomial, or to begin with.
     points: usize,
     polynomial: bool,
-    /// How much finer the sums are than usual.
+    /// Refinement factor of the sums.
     fineness: usize,
     amplitude: f64,
-    /// Where the force turns fast, up to this distance.
+    /// Narrow places and corners of the force, up to the distance `reach`.
     cuts: Vec<f64>,
     reach: f64,
     /// The points of equal steps, once they were asked for.
     equal_steps: OnceCell<Rc<Nodes>>,
 }
 
-/// Where a sum takes the force, and what stands before its value and before its slope.
+/// Nodes of a sum over the period, with the weights of the force and of its slope.
 struct Nodes {
     /// One row of cosines of the harmonics for each point.
     cosines: DMatrix<f64>,
@@ -189,9 +189,9 @@ struct Nodes {
     jumps: Vec<Option<f64>>,
 }
 
-impl<'a> Problem<'a> {
+impl<'a> BalanceProblem<'a> {
     fn new(
-        force: &'a Force,
+        force: &'a CentredForce,
         degree: Option<u32>,
         harmonics: &'a [usize],
         amplitude: f64,
@@ -223,7 +223,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The smallest and the largest distance from the equilibrium along a motion.
-    fn range(&self, state: &State) -> (f64, f64) {
+    fn range(&self, state: &BalanceUnknowns) -> (f64, f64) {
         const SAMPLES: usize = 256;
         let alpha = state.logarithm().exp();
         let value = |i: usize| alpha * self.displacement(state, PI * i as f64 / SAMPLES as f64);
@@ -233,19 +233,19 @@ impl<'a> Problem<'a> {
     }
 
     /// `sum b_k cos(k theta)`.
-    fn displacement(&self, state: &State, theta: f64) -> f64 {
+    fn displacement(&self, state: &BalanceUnknowns, theta: f64) -> f64 {
         let wave = |(j, &k): (usize, &usize)| state.0[j + 1] * (k as f64 * theta).cos();
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
-    fn velocity(&self, state: &State, theta: f64) -> f64 {
+    fn velocity(&self, state: &BalanceUnknowns, theta: f64) -> f64 {
         let wave =
             |(j, &k): (usize, &usize)| -(k as f64) * state.0[j + 1] * (k as f64 * theta).sin();
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
     /// The points for sums along this motion, `finer` times as many as this problem has them.
-    fn nodes(&self, state: &State, finer: usize) -> Rc<Nodes> {
+    fn nodes(&self, state: &BalanceUnknowns, finer: usize) -> Rc<Nodes> {
         let once = finer == 1;
         let finer = finer * self.fineness;
         let cuts = if self.polynomial {
@@ -293,7 +293,7 @@ impl<'a> Problem<'a> {
     /// instants themselves.
     fn between_crossings(
         &self,
-        state: &State,
+        state: &BalanceUnknowns,
         cuts: &[f64],
         finer: usize,
     ) -> (Vec<f64>, Vec<f64>, Vec<Option<f64>>) {
@@ -337,9 +337,9 @@ impl<'a> Problem<'a> {
         }
         for (theta, cut) in crossings {
             let step = 1e-9 * alpha;
-            let jump = self.force.at(cut + step) - self.force.at(cut - step);
+            let jump = self.force.value(cut + step) - self.force.value(cut - step);
             let speed = alpha * self.velocity(state, theta).abs();
-            let size = self.force.at(cut + step).abs().max(self.force.at(cut - step).abs());
+            let size = self.force.value(cut + step).abs().max(self.force.value(cut - step).abs());
             if jump.abs() > 1e-5 * size && speed > 0.0 {
                 angles.push(theta);
                 weights.push(0.0);
@@ -350,7 +350,11 @@ impl<'a> Problem<'a> {
     }
 
     /// The equations and their derivatives by all unknowns, in units of `w`.
-    fn equations(&self, state: &State, nodes: &Nodes) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    fn equations(
+        &self,
+        state: &BalanceUnknowns,
+        nodes: &Nodes,
+    ) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let count = self.count;
         let (w, alpha) = (state.frequency_squared(), state.logarithm().exp());
         let shape = state.shape(count);
@@ -361,7 +365,7 @@ impl<'a> Problem<'a> {
             match nodes.jumps[i] {
                 Some(jump) => (forces[i], slopes[i]) = (0.0, jump / w),
                 None => {
-                    forces[i] = nodes.weights[i] * self.force.at(y) / unit;
+                    forces[i] = nodes.weights[i] * self.force.value(y) / unit;
                     slopes[i] = nodes.weights[i] * self.force.slope(y) / w;
                 }
             }
@@ -401,11 +405,11 @@ impl<'a> Problem<'a> {
     /// Newton's iteration from `start`, every step at right angles to `direction`.
     fn corrected(
         &self,
-        start: &State,
+        start: &BalanceUnknowns,
         direction: &DVector<f64>,
         finer: usize,
         iterations: usize,
-    ) -> Option<State> {
+    ) -> Option<BalanceUnknowns> {
         let mut state = start.clone();
         let mut last = f64::INFINITY;
         for _ in 0..iterations {
@@ -425,8 +429,8 @@ impl<'a> Problem<'a> {
         (last <= 1e-9).then_some(state)
     }
 
-    /// At fixed amplitude.
-    fn at_amplitude(&self, start: &State, finer: usize) -> Option<State> {
+    /// Newton's method at fixed amplitude.
+    fn at_amplitude(&self, start: &BalanceUnknowns, finer: usize) -> Option<BalanceUnknowns> {
         const ITERATIONS: usize = 40;
         let mut direction = DVector::zeros(self.count + 2);
         direction[self.count + 1] = 1.0;
@@ -434,15 +438,15 @@ impl<'a> Problem<'a> {
     }
 
     /// The motion of one term, and how large its first corrections are.
-    fn of_one_term(&self, amplitude: f64) -> Option<(State, f64)> {
-        let mut state = State(DVector::zeros(self.count + 2));
+    fn one_term_guess(&self, amplitude: f64) -> Option<(BalanceUnknowns, f64)> {
+        let mut state = BalanceUnknowns(DVector::zeros(self.count + 2));
         state.0[self.first + 1] = self.side();
         state.0[self.count + 1] = amplitude.abs().ln();
         let nodes = self.nodes(&state, 1);
         let position = amplitude.abs() * (&nodes.cosines * state.shape(self.count));
         let forces = DVector::from_fn(position.len(), |i, _| match nodes.jumps[i] {
             Some(_) => 0.0,
-            None => nodes.weights[i] * self.force.at(position[i]),
+            None => nodes.weights[i] * self.force.value(position[i]),
         });
         let parts = nodes.cosines.transpose() * forces * (2.0 / PI / amplitude);
         let w = parts[self.first];
@@ -458,44 +462,44 @@ impl<'a> Problem<'a> {
     /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its
     /// first harmonic alone, or, where the force has no linear part, the nearest below which
     /// nothing changes any more, as for a power of x.
-    fn at_rest(&self) -> Option<State> {
+    fn small_amplitude_start(&self) -> Option<BalanceUnknowns> {
         /// Corrections so small, and a frequency so close, that the branch is that of rest.
         const NEARLY_ALONE: f64 = 0.01;
         const NEARLY_LINEAR: f64 = 0.05;
         let linear = self.force.slope(0.0);
-        let mut tried: Vec<(State, f64)> = Vec::new();
+        let mut tried: Vec<(BalanceUnknowns, f64)> = Vec::new();
         for halving in (0..25).chain([30, 40, 60, 100]) {
             let amplitude = self.amplitude * 0.5_f64.powi(halving);
-            let Some((alone, corrections)) = self.of_one_term(amplitude) else {
+            let Some((alone, corrections)) = self.one_term_guess(amplitude) else {
                 continue;
             };
             if corrections <= NEARLY_ALONE
                 && (alone.frequency_squared() / linear - 1.0).abs() <= NEARLY_LINEAR
-                && let Some(found) = self.near(&alone, 0.05)
+                && let Some(found) = self.solve_near(&alone, 0.05)
             {
                 return Some(found);
             }
             tried.push((alone, corrections));
         }
-        let upwards: Vec<&(State, f64)> = tried.iter().rev().collect();
-        self.near(&settled(&upwards)?.0, 0.5)
+        let upwards: Vec<&(BalanceUnknowns, f64)> = tried.iter().rev().collect();
+        self.solve_near(&converged(&upwards)?.0, 0.5)
     }
 
     /// A motion of an amplitude so large that nothing changes any more beyond it.
-    fn at_large(&self) -> Option<State> {
+    fn large_amplitude_start(&self) -> Option<BalanceUnknowns> {
         const DOUBLINGS: i32 = 40;
-        let tried: Vec<Option<(State, f64)>> = (0..=DOUBLINGS)
-            .map(|doubling| self.of_one_term(self.amplitude * 2.0_f64.powi(doubling)))
+        let tried: Vec<Option<(BalanceUnknowns, f64)>> = (0..=DOUBLINGS)
+            .map(|doubling| self.one_term_guess(self.amplitude * 2.0_f64.powi(doubling)))
             .collect();
         // Far out the force may overflow.
         let felt = tried.iter().rposition(Option::is_some)?;
-        let downwards: Vec<&(State, f64)> =
+        let downwards: Vec<&(BalanceUnknowns, f64)> =
             tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
-        self.near(&settled(&downwards)?.0, 0.5)
+        self.solve_near(&converged(&downwards)?.0, 0.5)
     }
 
     /// A solution close to a guess.
-    fn near(&self, guess: &State, distance: f64) -> Option<State> {
+    fn solve_near(&self, guess: &BalanceUnknowns, distance: f64) -> Option<BalanceUnknowns> {
         self.at_amplitude(guess, 1).filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
@@ -503,11 +507,11 @@ impl<'a> Problem<'a> {
     /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
     fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), NoNumbers> {
         if pushes_away(self.force, self.amplitude) {
-            return self.over_the_hilltop(known).map(|found| (found, None));
+            return self.follow_cross_well_branch(known).map(|found| (found, None));
         }
         const FINER: usize = 4;
         const FINEST: usize = 64;
-        /// Of ln A: less is no way ahead.
+        /// Smallest step in ln A that counts as progress.
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
@@ -525,11 +529,11 @@ impl<'a> Problem<'a> {
         };
         let amplitude = end.logarithm().exp() * self.side();
         // A true motion that stays in one of several wells is none about all of them.
-        let fits = |found: &State| {
+        let fits = |found: &BalanceUnknowns| {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
         };
-        let outer = self.at_large();
+        let outer = self.large_amplitude_start();
         let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
         let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
         found.ok_or(NoNumbers::BalanceEnds { amplitude })
@@ -549,14 +553,14 @@ impl<'a> Problem<'a> {
         let range = passage_at(&passages, self.amplitude).ok_or(NoNumbers::NoBalance)?;
         let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
         let goal = self.amplitude.abs().ln();
-        let reached = |start: State| {
+        let reached = |start: BalanceUnknowns| {
             let way = (goal - start.logarithm()).signum();
             let mut passed = Vec::new();
             let found = self.followed_from(start, way, &mut passed);
             known.states.borrow_mut().append(&mut passed);
             found
         };
-        let nearest = known.nearest(self.amplitude).and_then(|state| self.near(&state, 0.05));
+        let nearest = known.nearest(self.amplitude).and_then(|state| self.solve_near(&state, 0.05));
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
@@ -566,12 +570,12 @@ impl<'a> Problem<'a> {
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
             .map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
         let sizes = sizes.map(|factor| factor * self.amplitude.abs());
-        let mut alone: Vec<(State, f64)> = sizes
+        let mut alone: Vec<(BalanceUnknowns, f64)> = sizes
             .filter(|&size| size > range.from && size < end)
-            .filter_map(|size| self.of_one_term(size * self.side()))
+            .filter_map(|size| self.one_term_guess(size * self.side()))
             .collect();
         // Nearly of one term, and not far.
-        let merit = |(state, corrections): &(State, f64)| {
+        let merit = |(state, corrections): &(BalanceUnknowns, f64)| {
             corrections + 0.1 * (state.logarithm() - goal).abs()
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
@@ -580,7 +584,7 @@ impl<'a> Problem<'a> {
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
             let found = reached(start);
-            known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
+            known.failures.set(known.failures.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
                 Err(last) if lost == NoNumbers::NoBalance => {
@@ -593,18 +597,21 @@ impl<'a> Problem<'a> {
         Err(lost)
     }
 
-    /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing
-    /// where there is no motion at rest.
-    fn up_from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
+    /// The branch from rest, or from what is known of it, to the amplitude; or its end. `None` if
+    /// there is no motion at rest.
+    fn follow_from_rest(
+        &self,
+        known: &Continuation,
+    ) -> Option<Result<BalanceUnknowns, BalanceUnknowns>> {
         let mut passed = Vec::new();
         // By the sums of this problem, which may be finer than those that it was found with.
         let nearest = known.below(self.amplitude);
-        let nearest = nearest.and_then(|state| self.near(&state, 0.05));
+        let nearest = nearest.and_then(|state| self.solve_near(&state, 0.05));
         let mut found =
             nearest.and_then(|nearest| self.followed_from(nearest, 1.0, &mut passed).ok());
         if found.is_none() {
             passed.clear();
-            match self.followed_from(self.at_rest()?, 1.0, &mut passed) {
+            match self.followed_from(self.small_amplitude_start()?, 1.0, &mut passed) {
                 Ok(reached) => found = Some(reached),
                 Err(end) => return Some(Err(end)),
             }
@@ -614,9 +621,9 @@ impl<'a> Problem<'a> {
         found.map(Ok)
     }
 
-    /// Whether the force waves more often than the sums can follow: finer ones say that this is no
-    /// solution.
-    fn is_too_coarse(&self, state: &State) -> bool {
+    /// Whether the force waves more often than the sums can follow: finer ones say that this is not
+    /// a solution.
+    fn is_too_coarse(&self, state: &BalanceUnknowns) -> bool {
         const FINER: usize = 4;
         const AGREEING: f64 = 1e-7;
         let residual =
@@ -634,7 +641,7 @@ impl<'a> Problem<'a> {
         let parts =
             (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
         let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
-        places.all(|x| x * self.force.at(x) > 0.0)
+        places.all(|x| x * self.force.value(x) > 0.0)
     }
 
     /// Whether the true motion passes other equilibria on its way.
@@ -643,7 +650,7 @@ impl<'a> Problem<'a> {
         let Ok(end) = self.force.turning_point(self.amplitude) else {
             return false;
         };
-        let pushes_away = |x: f64| x * self.force.at(x) < 0.0;
+        let pushes_away = |x: f64| x * self.force.value(x) < 0.0;
         // Wells may be far smaller than the motion.
         let near = |k: i32| 0.97_f64.powi(k);
         let even = |k: i32| f64::from(k) / f64::from(SAMPLES);
@@ -661,10 +668,10 @@ impl<'a> Problem<'a> {
     /// The last motion, where the branch does not reach the amplitude.
     fn followed_from(
         &self,
-        start: State,
+        start: BalanceUnknowns,
         way: f64,
-        passed: &mut Vec<State>,
-    ) -> Result<State, State> {
+        passed: &mut Vec<BalanceUnknowns>,
+    ) -> Result<BalanceUnknowns, BalanceUnknowns> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
@@ -675,7 +682,7 @@ impl<'a> Problem<'a> {
         let (amplitude, mut steps) = (self.count + 1, 0);
         let mut direction = DVector::zeros(amplitude + 1);
         direction[amplitude] = way;
-        let step = |passed: &[State], length: &mut f64| {
+        let step = |passed: &[BalanceUnknowns], length: &mut f64| {
             let state = &passed[passed.len() - 1];
             let left = goal - state.logarithm();
             steps += 1;
@@ -693,14 +700,15 @@ impl<'a> Problem<'a> {
             let left = left / tangent[amplitude];
             let last = left <= *length;
             *length = length.min(left);
-            let mut predicted = State(&state.0 + *length * &tangent);
+            let mut predicted = BalanceUnknowns(&state.0 + *length * &tangent);
             let found = if last {
                 predicted.0[amplitude] = goal;
                 self.at_amplitude(&predicted, 1)
             } else {
                 self.corrected(&predicted, &tangent, 1, 12)
             };
-            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * length.abs();
+            let near =
+                |found: &BalanceUnknowns| (&found.0 - &predicted.0).norm() <= SHARE * length.abs();
             match found.filter(near) {
                 Some(found) if last => Ended(Some(found), true),
                 Some(found) => {
@@ -718,7 +726,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The direction of the branch, forward.
-    fn tangent(&self, state: &State, before: &DVector<f64>) -> Option<DVector<f64>> {
+    fn tangent(&self, state: &BalanceUnknowns, before: &DVector<f64>) -> Option<DVector<f64>> {
         let (_, jacobian) = self.equations(state, &self.nodes(state, 1))?;
         let tangent = continuation::tangent(&bordered(&jacobian, before).lu())?;
         let norm = tangent.norm();
@@ -728,7 +736,8 @@ impl<'a> Problem<'a> {
     /// The same solution by finer and finer sums, until they agree.
     fn refined(&self, mut state: State) -> Result<State, NoNumbers> {
         const MOST_POINTS: usize = 1 << 17;
-        /// Where the sums are as fine as they get: the digits that a user sees.
+        /// Largest change from one refinement to the next that is accepted: the digits that a user
+        /// sees.
         const ENOUGH: f64 = 1e-8;
         let (mut finer, mut change) = (1, f64::INFINITY);
         while change >= 1e-12 && 2 * finer * self.nodes(&state, 1).weights.len() <= MOST_POINTS {

@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use super::drive::{Quadrature, Wave};
+use super::drive::{HarmonicExcitation, Quadrature};
 use super::{Options, Reason, Refusal, solve_in_its_coordinate};
 use crate::expr::{Equation, Expr, ExprError, Typed};
 use crate::oscillator::Oscillator;
@@ -22,8 +22,8 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
     matches!(refusal.reason, Reason::NoWave | Reason::SecondDrive)
 }
 
-/// The answer in the coordinate relative to the first base that leaves no such refusal; `None`
-/// where no base moves, or there is no answer in that coordinate either.
+/// The answer in the coordinate relative to the first base that leaves no such refusal; `None` if
+/// no base moves, or there is no answer in that coordinate either.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let relative = fresh("z", &oscillator.names());
     // Seen from one of two bases the other moves: all are those of the equation as it is, never
@@ -78,10 +78,10 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
     let mut bases: Vec<Expr> = vec![];
     for sum in oscillator.force.unique_nodes().skip(1) {
         let moves =
-            |name: Symbol| Ok::<_, ExprError>(beside(sum, name, own)?.map(|moving| -&moving));
+            |name: Symbol| Ok::<_, ExprError>(moving_part(sum, name, own)?.map(|moving| -&moving));
         let base = match (moves(own[0])?, moves(own[1])?) {
             (Some(base), _) => Some(base),
-            // A velocity that is no sum of waves leaves the bases that were found.
+            // A velocity that is not a sum of waves leaves the bases that were found.
             (None, Some(speed)) => match integrated(&speed) {
                 Ok(base) => Some(base),
                 Err(refusal) if bases.is_empty() => return Err(refusal),
@@ -100,8 +100,8 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
 }
 
 /// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that;
-/// `None` where the sum is another one.
-fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
+/// `None` if the sum is another one.
+fn moving_part(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
     let t = Symbol::new("t");
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
         sum.terms().iter().partition(|term| term.contains(t));
@@ -121,7 +121,7 @@ fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, Ex
 fn integrated(speed: &Expr) -> Result<Expr, Refusal> {
     let mut motion = vec![];
     for term in speed.terms() {
-        let wave = Wave::new(term, Method::MultipleScales)?;
+        let wave = HarmonicExcitation::new(term, Method::MultipleScales)?;
         let angle = &(&wave.rate * &Expr::symbol("t")) + &wave.phase;
         let along = match wave.quadrature {
             Quadrature::Cosine => angle.sin()?,

@@ -1,4 +1,4 @@
-//! Which method answers where none is asked for.
+//! The choice of a method if none is asked for.
 //!
 //! ```text
 //! linear, free, damped or driven         exact, where no order, resonance or small parameter is asked for
@@ -23,7 +23,7 @@ use super::multiple_scales::scaling::{
 use super::{Options, Reason, Refusal, solve_by};
 use crate::equilibrium::centred;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Law, Method, Note, Solution};
 use crate::symbol::Symbol;
 
@@ -70,7 +70,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         Ok(_) => return found,
     };
     if usual == Method::MultipleScales {
-        // What has no series in the amplitude is averaged as it is.
+        // A force without a series in the amplitude is averaged as it is.
         return match &refusal.reason {
             Reason::Oscillator(
                 OscillatorError::NotPolynomial(_)
@@ -98,8 +98,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
     }
 }
 
-/// The exact motion of a linear equation, free, damped or driven; `None` where the equation is
-/// another one, or an expansion of the motion is asked for.
+/// The exact motion of a linear equation, free, damped or driven; `None` if the equation is another
+/// one, or an expansion of the motion is asked for.
 pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let expansion = options.method.is_some()
         || options.order.is_some()
@@ -171,13 +171,14 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
 /// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all
 /// but the linear terms small, and quadratic terms that damp act on the amplitude as cubic ones do.
 fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
-    let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
+    let marked =
+        |note: &Note| matches!(note, Note::Cut(Truncation::Truncated { marks: Some(_), .. }));
     solution.limit_cycle.is_some()
         && solution.validity.iter().any(marked)
         && about_equilibrium(oscillator, |centred, _| has_quadratic_damping(centred))
 }
 
-/// What is so of the oscillator about its equilibrium.
+/// Whether a property holds for the oscillator about its equilibrium.
 fn about_equilibrium(oscillator: &Oscillator, is_so: impl Fn(&Oscillator, &Parts) -> bool) -> bool {
     let Ok(centred) = centred(oscillator, None) else {
         return false;
@@ -239,8 +240,8 @@ fn in_powers(
     }
 }
 
-/// The expansion in the amplitude of a force that is no polynomial beside a letter that might have
-/// been small.
+/// The expansion in the amplitude of a force that is not a polynomial beside a letter that might
+/// have been small.
 fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(None);
     matches!(small, Ok(SmallParameter::Parameter(_))).then_some(())?;
@@ -252,8 +253,8 @@ fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Sol
 }
 
 /// A conservative motion about an equilibrium at which the force has no expansion, by a method that
-/// takes the force as it is; `None` where it is not that, where an expansion was asked for, and
-/// where no such method answers.
+/// takes the force as it is; `None` if it is not that, where an expansion was asked for, and if no
+/// such method answers.
 fn without_expansion(
     refusal: &Refusal,
     oscillator: &Oscillator,

@@ -29,27 +29,27 @@ pub(super) struct Drive {
     pub(super) frequency: Expr,
     /// The phase of that frequency at which the first wave begins.
     pub(super) phase: Expr,
-    /// What they drive.
+    /// The driven terms.
     pub(super) terms: Vec<Driven>,
-    /// Sines and cosines of phases that are no fractions.
+    /// Sines and cosines of phases that are not fractions.
     pub(super) definitions: Vec<Definition>,
 }
 
 /// A term of the force that a wave multiplies.
 pub(super) struct Driven {
-    /// What stands before the wave.
+    /// The factor of the wave, without the time.
     pub(super) factor: Expr,
     /// The multiple of the driving frequency.
     pub(super) multiple: u32,
     pub(super) quadrature: Quadrature,
-    /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first
-    /// term.
+    /// The difference of the degree to that of the first term, for a term of a
+    /// [series](Drive::in_small_motions).
     pub(super) above: u32,
     /// The whole term, for messages.
     pub(super) term: Expr,
 }
 
-/// Which wave a drive is.
+/// The quadrature of a drive: cosine or sine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quadrature {
     /// `cos`.
@@ -75,8 +75,8 @@ impl Driven {
         own.iter().all(|&name| !self.factor.contains(name))
     }
 
-    /// The terms of the series of the factor about rest; `None` where it is a polynomial already,
-    /// or has none.
+    /// The terms of the series of the factor about rest; `None` if it is a polynomial already, or
+    /// has none.
     fn in_small_motions(&self, coordinate: Symbol, degree: u32) -> Option<Vec<Self>> {
         if self.factor.to_polynomial(&mut |_| None).ok()?.is_some() {
             return None;
@@ -105,8 +105,8 @@ impl Drive {
     /// The driving frequency, and the terms that its multiples drive.
     ///
     /// # Errors
-    /// A term that is no wave of it, by name.
-    pub(super) fn of(
+    /// A term that is not a wave of it, by name.
+    pub(super) fn from_parts(
         parts: &Parts,
         oscillator: &Oscillator,
         method: Method,
@@ -121,8 +121,10 @@ impl Drive {
             definitions: vec![],
         };
         let terms = parts.forcing.terms();
-        let waves: Vec<Wave> =
-            terms.iter().map(|term| Wave::new(term, method)).collect::<Result<_, _>>()?;
+        let waves: Vec<HarmonicExcitation> = terms
+            .iter()
+            .map(|term| HarmonicExcitation::new(term, method))
+            .collect::<Result<_, _>>()?;
         let Some(first) = waves.first() else {
             return Ok(drive);
         };
@@ -163,7 +165,7 @@ impl Drive {
     }
 
     /// The ratio to the linear frequency of the wave that is in resonance, at a ratio of the
-    /// driving frequency; `None` where only sums and differences of several frequencies are.
+    /// driving frequency; `None` if only sums and differences of several frequencies are.
     pub(super) fn nearest(&self, (p, q): (u32, u32)) -> Option<(u32, u32)> {
         if self.terms.iter().all(|driven| driven.multiple == 1) {
             return Some((p, q));
@@ -210,8 +212,9 @@ impl Drive {
         found
     }
 
-    /// The same with functions of the motion as their series about rest, up to a degree:
-    /// `h sin(x) cos(Omega t)` of a shaken pendulum. What has no such series stays as it is.
+    /// Returns the drive with functions of the motion replaced by their series about rest, up to a
+    /// degree: `h sin(x) cos(Omega t)` of a shaken pendulum. A function without such a series stays
+    /// as it is.
     pub(super) fn in_small_motions(mut self, coordinate: Symbol, degree: u32) -> Self {
         self.terms = self
             .terms
@@ -236,7 +239,7 @@ impl Drive {
 
     fn add(
         &mut self,
-        wave: Wave,
+        wave: HarmonicExcitation,
         multiple: u32,
         term: &Expr,
         taken: &[Symbol],
@@ -266,7 +269,7 @@ impl Drive {
     }
 }
 
-/// A constant, by a name where it is no number.
+/// A constant, by a name where it is not a number.
 fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[Symbol]) -> Expr {
     if value.as_number().is_some() {
         return value;
@@ -281,16 +284,16 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
 }
 
 /// One term: `factor cos(rate t + phase)` or the sine of that, the rate without a minus.
-pub(super) struct Wave {
+pub(super) struct HarmonicExcitation {
     pub(super) factor: Expr,
     pub(super) rate: Expr,
     pub(super) phase: Expr,
     pub(super) quadrature: Quadrature,
 }
 
-impl Wave {
+impl HarmonicExcitation {
     /// # Errors
-    /// A term that is no single wave, by name.
+    /// A term that is not a single wave, by name.
     pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {
         let t = Symbol::new("t");
         let not_periodic = || Reason::NoWave.to(method).about(term);

@@ -2,7 +2,7 @@
 //! all have alike.
 
 use super::drive::Drive;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -13,7 +13,7 @@ use crate::solution::{
 };
 use crate::symbol::Symbol;
 
-/// What a method found of a driven motion.
+/// The result of a method for a driven motion.
 pub(super) struct DrivenMotion<'a> {
     pub(super) method: Method,
     pub(super) order: u32,
@@ -32,7 +32,7 @@ pub(super) struct DrivenMotion<'a> {
     pub(super) detuning: Definition,
     pub(super) response: Response,
     pub(super) validity: Vec<Note>,
-    pub(super) derivation: Vec<Line>,
+    pub(super) derivation: Vec<DerivationLine>,
 }
 
 impl DrivenMotion<'_> {

@@ -22,13 +22,13 @@ use num_traits::{One as _, Signed};
 
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Refusal};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::potential::potential;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
-use crate::solution::{Law, Method, Note, Solution, note::Instant};
+use crate::solution::{Law, Method, Note, Solution, note::CollocationInstant};
 use crate::symbol::fresh;
 use crate::symbol::letters::AMPLITUDE;
 
@@ -60,13 +60,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             if let Some(potential) = &potential {
                 solution.derivation = derivation(oscillator, potential)?;
                 let squared = Expr::symbol("omega").integer_power(2)?;
-                solution.derivation.push(Line::equation(squared, law));
+                solution.derivation.push(DerivationLine::equation(squared, law));
             }
         }
         None => {
             let amplitude = Expr::symbol("A");
             let eighth = Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?;
-            let work = |factor: Expr| Formula::Integral {
+            let work = |factor: Expr| DerivationFormula::Integral {
                 factor,
                 from: eighth.clone(),
                 to: amplitude.clone(),
@@ -77,20 +77,20 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             let quarter = Expr::divide(&amplitude.integer_power(2)?, &Expr::from(4))?;
             let integral = work(Expr::divide(&Expr::one(), &quarter)?);
             solution.derivation = vec![
-                Line::equation(&squared * &quarter, work(Expr::one())).because(format!(
+                DerivationLine::equation(&squared * &quarter, work(Expr::one())).because(format!(
                     "kinetic energy of {AMPLITUDE}*cos(θ) at θ = pi/4, from the work of the force"
                 )),
-                Line::equation(squared.clone(), integral.clone()),
+                DerivationLine::equation(squared.clone(), integral.clone()),
             ];
-            solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
+            solution.law = Law::Quadrature(vec![DerivationLine::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(CollocationInstant::EighthOfPeriod));
     Ok(solution)
 }
 
 /// The energy at the start and at an eighth of the period, written out.
-fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Refusal> {
+fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<DerivationLine>, Refusal> {
     let (amplitude, omega) = (Expr::symbol("A"), Expr::symbol("omega"));
     let eighth = Expr::divide(&amplitude, &Expr::from(2).sqrt()?)?;
     let at = |place: &Expr| {
@@ -99,8 +99,9 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     };
     let kinetic = Expr::divide(&(&omega * &amplitude).integer_power(2)?, &Expr::from(4))?;
     Ok(vec![
-        Line::equation(fresh("V", &oscillator.names()), potential).because("potential energy"),
-        Line::equation(kinetic + at(&eighth)?, at(&amplitude)?).because(format!(
+        DerivationLine::equation(fresh("V", &oscillator.names()), potential)
+            .because("potential energy"),
+        DerivationLine::equation(kinetic + at(&eighth)?, at(&amplitude)?).because(format!(
             "kinetic and potential energy of {AMPLITUDE}*cos(θ) at θ = pi/4, and at θ = 0"
         )),
     ])
@@ -160,7 +161,7 @@ pub(super) fn positive_amplitude(law: &Expr) -> Option<Expr> {
 }
 
 /// The law by the work of the force, which loses no digits where a difference of potentials would.
-pub(super) fn by_quadrature(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+pub(super) fn by_quadrature(force: &CentredForce, amplitude: f64) -> Option<(f64, f64)> {
     let (rise, error) = force.work(amplitude / f64::sqrt(2.0), amplitude)?;
     // Not over A^2 at once, which may leave the range of doubles.
     Some((4.0 * (rise / amplitude) / amplitude, error / rise.abs()))

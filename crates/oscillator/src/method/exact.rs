@@ -48,7 +48,7 @@ use super::{Options, Refusal};
 use crate::conservative::potential::potential;
 use crate::conservative::power::Power;
 use crate::conservative::{is_odd, linear_in, split, take_powers};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
@@ -101,9 +101,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 }
 
 /// The period as an integral over the energy, with the force of this equation in it.
-fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
+fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<DerivationLine>, Refusal> {
     let x = oscillator.coordinate;
-    let energy = Energy {
+    let energy = EnergyIntegral {
         force,
         potential: potential(force, x),
         root_of_mass: Expr::one(),
@@ -113,7 +113,7 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, 
 }
 
 /// `M x'^2/2 + U`, what a period follows from.
-pub(super) struct Energy<'a> {
+pub(super) struct EnergyIntegral<'a> {
     /// `U'`.
     pub(super) force: &'a Expr,
     /// `U`, where it has a closed form.
@@ -124,9 +124,9 @@ pub(super) struct Energy<'a> {
     pub(super) is_odd: bool,
 }
 
-impl Energy<'_> {
+impl EnergyIntegral<'_> {
     /// `T = 2 int_(x_1)^A sqrt(M)/sqrt(2 (U(A) - U(x))) dx`, and where `x_1` comes from.
-    pub(super) fn period(&self, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
+    pub(super) fn period(&self, oscillator: &Oscillator) -> Result<Vec<DerivationLine>, Refusal> {
         let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
         let names = oscillator.names();
         let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| fresh(name, &names));
@@ -140,9 +140,9 @@ impl Energy<'_> {
         let gained = at(&amplitude).zip(at(&x.into()));
         let gained =
             gained.and_then(|(turning, here)| (Expr::from(2) * (turning - here)).expand().ok());
-        let gained: Formula = gained.map_or_else(
+        let gained: DerivationFormula = gained.map_or_else(
             || {
-                Ok::<_, Refusal>(Formula::Integral {
+                Ok::<_, Refusal>(DerivationFormula::Integral {
                     factor: Expr::from(2),
                     from: x.into(),
                     to: amplitude.clone(),
@@ -156,10 +156,10 @@ impl Energy<'_> {
             if self.is_odd { (4, Expr::zero()) } else { (2, Expr::from(turning_back)) };
         let mut lines = Vec::new();
         if !self.is_odd {
-            let equal: [Formula; 2] = match at(&from).zip(at(&amplitude)) {
+            let equal: [DerivationFormula; 2] = match at(&from).zip(at(&amplitude)) {
                 Some((there, here)) => [there.into(), here.into()],
                 None => {
-                    let work = Formula::Integral {
+                    let work = DerivationFormula::Integral {
                         factor: Expr::one(),
                         from: from.clone(),
                         to: amplitude.clone(),
@@ -169,15 +169,18 @@ impl Energy<'_> {
                     [work, Expr::zero().into()]
                 }
             };
-            lines.push(Line::equal(equal).because(format!(
+            lines.push(DerivationLine::equal(equal).because(format!(
                 "the other turning point {turning_back}, of the other sign than {AMPLITUDE}"
             )));
         }
-        let period = Formula::Integral {
+        let period = DerivationFormula::Integral {
             factor: Expr::from(factor),
             from,
             to: amplitude,
-            integrand: Box::new(Formula::OverRoot(self.root_of_mass.clone(), Box::new(gained))),
+            integrand: Box::new(DerivationFormula::OverRoot(
+                self.root_of_mass.clone(),
+                Box::new(gained),
+            )),
             variable: x,
         };
         let words = match self.is_odd {
@@ -186,15 +189,15 @@ impl Energy<'_> {
                 "the period, from the energy; for {AMPLITUDE} < 0 from {AMPLITUDE} to {turning_back}"
             ),
         };
-        lines.push(Line::equation(total, period).because(words));
+        lines.push(DerivationLine::equation(total, period).because(words));
         let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
-        lines.push(Line::equation("omega", frequency));
+        lines.push(DerivationLine::equation("omega", frequency));
         Ok(lines)
     }
 }
 
 /// Properties of a force.
-struct Known {
+struct ForceProperties {
     law: Frequency,
     /// `x(t)` from rest at `A`, about the equilibrium.
     motion: Option<Expr>,
@@ -206,7 +209,7 @@ enum Frequency {
     Form(Expr),
 }
 
-impl Known {
+impl ForceProperties {
     fn form(value: Expr, motion: Option<Expr>) -> Self {
         Self { law: Frequency::Form(value), motion }
     }
@@ -235,7 +238,7 @@ fn by_elliptic(scale: &Expr, parameter: Expr) -> Result<Expr, ExprError> {
     Expr::divide(&(Expr::pi() * scale), &(Expr::from(2) * elliptic(parameter)?))
 }
 
-fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> {
+fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<ForceProperties>, Refusal> {
     let powers: Vec<usize> =
         (0..coefficients.len()).filter(|&n| !coefficients[n].is_zero()).collect();
     let of = |n: usize| coefficients.get(n).map_or_else(Expr::zero, Expr::from);
@@ -249,7 +252,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
                 None => (of(1).sqrt()?, Frequency::Squared(squared)),
             };
             let motion = &amplitude * &(rate * time()).cos()?;
-            Ok(Some(Known { law, motion: Some(motion) }))
+            Ok(Some(ForceProperties { law, motion: Some(motion) }))
         }
         [n] if n % 2 == 1 => {
             let law = of_power(&of(*n), &Expr::number(Rational::from_integer((*n).into())))?;
@@ -260,7 +263,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
                 }
                 _ => None,
             };
-            Ok(Some(Known::form(law, motion)))
+            Ok(Some(ForceProperties::form(law, motion)))
         }
         [1, 2] => {
             let (a, b) = (of(1), of(2));
@@ -282,7 +285,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let [sn, ..] = jacobi(&(rate * time()), &parameter)?;
             let width = Expr::divide(&(Expr::from(4) * &amplitude * (&a + &product)), &sum)?;
             let motion = &amplitude - &(width * sn.integer_power(2)?);
-            Ok(Some(Known::form(law, Some(motion))))
+            Ok(Some(ForceProperties::form(law, Some(motion))))
         }
         [1, 3] => {
             let (a, stiff) = (of(1), of(3) * &squared);
@@ -293,7 +296,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
                 &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter.clone()])?),
             )?;
             let [_, cn, _] = jacobi(&(sum.sqrt()? * time()), &parameter)?;
-            Ok(Some(Known::form(law, Some(&amplitude * &cn))))
+            Ok(Some(ForceProperties::form(law, Some(&amplitude * &cn))))
         }
         [1, 5] | [3, 5] | [1, 3, 5] => {
             let (a, b, l) = (of(1), of(3) * &squared, of(5) * squared.integer_power(2)?);
@@ -312,7 +315,7 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let share = Expr::divide(&p, &r)?.sqrt()? * (sn * dn).integer_power(2)?;
             let below = (cn.integer_power(2)? + share).sqrt()?;
             let motion = Expr::divide(&(&amplitude * &cn), &below)?;
-            Ok(Some(Known::form(law, Some(motion))))
+            Ok(Some(ForceProperties::form(law, Some(motion))))
         }
         _ => Ok(None),
     }
@@ -344,13 +347,13 @@ pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> 
 
 /// A linear force with a function of letters as its stiffness; a single term: a power with its
 /// sign, a sine or a hyperbolic sine.
-fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, Refusal> {
+fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<ForceProperties>, Refusal> {
     let coordinate = oscillator.coordinate;
     if is_free_and_linear(oscillator)? {
         let stiffness = force.differentiate(coordinate)?.expand()?;
         let rate = stiffness.sqrt()?;
         let motion = Expr::symbol("A") * (&rate * &time()).cos()?;
-        return Ok(Some(Known::form(rate, Some(motion))));
+        return Ok(Some(ForceProperties::form(rate, Some(motion))));
     }
     let [term] = force.terms() else {
         return Ok(None);
@@ -376,30 +379,30 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
                 jacobi(&(rate * time()), &of_angle(Function::Tanh)?.integer_power(2)?)?;
             let turned = Expr::function(Function::Asinh, vec![sine * cn])?;
             let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, Some(motion))));
+            return Ok(Some(ForceProperties::form(by_elliptic(&scale, -squared)?, Some(motion))));
         }
         let quarter = elliptic(squared.clone())?;
         let [sn, ..] = jacobi(&(&scale * &time() + quarter), &squared)?;
         let turned = Expr::function(Function::Asin, vec![sine * sn])?;
         let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-        return Ok(Some(Known::form(by_elliptic(&scale, squared)?, Some(motion))));
+        return Ok(Some(ForceProperties::form(by_elliptic(&scale, squared)?, Some(motion))));
     }
-    // A power that is no number.
+    // A power that is not a number.
     let mut power = Power::one();
-    if inside.iter().all(|factor| power.takes(factor, coordinate))
+    if inside.iter().all(|factor| power.absorb(factor, coordinate))
         && power.exponent.as_number().is_none()
     {
         let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;
-        return Ok(form.map(|form| Known::form(form, None)));
+        return Ok(form.map(|form| ForceProperties::form(form, None)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent == -Rational::one() => {
             let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?.expand()?.sqrt()?;
-            Ok(Some(Known::form(Expr::divide(&scale, &Expr::symbol("A"))?, None)))
+            Ok(Some(ForceProperties::form(Expr::divide(&scale, &Expr::symbol("A"))?, None)))
         }
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
             let law = of_power(&outside, &Expr::number(power.exponent))?;
-            Ok(Some(Known::form(law, None)))
+            Ok(Some(ForceProperties::form(law, None)))
         }
         _ => Ok(None),
     }

@@ -2,8 +2,8 @@
 //! of a motion between two turning points. With the judge it shares only what is integrated
 //! ([`crate::numeric::ode::energy`]), not the integral.
 
-use crate::conservative::force::Force as RestForce;
-use crate::numeric::ode::energy::{Force, PeriodError, Rates, turning_point};
+use crate::conservative::force::CentredForce as RestForce;
+use crate::numeric::ode::energy::{PeriodError, PiecewiseForce, TimePerAngle, turning_point};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
 
 /// Harmonics of the exact motion.
@@ -42,7 +42,7 @@ pub(super) fn cosines(place: &dyn Fn(f64) -> f64) -> Vec<f64> {
 /// # Errors
 /// See [`PeriodError`].
 pub(super) fn weighted_motion(
-    force: &Force,
+    force: &PiecewiseForce,
     weight: &dyn Fn(f64) -> f64,
     equilibrium: f64,
     start: f64,
@@ -61,14 +61,14 @@ pub(super) fn weighted_motion(
 /// # Errors
 /// See [`PeriodError`].
 fn motion_between(
-    force: &Force,
+    force: &PiecewiseForce,
     weight: &dyn Fn(f64) -> f64,
     start: f64,
     end: f64,
 ) -> Result<(f64, Vec<f64>), PeriodError> {
     const FEWEST: usize = 64;
     const MOST: usize = 1024;
-    let rates = Rates::new(force, weight, start, end)?;
+    let rates = TimePerAngle::new(force, weight, start, end)?;
     if rates.knots.len() > 2 {
         return motion_by_pieces(&rates);
     }
@@ -141,7 +141,7 @@ impl EqualSteps {
 /// Period and coefficients by Gauss-Legendre panels in phi: the phase at the points of a panel is
 /// the integral of the Legendre series through the rates there. The panels are halved until their
 /// time agrees with the period.
-fn motion_by_pieces(rates: &Rates) -> Result<(f64, Vec<f64>), PeriodError> {
+fn motion_by_pieces(rates: &TimePerAngle) -> Result<(f64, Vec<f64>), PeriodError> {
     const HALVINGS: u32 = 6;
     /// The longest panel, as a phase: the highest harmonic still has few waves on it.
     const LONGEST: f64 = 0.2;
@@ -189,7 +189,7 @@ fn motion_by_pieces(rates: &Rates) -> Result<(f64, Vec<f64>), PeriodError> {
 }
 
 /// The period as the sum of the times that the pieces take.
-fn period_by_pieces(rates: &Rates) -> Result<f64, PeriodError> {
+fn period_by_pieces(rates: &TimePerAngle) -> Result<f64, PeriodError> {
     /// The part of the period that its error must stay below.
     const GOOD_ENOUGH: f64 = 1e-9;
     let (mut half, mut uncertain) = (0.0, 0.0);
@@ -262,7 +262,7 @@ mod tests {
         // (1 + x^2)*x'' + x*x'^2 + x = 0 has the energy (1 + x^2) x'^2/2 + x^2/2.
         let weight = |x: f64| (1.0 + x * x).sqrt();
         let (period, cosines) =
-            weighted_motion(&Force::smooth(&|x| x), &weight, 0.0, 0.1).expect("a motion");
+            weighted_motion(&PiecewiseForce::smooth(&|x| x), &weight, 0.0, 0.1).expect("a motion");
         assert!(period > std::f64::consts::TAU && (cosines.iter().sum::<f64>() - 0.1).abs() < 1e-9);
     }
 }

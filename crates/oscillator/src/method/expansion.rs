@@ -10,7 +10,7 @@ use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
-    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError,
+    AmplitudeKind, ExpansionScope, Factored, ForceTerm, Scheme, SecularError, SecularExpansion,
     expand_numbers_supervised, expand_polynomials_supervised, expand_supervised,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
@@ -74,7 +74,7 @@ pub fn expand_exactly(
     scheme: &Scheme,
     delta: Option<Symbol>,
     inverse_slope: Option<&Polynomial>,
-    (taken, extent): (&[Symbol], Extent),
+    (taken, extent): (&[Symbol], ExpansionScope),
     supervision: Supervision,
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
@@ -104,7 +104,7 @@ pub fn expand_exactly(
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
             let expansion =
                 expand_numbers_supervised(&force, order as usize, scheme, extent, supervision)?;
-            Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
+            Ok(collect(&expansion, scheme, over_denominator::<Integer>, restore, taken))
         }
         _ => {
             let force =
@@ -128,13 +128,13 @@ pub fn expand_exactly(
                         Some(inverse),
                         supervision,
                     )?;
-                    if extent == Extent::Frequency {
+                    if extent == ExpansionScope::Frequency {
                         expansion.forget_motion();
                     }
                     expansion
                 }
             };
-            Ok(collect(&expansion, scheme, over::<Polynomial<Integer>>, restore, taken))
+            Ok(collect(&expansion, scheme, over_denominator::<Polynomial<Integer>>, restore, taken))
         }
     }
 }
@@ -157,11 +157,11 @@ impl Numerator for Polynomial<Integer> {
     }
 }
 
-/// From the numerators of a series over this denominator to polynomials. The denominators of an
+/// Converts the numerators of a series over this denominator to polynomials. The denominators of an
 /// expansion have small prime factors alone: found once, they take the place of a greatest common
 /// divisor for each coefficient.
-fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
-    let factored = Factored::of(denominator);
+fn over_denominator<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
+    let factored = Factored::factorize(denominator);
     move |numerator| {
         numerator.polynomial(&|number| match &factored {
             Some(factored) => factored.fraction(number, denominator),
@@ -226,7 +226,7 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
 /// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were
 /// scaled away.
 fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
-    expansion: &'a Expansion<R>,
+    expansion: &'a SecularExpansion<R>,
     scheme: &Scheme,
     over: impl Fn(&'a Integer) -> P,
     restore: impl Fn(usize) -> Monomial,
@@ -281,17 +281,19 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     }
 }
 
-/// What pins down `y_n`, beside the amplitude condition of a limit cycle.
+/// The conditions that fix `y_n`, beside the amplitude condition of a limit cycle.
 fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
     match (n, scheme.normalisation, scheme.amplitude) {
         (0, ..) => vec![Condition::Position(1), Condition::AtRest],
-        (_, AmplitudeConvention::Initial, Amplitude::Free) => {
+        (_, AmplitudeConvention::Initial, AmplitudeKind::Free) => {
             vec![Condition::Position(0), Condition::AtRest]
         }
-        (_, AmplitudeConvention::Initial, Amplitude::Determined) => vec![Condition::AtRest],
-        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Free) => {
+        (_, AmplitudeConvention::Initial, AmplitudeKind::Determined) => vec![Condition::AtRest],
+        (_, AmplitudeConvention::FirstHarmonic, AmplitudeKind::Free) => {
             vec![Condition::NoCosine, Condition::NoSine]
         }
-        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
+        (_, AmplitudeConvention::FirstHarmonic, AmplitudeKind::Determined) => {
+            vec![Condition::NoSine]
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The first order of the method of Lindstedt and Poincare for a force that is no polynomial.
+//! The first order of the method of Lindstedt and Poincare for a force that is not a polynomial.
 //!
 //! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1, with the projection of
 //! `f_1` in closed form.
@@ -9,8 +9,8 @@
 //! no cos(theta) on the right:   w_1 = c_1(A)/A,   c_1 = (2/pi) int_0^pi f_1(A cos theta) cos(theta) dtheta
 //! ```
 //!
-//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is no
-//! polynomial.
+//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is not
+//! a polynomial.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -25,16 +25,16 @@ use num_traits::Zero;
 
 use super::one_term::{integral_law, note_even_part, set_law, shared_integral, unsolved};
 use super::{Options, Reason, Refusal, Refuser, not_polynomial};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, Parts, SmallParameter};
 use crate::series::taylor::taylor;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
-/// The answer to first order in `small`; `None` where the equation is not conservative, not linear
+/// The answer to first order in `small`; `None` if the equation is not conservative, not linear
 /// without `small`, or its projection has no closed form.
 ///
 /// # Errors
@@ -67,16 +67,16 @@ pub(super) fn solve(
         ));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Reason::Convention.by(Refuser::FirstOrder));
+        return Err(Reason::Convention.refused_by(Refuser::FirstOrder));
     }
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
     set_law(&mut solution, &law)?;
     solution.validity =
-        vec![Note::Cut(Cut::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
+        vec![Note::Cut(Truncation::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation = vec![
-        Line::equation(oscillator.coordinate, solution.displacement.clone())
+        DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())
             .because(format!("at {small}^0")),
     ];
     let law = integral_law(oscillator, &force, &solution)?;
@@ -84,7 +84,7 @@ pub(super) fn solve(
     Ok(Some(solution))
 }
 
-/// The force without the powers of `small` above the first; `None` where it has no such series.
+/// The force without the powers of `small` above the first; `None` if it has no such series.
 pub(super) fn truncated(oscillator: &Oscillator, small: Symbol) -> Option<Expr> {
     let parts = taylor(&oscillator.force, &[(small, Rational::zero())], 1).ok()?;
     Expr::sum(parts).expand().ok()

@@ -9,15 +9,15 @@
 //! u'' + omega0^2 u + eps <f(u + sum 2 Lambda_j cos(phi_j), u' - sum 2 Lambda_j W_j sin(phi_j))> = F cos(Omega t) + ...
 //! ```
 //!
-//! What the drives far from resonance hold is known beforehand. To the first order the slow
-//! equations of `u` are those of the force averaged over the phases `phi_j`, for no combination of
-//! the frequencies comes near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
+//! The slow equations of a motion with drives far from resonance are known beforehand. To first
+//! order they are those of the force averaged over the phases `phi_j`, because no combination of
+//! the frequencies is near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
 
 use std::collections::BTreeMap;
 
 use num_traits::{One as _, Zero as _};
 
-use super::drive::{Quadrature, Wave};
+use super::drive::{HarmonicExcitation, Quadrature};
 use super::multiple_scales::scaling::has_quadratic_terms;
 use super::resonance::{RESONANCES, ratio_of};
 use super::{Options, solve_by};
@@ -30,7 +30,7 @@ use crate::symbol::{Symbol, fresh};
 
 /// A drive far from resonance, and the letters of the motion that it holds.
 struct Forced {
-    wave: Wave,
+    wave: HarmonicExcitation,
     /// `Lambda`.
     size: Definition,
     /// The cosine and the sine of its phase, and its frequency, which stand for themselves while
@@ -38,9 +38,9 @@ struct Forced {
     letters: [Symbol; 3],
 }
 
-/// The answer to the first order in a small letter; `None` where no such letter is there, where a
-/// drive acts on more than the place alone, or where the frequencies that are numbers are near
-/// another resonance.
+/// The answer to the first order in a small letter; `None` if no such letter is there, where a
+/// drive acts on more than the place alone, or if the frequencies that are numbers are near another
+/// resonance.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let by_scales = options.method.is_none_or(|method| method == Method::MultipleScales);
     let first_order = options.order.is_none_or(|order| order == 1);
@@ -53,8 +53,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         return None;
     };
     let parts = oscillator.parts().ok()?;
-    let waves: Option<Vec<Wave>> =
-        parts.forcing.terms().iter().map(|term| plain(term, oscillator)).collect();
+    let waves: Option<Vec<HarmonicExcitation>> =
+        parts.forcing.terms().iter().map(|term| as_free_force(term, oscillator)).collect();
     let waves = waves?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand().ok()?;
@@ -70,11 +70,11 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         return None;
     }
     let near = nearest(&waves, small, &stiffness);
-    let (kept, others): (Vec<Wave>, Vec<Wave>) = waves
+    let (kept, others): (Vec<HarmonicExcitation>, Vec<HarmonicExcitation>) = waves
         .into_iter()
         .partition(|wave| number_between(&wave.rate, &near).is_some_and(|number| number.is_one()));
     // Waves of other frequencies that have ratios among them act together.
-    let alone = |(k, wave): (usize, &Wave)| {
+    let alone = |(k, wave): (usize, &HarmonicExcitation)| {
         let mut rest = kept.iter().chain(&others[k + 1..]);
         !rest.any(|other| number_between(&wave.rate, &other.rate).is_some())
             && is_far(&wave.rate, &stiffness)
@@ -138,8 +138,8 @@ fn of_the_whole(
 }
 
 /// A drive that is a force free of the motion; `None` for any other.
-fn plain(term: &Expr, oscillator: &Oscillator) -> Option<Wave> {
-    let wave = Wave::new(term, Method::MultipleScales).ok()?;
+fn as_free_force(term: &Expr, oscillator: &Oscillator) -> Option<HarmonicExcitation> {
+    let wave = HarmonicExcitation::new(term, Method::MultipleScales).ok()?;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let moves = |part: &Expr| own.iter().any(|name| part.contains(*name));
     (!moves(&wave.factor) && !moves(&wave.phase) && !moves(&wave.rate)).then_some(wave)
@@ -147,7 +147,7 @@ fn plain(term: &Expr, oscillator: &Oscillator) -> Option<Wave> {
 
 /// The frequency that is taken to be near the linear one: the nearest, where all are numbers; else
 /// that of the drive which the small letter makes as small as the damping; else the first.
-fn nearest(waves: &[Wave], small: Symbol, stiffness: &Expr) -> Expr {
+fn nearest(waves: &[HarmonicExcitation], small: Symbol, stiffness: &Expr) -> Expr {
     let distances: Option<Vec<f64>> = waves
         .iter()
         .map(|wave| ratio_of(&wave.rate, stiffness).map(|ratio| ratio.ln().abs()))
@@ -178,13 +178,13 @@ fn number_between(one: &Expr, other: &Expr) -> Option<Rational> {
     quotient.as_number().cloned()
 }
 
-fn carrier(wave: &Wave) -> Option<[Expr; 2]> {
+fn carrier(wave: &HarmonicExcitation) -> Option<[Expr; 2]> {
     let angle = &(&wave.rate * &Expr::symbol("t")) + &wave.phase;
     Some([angle.cos().ok()?, angle.sin().ok()?])
 }
 
 /// The term of the left side.
-fn wave_term(wave: &Wave) -> Option<Expr> {
+fn wave_term(wave: &HarmonicExcitation) -> Option<Expr> {
     let [cosine, sine] = carrier(wave)?;
     Some(match wave.quadrature {
         Quadrature::Cosine => &wave.factor * &cosine,
@@ -192,7 +192,11 @@ fn wave_term(wave: &Wave) -> Option<Expr> {
     })
 }
 
-fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option<Vec<Forced>> {
+fn forced(
+    waves: Vec<HarmonicExcitation>,
+    stiffness: &Expr,
+    oscillator: &Oscillator,
+) -> Option<Vec<Forced>> {
     let mut taken = oscillator.names();
     let mut name = |wanted: &str| {
         let name = fresh(wanted, &taken);
@@ -276,7 +280,7 @@ fn mean(m: i32, n: i32) -> Rational {
 mod tests {
     use super::*;
 
-    /// By the sum over equal steps, which is exact for waves of few harmonics.
+    /// The means by a sum over equal steps, which is exact for few harmonics.
     #[test]
     fn means_of_powers_of_waves() {
         const STEPS: i32 = 64;

@@ -20,8 +20,8 @@
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
 use super::{Options, Reason, Refusal};
-use crate::conservative::force::Force;
-use crate::derivation::{Formula, Line};
+use crate::conservative::force::CentredForce;
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Note, Solution};
@@ -46,14 +46,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
-    let derivative = Formula::Slope {
+    let derivative = DerivationFormula::Slope {
         factor: Expr::one(),
         of: fresh("f", &oscillator.names()),
         by: oscillator.coordinate,
     };
     solution.derivation = vec![
-        Line::equal([derivative, slope.into()]).because("slope of the force"),
-        Line::equation(Expr::symbol("omega").integer_power(2)?, law)
+        DerivationLine::equal([derivative, slope.into()]).because("slope of the force"),
+        DerivationLine::equation(Expr::symbol("omega").integer_power(2)?, law)
             .because("its value at half the amplitude"),
     ];
     solution.validity.push(Note::SlopeAtHalf);
@@ -61,6 +61,6 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 }
 
 /// `f'(A/2)` in numbers, which have no error but rounding.
-pub(super) fn by_definition(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+pub(super) fn by_definition(force: &CentredForce, amplitude: f64) -> Option<(f64, f64)> {
     Some((force.slope(0.5 * amplitude), 0.0))
 }

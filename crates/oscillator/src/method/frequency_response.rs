@@ -24,7 +24,7 @@ use crate::expr::Expr;
 use crate::solution::response::Branches;
 use crate::symbol::Symbol;
 
-/// What is known of steady motions, as `solution::Response` has it.
+/// The frequency response of the steady motions, as in `solution::Response`.
 pub(super) struct FrequencyResponse {
     pub(super) relation: Option<Polynomial>,
     pub(super) branches: Option<Branches>,
@@ -34,8 +34,9 @@ pub(super) struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// From `P` and `Q`, and the cosine and sine of each; the detuning stands in `Q`.
-    pub(super) fn of(
+    /// Eliminates the phase from `P` and `Q`, and the cosine and sine of each; the detuning stands
+    /// in `Q`.
+    pub(super) fn from_rates(
         [rate, phase]: [&Polynomial; 2],
         [[rate_cos, rate_sin], [phase_cos, phase_sin]]: &[[Polynomial; 2]; 2],
         sigma: Symbol,
@@ -97,7 +98,7 @@ impl FrequencyResponse {
         }
     }
 
-    /// From a relation alone.
+    /// Takes a relation alone.
     pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
         let relation = relation.map(|relation| without_common_powers(&relation));
         let (folds, jumps) =
@@ -109,15 +110,15 @@ impl FrequencyResponse {
 /// A rate as waves of the phase, by its multiple: what stands before the cosine and the sine.
 pub(super) type PhaseWaves = BTreeMap<u32, [Polynomial; 2]>;
 
-/// What stands before the cosine and the sine of the phase itself.
+/// The coefficients of the cosine and the sine of the phase itself.
 pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
     let zero = || [Polynomial::zero(), Polynomial::zero()];
     rate.get(&1).cloned().unwrap_or_else(zero)
 }
 
 /// The relation between amplitude and detuning of two rates with multiples of the phase, in powers
-/// of a marker up to the order of the rates; `None` where multiples stand beside what leads,
-/// something comes before it, or nothing beside or after it.
+/// of a marker up to the order of the rates; `None` if multiples stand beside what leads, something
+/// comes before it, or nothing beside or after it.
 ///
 /// ```text
 /// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
@@ -177,8 +178,8 @@ pub(super) fn eliminated(
         ];
         [cosine, sine] = solved.map(|value| cut(&value.product(&over)));
     }
-    // Where all else comes d after the waves, so do c and s, and their squares are known to as many
-    // orders behind the first: that is twice d.
+    // If all other terms are d orders higher than the waves, so are c and s, and their squares are
+    // known to as many orders beyond their leading one: that is twice d.
     let behind = [&cosine, &sine].into_iter().filter_map(lowest).min()?;
     let squares = cosine.product(&cosine) + sine.product(&sine);
     let mut relation = squares.truncated(marker, highest + behind);
@@ -254,8 +255,8 @@ fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
     Expr::divide(&left, &Expr::from(&pace)).ok()?.expand().ok()
 }
 
-/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` where it
-/// has odd powers.
+/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` if it has
+/// odd powers.
 fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     let mut coefficients: Vec<Polynomial> = vec![];
     for (monomial, number) in relation.terms() {
@@ -271,8 +272,8 @@ fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     Some(coefficients)
 }
 
-/// Where two steady motions meet: their squared amplitudes by the detuning, and the discriminant
-/// that vanishes there.
+/// Folds of the frequency response: the squared amplitudes at which two steady motions meet, by the
+/// detuning, and the discriminant that vanishes there.
 fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
     let Some(coefficients) = in_square(relation, a) else {
         return (vec![], None);

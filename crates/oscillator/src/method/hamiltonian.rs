@@ -28,10 +28,10 @@ use super::one_term::{
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Note, Solution, note::FirstStep};
+use crate::solution::{Method, Note, Solution, note::ExactFirstStep};
 use crate::symbol::fresh;
 use crate::symbol::letters::AMPLITUDE;
 
@@ -70,26 +70,26 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let names = oscillator.names();
     let mean_name = fresh("V_mean", &names);
     let along = amplitude.clone() * Expr::from(oscillator.phase()).cos()?;
-    let integral = Formula::Integral {
+    let integral = DerivationFormula::Integral {
         factor: Expr::divide(&Expr::one(), &Expr::pi())?,
         from: Expr::zero(),
         to: Expr::pi(),
         integrand: Box::new(potential.substitute(oscillator.coordinate, &along)?.into()),
         variable: oscillator.phase(),
     };
-    let slope = Formula::Slope {
+    let slope = DerivationFormula::Slope {
         factor: Expr::divide(&Expr::from(2), &amplitude)?,
         of: mean_name,
         by: "A".into(),
     };
     solution.derivation = vec![
-        Line::equation(fresh("V", &names), potential).because("potential energy"),
-        Line::equal([mean_name.into(), integral, mean.into()])
+        DerivationLine::equation(fresh("V", &names), potential).because("potential energy"),
+        DerivationLine::equal([mean_name.into(), integral, mean.into()])
             .because(format!("its mean over {AMPLITUDE}*cos(θ)")),
-        Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
+        DerivationLine::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
 }

@@ -30,13 +30,13 @@ use super::one_term::{conservative_force, integral_law, set_law, shared_integral
 use super::{Options, Reason, Refusal};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{Law, Method, Note, Solution, System, note::FirstStep};
+use crate::solution::{AlgebraicSystem, Law, Method, Note, Solution, note::ExactFirstStep};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
@@ -44,11 +44,11 @@ const METHOD: Method = Method::HarmonicBalance;
 /// The most harmonics.
 pub const MOST_HARMONICS: u32 = 100;
 
-/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. Beyond,
-/// nobody reads it.
+/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. A longer
+/// one is not readable.
 const MOST_TERMS: usize = 3500;
 
-/// The balance of so many harmonics, two by default.
+/// The balance of this many harmonics, two by default.
 ///
 /// # Errors
 /// A force that is not conservative, by its term; no harmonics, or more than [`MOST_HARMONICS`].
@@ -66,10 +66,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     {
         set_law(&mut solution, &law)?;
         solution.derivation =
-            vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+            vec![DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
-        solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
+        solution.validity.push(Note::FirstStep(ExactFirstStep::Harmonic));
         return Ok(solution);
     }
     let harmonics = harmonics(order, odd);
@@ -89,7 +89,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 solution.validity.push(Note::ArcsFor { positive: first });
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
-            solution.law = Law::System(System { unknowns, equations });
+            solution.law = Law::System(AlgebraicSystem { unknowns, equations });
         }
         None => {
             solution.law = Law::Quadrature(solution.derivation.clone());
@@ -106,21 +106,21 @@ fn projections(
     harmonics: &[usize],
     names: &[Symbol],
     motion: &FourierSeries<Polynomials>,
-) -> Result<Vec<Line>, Refusal> {
-    /// Beyond so many harmonics one line stands for all.
+) -> Result<Vec<DerivationLine>, Refusal> {
+    /// Number of harmonics beyond which one line stands for all.
     const MOST_LINES: usize = 8;
     let omega = Expr::symbol("omega").integer_power(2)?;
-    let balance = |k: Expr, name: Expr, factor: i64| -> Result<Line, Refusal> {
-        let integral = Formula::Integral {
+    let balance = |k: Expr, name: Expr, factor: i64| -> Result<DerivationLine, Refusal> {
+        let integral = DerivationFormula::Integral {
             factor: Expr::divide(&Expr::from(factor), &Expr::pi())?,
             from: Expr::zero(),
             to: Expr::pi(),
             integrand: Box::new((force * &(&k * &Expr::from(oscillator.phase())).cos()?).into()),
             variable: oscillator.phase(),
         };
-        Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
+        Ok(DerivationLine::equation(k.integer_power(2)? * &omega * name, integral))
     };
-    let mut lines = vec![Line::equation(oscillator.coordinate, motion.clone())];
+    let mut lines = vec![DerivationLine::equation(oscillator.coordinate, motion.clone())];
     if harmonics.len() <= MOST_LINES {
         for (&k, &name) in harmonics.iter().zip(names) {
             let factor = if k == 0 { 1 } else { 2 };
@@ -140,7 +140,8 @@ fn projections(
                 .because(format!("harmonics {k} = {}", kept.join(", "))),
         );
     }
-    lines.push(Line::equation("A", Expr::sum(names.iter().map(|name| Expr::from(*name)))));
+    lines
+        .push(DerivationLine::equation("A", Expr::sum(names.iter().map(|name| Expr::from(*name)))));
     Ok(lines)
 }
 
@@ -176,7 +177,7 @@ fn equations(
     };
     let mut equations = Vec::new();
     if let Some(coefficients) = polynomial_coefficients(oscillator, force)? {
-        // Roughly the number of products of a power of so many harmonics.
+        // Roughly the number of products of a power of this many harmonics.
         let degree = coefficients.len().saturating_sub(1) as u32;
         if harmonics.len().saturating_pow(degree) > MOST_TERMS {
             return Ok(None);

@@ -10,12 +10,12 @@
 //! f = (-Q + S sqrt(D))/(2 R) = -2 P/(Q + S sqrt(D)),   D = Q^2 - 4 P R,   2 R + Q > 0 and S = 1 at s = 0
 //! ```
 //!
-//! Where a quotient lines up poles along a cut of omega^2, this has branch points of its own. The
-//! root is followed from rest: it goes on without a jump as long as D does not vanish, and ends
-//! where D has a single zero or the root is infinite. Where both roots meet so closely that D has
-//! two zeros all but in one place, they cross: the difference of the roots passes through zero like
-//! `s - m`, and S is the other sign from there on. All zeros of D and of R on the way are
-//! [counted for certain](crate::exact::zero_clusters).
+//! A quotient lines up poles along a cut of omega^2; this approximant has branch points of its own.
+//! The root is followed from rest: it is continuous as long as D does not vanish, and ends at a
+//! single zero of D or where it is infinite. If both roots come so close that D has two almost
+//! equal zeros, they cross: the difference of the roots passes through zero like `s - m`, and S is
+//! the other sign from there on. All zeros of D and of R on the way are [counted for
+//! certain](crate::exact::zero_clusters).
 //!
 //! Both forms of the root are quotients `N_i/M_i`. Where R vanishes and it is the other root that
 //! is infinite, the first is 0/0; so is the second where P vanishes and it is the other root that
@@ -42,7 +42,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::power_series::{CONSTANT, Resummed, STOPPED, TOO_LONG, has_values};
 use super::{Options, Reason, Refusal};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::big_float::BigFloat;
 use crate::exact::zero_clusters::{Cluster, clusters};
 use crate::exact::{Integer, Monomial, Polynomial, Rational, convergent, to_f64};
@@ -95,7 +95,7 @@ fn of_degrees(
     }
     let order = p + q + r + 1;
     let resummed =
-        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+        Resummed::new(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let mut resummed = resummed;
     resummed.write_squares_by_their_roots();
     let series = &resummed.series;
@@ -108,9 +108,9 @@ fn of_degrees(
     let first = numbers[0].clone();
     numbers.iter_mut().for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
-    let quadratic =
-        Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
-    // What is squared has one sign.
+    let quadratic = Quadratic::from_series(&numbers, [p, q, r].map(|degree| degree as usize))
+        .map_err(refused)?;
+    // A squared variable has one sign.
     let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
     let root = quadratic.followed(sides).ok_or_else(|| {
@@ -118,7 +118,7 @@ fn of_degrees(
             "its root cannot be followed: zeros of its discriminant are too close to each other",
         )
     })?;
-    let in_words = Words::new(&resummed.names(), variable);
+    let in_words = ApproximantNames::new(&resummed.names(), variable);
     let (value, definitions) = in_words.law(&quadratic, &root)?;
     if !definitions[..3].iter().all(|own| has_values(&own.meaning)) {
         return Err(refused(TOO_LONG));
@@ -130,7 +130,7 @@ fn of_degrees(
         .chain([Note::MotionOfSeries])
         .collect();
     let derivation = match resummed.long {
-        true => vec![Line::words(format!(
+        true => vec![DerivationLine::words(format!(
             "the {} linear equations for P, Q and R are solved modulo many primes, and put together",
             order + 1
         ))],
@@ -145,11 +145,12 @@ struct Quadratic {
     lists: [Vec<Integer>; 3],
 }
 
-/// Where the root goes on either side of zero.
+/// The course of the root on either side of zero.
 struct RootCourse {
-    /// Where the sign of the root of D changes.
+    /// Points at which the sign of the root of D changes.
     crossings: Vec<Rational>,
-    /// Where it ends, and whether D says so itself everywhere beyond.
+    /// Ends of the root, and whether D is negative everywhere beyond, so that the formula shows the
+    /// end itself.
     ends: Vec<(Rational, RootEnd, bool)>,
     /// Whether the forms of the root over R and over `Q + S sqrt(D)` are 0/0 somewhere on the way.
     indeterminate: [bool; 2],
@@ -157,7 +158,7 @@ struct RootCourse {
 
 impl Quadratic {
     /// The approximant of a series that begins with one, or why there is none.
-    fn of(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
+    fn from_series(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
         let mut one = vec![Rational::zero(); series.len()];
         one[0] = Rational::one();
         let square: Vec<Rational> =
@@ -200,7 +201,7 @@ impl Quadratic {
         sum
     }
 
-    /// The root on these sides of zero; `None` where its way cannot be told.
+    /// The root on these sides of zero; `None` if its way cannot be told.
     fn followed(&self, sides: &[i64]) -> Option<RootCourse> {
         let mut followed = RootCourse {
             crossings: vec![],
@@ -229,7 +230,7 @@ impl Quadratic {
             list.iter().map(&mut turned).collect()
         };
         let [p, q, r] = self.lists.each_ref().map(|list| floats(list));
-        // What is common to all coefficients of P or of R vanishes at zero alone.
+        // A common factor of all coefficients of P or of R vanishes at zero alone.
         let zeros = |list: &[BigFloat]| match list.iter().position(|value| !value.is_zero()) {
             None => Some(vec![]),
             Some(first) => clusters(&list[first..]),
@@ -244,7 +245,7 @@ impl Quadratic {
         let mut is_upper = true;
         let place =
             |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
-        // Where Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; elsewhere P does
+        // If Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; otherwise P does
         // with `Q + S sqrt(D)`.
         let same_sign = |zero: &&Cluster, is_upper: bool| {
             let nothing = BigFloat::zero(bits);
@@ -289,16 +290,16 @@ impl Quadratic {
 }
 
 /// The names with which it is written.
-struct Words {
-    /// Of P, Q, R, and of the sign.
+struct ApproximantNames {
+    /// The letters of P, Q, R, and of the sign.
     letters: [Symbol; 4],
-    /// Of their coefficients, the variable and the series.
+    /// The stems of their coefficients, of the variable and of the series.
     stems: [String; 3],
     short: [Symbol; 2],
     variable: Monomial,
 }
 
-impl Words {
+impl ApproximantNames {
     fn new(taken: &[Symbol], variable: Monomial) -> Self {
         Self {
             letters: ["P", "Q", "R", "S"].map(|letter| fresh(letter, taken)),
@@ -374,7 +375,7 @@ impl Words {
         })
     }
 
-    /// What the root of D is multiplied by: one up to the first crossing, not real beyond an end.
+    /// The factor of the root of D: one up to the first crossing, not real beyond an end.
     fn sign(&self, root: &RootCourse) -> Result<Expr, ExprError> {
         let s = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
         let before = |place: &Rational| -> Result<Expr, ExprError> {
@@ -386,7 +387,7 @@ impl Words {
         for place in &root.crossings {
             sign = &sign * &before(&short(place))?;
         }
-        // Where D is kept from being negative it says nothing itself.
+        // The root of D as it is written stays real beyond these ends, so a factor has to end it.
         let crosses = !root.crossings.is_empty();
         for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| crosses || !says_so) {
             sign = &sign * &before(&short(place))?.sqrt()?;
@@ -394,7 +395,7 @@ impl Words {
         Ok(sign)
     }
 
-    /// Where the root crosses the other one and where it ends, if it does.
+    /// The note of the crossings and the ends of the root; `None` if there are none.
     fn note(&self, root: &RootCourse) -> Option<Note> {
         let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
         crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
@@ -417,7 +418,7 @@ impl Words {
         &self,
         series: &[Rational],
         quadratic: &Quadratic,
-    ) -> Result<Vec<Line>, ExprError> {
+    ) -> Result<Vec<DerivationLine>, ExprError> {
         let [s, f] = self.short;
         let power = |k: usize| Expr::from(s).integer_power(k as i64);
         let in_powers = |numbers: &[Rational]| -> Result<Expr, ExprError> {
@@ -432,9 +433,10 @@ impl Words {
         let variable = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
         let name = |list: usize, k: usize| Expr::symbol(&format!("{}{k}", self.stems[list]));
         let mut lines = vec![
-            Line::equation(s, variable).because("the series runs in"),
-            Line::equation(f, in_powers(series)?).because("over its first coefficient it begins"),
-            Line::equation(Expr::from(f).integer_power(2)?, in_powers(&square)?),
+            DerivationLine::equation(s, variable).because("the series runs in"),
+            DerivationLine::equation(f, in_powers(series)?)
+                .because("over its first coefficient it begins"),
+            DerivationLine::equation(Expr::from(f).integer_power(2)?, in_powers(&square)?),
         ];
         let [p, q, r] = [0, 1, 2].map(|list| {
             let terms = 0..quadratic.lists[list].len();
@@ -443,7 +445,7 @@ impl Words {
         });
         let [upper, middle, lower] = self.letters.first_chunk::<3>().copied().unwrap_or([s; 3]);
         for (letter, sum) in [(upper, p?), (middle, q?), (lower, r?)] {
-            lines.push(Line::equation(letter, sum));
+            lines.push(DerivationLine::equation(letter, sum));
         }
         for n in 0..series.len() {
             let mut terms = vec![];
@@ -458,7 +460,7 @@ impl Words {
                 }
                 _ => String::new(),
             };
-            lines.push(Line::equation(Expr::sum(terms), Expr::zero()).because(words));
+            lines.push(DerivationLine::equation(Expr::sum(terms), Expr::zero()).because(words));
         }
         for (list, numbers) in quadratic.lists.iter().enumerate() {
             for (k, number) in numbers.iter().enumerate() {
@@ -467,7 +469,7 @@ impl Words {
                     _ => "",
                 };
                 let value = Expr::number(Rational::from_integer(number.clone()));
-                lines.push(Line::equation(name(list, k), value).because(words));
+                lines.push(DerivationLine::equation(name(list, k), value).because(words));
             }
         }
         Ok(lines)
@@ -525,7 +527,7 @@ mod tests {
     }
 
     fn of(series: &[Rational], degrees: [usize; 3]) -> Quadratic {
-        Quadratic::of(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
+        Quadratic::from_series(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
     }
 
     /// The series of the root of `P + Q f + R f^2` that is one at zero, by Newton's method on its
@@ -574,7 +576,7 @@ mod tests {
             assert_eq!(followed.crossings.len(), 1, "{gap}");
             assert!((to_f64(&followed.crossings[0]) - 1.0).abs() < 1e-6, "{gap}");
             assert!(followed.ends.is_empty(), "{gap}");
-            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let words = ApproximantNames::new(&[], Monomial::power_of("s".into(), 1));
             let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
             let value = |s: f64| {
                 let known = [(Symbol::new("s"), s)].into();
@@ -600,7 +602,7 @@ mod tests {
             let followed = quadratic.followed(&[1, -1]).expect("a way");
             let ends: Vec<(f64, RootEnd)> =
                 followed.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
-            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let words = ApproximantNames::new(&[], Monomial::power_of("s".into(), 1));
             let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
             let value = move |s: f64| {
                 let known = [(Symbol::new("s"), s)].into();

@@ -31,7 +31,7 @@ use num_traits::{One, ToPrimitive};
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
 use super::{Options, Reason, Refusal};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Node};
@@ -39,7 +39,7 @@ use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::convolution::{self, Convolutions};
 use crate::series::fourier::{linear_combination, sum_of_products};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -51,7 +51,7 @@ const HIGHEST: u32 = 20;
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
 
-/// Above this power of the force, coefficients have hundreds of digits and are counted: so many
+/// Above this power of the force, coefficients have hundreds of digits and are counted: this many
 /// products of them are the most.
 const HIGH_POWER: u32 = 30;
 const MOST_PRODUCTS: usize = 1_000_000;
@@ -100,7 +100,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution.validity.push(Note::Cut(Cut::Corrections { order, embedding }));
+    solution.validity.push(Note::Cut(Truncation::Corrections { order, embedding }));
     if polynomial.is_none() {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
@@ -145,15 +145,15 @@ struct HomotopyExpansion<'a> {
     accelerations: Vec<FourierSeries<Polynomials>>,
     /// The powers of the displacement that stand in the force.
     products: Convolutions<Polynomials>,
-    motion: convolution::Node,
-    powers: Vec<convolution::Node>,
+    motion: convolution::SeriesNode,
+    powers: Vec<convolution::SeriesNode>,
     squares: Squares,
     hbar: FourierSeries<Polynomials>,
     /// `1/w_0`.
     inverse: FourierSeries<Polynomials>,
     /// The linear stiffness, with `w_0` in place of what cancels.
     linear: Polynomial,
-    lines: Vec<Line>,
+    lines: Vec<DerivationLine>,
     /// The letters of displacements, frequencies and residuals.
     letters: [String; 3],
     /// The name of `w_0`.
@@ -179,7 +179,7 @@ impl<'a> HomotopyExpansion<'a> {
         let mut products = Convolutions::new(POLYNOMIALS);
         let motion = products.leaf();
         let terms = force.terms.iter();
-        let powers: Vec<convolution::Node> =
+        let powers: Vec<convolution::SeriesNode> =
             terms.map(|term| products.power(motion, term.position)).collect();
         powers.iter().for_each(|&power| products.require(power, order - 1));
         let names = solution.names();
@@ -194,7 +194,7 @@ impl<'a> HomotopyExpansion<'a> {
             hbar: constant_series(hbar),
             inverse: FourierSeries::zero(POLYNOMIALS),
             linear: force.linear.clone(),
-            lines: vec![Line::equation(numbered(&letters[0], 0), start.clone())],
+            lines: vec![DerivationLine::equation(numbered(&letters[0], 0), start.clone())],
             series: HomotopySeries { frequency: vec![], displacement: vec![start] },
             first_frequency_name: numbered(&letters[1], 0),
             letters,
@@ -302,7 +302,7 @@ impl<'a> HomotopyExpansion<'a> {
         m: usize,
         residual: &FourierSeries<Polynomials>,
     ) -> Result<(), Refusal> {
-        // What is left of the first harmonic has been removed by w_(m-1).
+        // The remaining first harmonic has been removed by w_(m-1).
         let (particular, _) = residual.solve_oscillator();
         let scaled = particular.product(&self.hbar).product(&self.inverse).product(&self.inverse);
         let mut next =
@@ -319,15 +319,15 @@ impl<'a> HomotopyExpansion<'a> {
         let (control, first_frequency) =
             (convergence_control(self.solution), self.first_frequency_name);
         let driven = next.sum(&next.derivative().derivative());
-        let left = Formula::Oscillator { of: name, square: Expr::one() };
+        let left = DerivationFormula::Oscillator { of: name, square: Expr::one() };
         let change = format!("{control}*{residual}/{first_frequency}^2");
-        self.lines.push(Line::equal([left, driven.into()]).because(match m {
+        self.lines.push(DerivationLine::equal([left, driven.into()]).because(match m {
             1 => format!("{name}'' + {name} = {change}"),
             _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
         }));
-        let start = |derivatives| Formula::AtZero { of: name, derivatives };
-        self.lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
-        self.lines.push(Line::equation(name, next.clone()));
+        let start = |derivatives| DerivationFormula::AtZero { of: name, derivatives };
+        self.lines.push(DerivationLine::equal([start(0), start(1), Expr::zero().into()]));
+        self.lines.push(DerivationLine::equation(name, next.clone()));
         self.series.displacement.push(next);
         Ok(())
     }
@@ -339,16 +339,16 @@ fn secular_lines(
     residual: &FourierSeries<Polynomials>,
     unknown: Expr,
     value: &Polynomial,
-) -> Vec<Line> {
+) -> Vec<DerivationLine> {
     let secular = residual.cosine(1).constant_term();
     vec![
-        Line::equation(name, residual.clone()),
-        Line::equation(&secular, Expr::zero()).because(format!("no cos(θ) in {name}")),
-        Line::equation(unknown, value),
+        DerivationLine::equation(name, residual.clone()),
+        DerivationLine::equation(&secular, Expr::zero()).because(format!("no cos(θ) in {name}")),
+        DerivationLine::equation(unknown, value),
     ]
 }
 
-/// An error where order `k` of the powers of `u` would take far more algebra than anyone waits for.
+/// An error if order `k` of the powers of `u` would take far more algebra than anyone waits for.
 ///
 /// Counted are the products of terms with which each power follows from the one before; of the
 /// powers that the force does not need the size is that of the others.
@@ -379,8 +379,8 @@ fn within_reach(
 /// `w^2` order by order: each order but the last of `w`, which is not known yet.
 struct Squares {
     products: Convolutions<Polynomials>,
-    frequency: convolution::Node,
-    square: convolution::Node,
+    frequency: convolution::SeriesNode,
+    square: convolution::SeriesNode,
 }
 
 impl Squares {

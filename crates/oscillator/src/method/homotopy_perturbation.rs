@@ -13,7 +13,7 @@
 //! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at
 //! order one, a square root at order two, implicit above. In units of omega^2 this is
 //! [`secular::expand`](super::secular::expand) with the corrections before `y` instead of `y''`. A
-//! force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`. Inertia that
+//! force that is not a polynomial enters as its Taylor polynomial of degree `2 n + 1`. Inertia that
 //! depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic
 //! at order one.
 //!
@@ -31,16 +31,16 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
-use super::secular::{Amplitude, Detuning, Extent, Scheme};
+use super::secular::{AmplitudeKind, Detuning, ExpansionScope, Scheme};
 use super::{Options, Reason, Refusal};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, SmallParameter, Term};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -69,7 +69,7 @@ fn with_stiffness(
     needed: bool,
 ) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::HomotopyPerturbation;
-    let moving = VariableMass::of(oscillator)?.is_some();
+    let moving = VariableMass::from_oscillator(oscillator)?.is_some();
     if !moving {
         conservative_force(oscillator, options, METHOD)?;
     } else if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
@@ -94,7 +94,7 @@ fn with_stiffness(
     let terms = embedded(&force.terms, amplitude, omega);
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
-        amplitude: Amplitude::Free,
+        amplitude: AmplitudeKind::Free,
         detuning: Detuning::Displacement,
     };
     let series = expand_exactly(
@@ -103,7 +103,7 @@ fn with_stiffness(
         &scheme,
         None,
         None,
-        (&oscillator.names(), Extent::Motion),
+        (&oscillator.names(), ExpansionScope::Motion),
         Supervision::default(),
     )?;
 
@@ -118,7 +118,7 @@ fn with_stiffness(
         Ok(SmallParameter::Parameter(name)) => name,
         _ => amplitude,
     };
-    let mut validity = vec![Note::Cut(Cut::TruncatedRelation {
+    let mut validity = vec![Note::Cut(Truncation::TruncatedRelation {
         bookkeeping: fresh("p", &oscillator.names()),
         order,
         linear_frequency: Some(oscillator.linear_frequency_name(&force.linear)),
@@ -148,7 +148,7 @@ fn with_stiffness(
         convergence: None,
         validity,
         steps: series.steps,
-        derivation: vec![Line::equation(
+        derivation: vec![DerivationLine::equation(
             Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
             &force.linear,
         )],
@@ -189,7 +189,7 @@ fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
 }
 
 /// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as
-/// an expression; `None` where it is of higher degree.
+/// an expression; `None` if it is of higher degree.
 fn root_in_closed_form(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
     let coefficient = |power: i32| {
         let mut result = Polynomial::zero();

@@ -29,17 +29,17 @@ use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
 
 use super::energy_balance::positive_amplitude;
-use super::exact::Energy;
+use super::exact::EnergyIntegral;
 use super::exact_motion::weighted_motion;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
-use super::table::Entry;
+use super::table::MethodEntry;
 use super::{Options, Reason, Refusal};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::is_odd;
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::rational::ratio;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
@@ -50,8 +50,8 @@ use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::series::taylor::taylor;
 use crate::solution::{
-    AmplitudeConvention, Law, Method, Note, Solution, System,
-    note::{ExactBy, FirstStep, Instant},
+    AlgebraicSystem, AmplitudeConvention, Law, Method, Note, Solution,
+    note::{CollocationInstant, ExactBy, ExactFirstStep},
 };
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
@@ -69,7 +69,7 @@ impl VariableMass {
     ///
     /// # Errors
     /// The force cannot be written out.
-    pub(super) fn of(oscillator: &Oscillator) -> Result<Option<Self>, Refusal> {
+    pub(super) fn from_oscillator(oscillator: &Oscillator) -> Result<Option<Self>, Refusal> {
         let parts = oscillator.parts()?;
         let velocity = oscillator.velocity();
         if parts.inertia.is_zero() || !parts.damping.is_zero() || !parts.forcing.is_zero() {
@@ -102,7 +102,7 @@ impl VariableMass {
         match &self.mass {
             Some(mass) => at_rest(mass).is_some_and(|mass| !mass.is_zero()),
             None => {
-                // What grows less than 1/x leaves its integral one.
+                // A function that grows less than 1/x leaves its integral finite.
                 let leaves_integral =
                     |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
                 at_rest(&self.growth).is_some()
@@ -125,7 +125,7 @@ impl VariableMass {
         amplitude: f64,
     ) -> Option<Box<dyn Fn(f64) -> f64>> {
         const STEPS: f64 = 16.0;
-        /// So many steps away nothing is oscillating.
+        /// Number of steps beyond which nothing oscillates.
         const FURTHEST: f64 = 1e5;
         if let Some(mass) = &self.mass {
             return Some(Box::new(compiled(oscillator, mass, numbers)?));
@@ -162,7 +162,7 @@ impl VariableMass {
 /// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on
 /// the position; `None` for any other, and where `M` has no closed form.
 pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
-    let moving = VariableMass::of(oscillator).ok()??;
+    let moving = VariableMass::from_oscillator(oscillator).ok()??;
     Some([moving.weighted_force()?, moving.force])
 }
 
@@ -186,7 +186,7 @@ fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr>
 /// omega^2 and the motion.
 type AtNumbers = (f64, FourierSeries<Doubles>);
 
-/// How a method takes equations whose inertia depends on the position.
+/// The way in which a method takes equations with a position-dependent inertia.
 #[derive(Clone, Copy)]
 pub struct Approach {
     solve: fn(&VariableMass, &Oscillator, &Options) -> Result<Solution, Refusal>,
@@ -208,20 +208,20 @@ pub(super) const HAMILTONIAN: Approach = Approach { solve: hamiltonian, numbers:
 pub(super) const HARMONIC_BALANCE: Approach =
     Approach { solve: harmonic_balance, numbers: harmonic_balance_at };
 
-/// The answer of a method that takes such an equation as it is; `None` where it does not, or the
+/// The answer of a method that takes such an equation as it is; `None` if it does not, or the
 /// equation is another.
 ///
 /// # Errors
 /// As for the method on any other equation.
 pub(super) fn solve(
-    entry: &Entry,
+    entry: &MethodEntry,
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Option<Solution>, Refusal> {
     let Some(approach) = entry.inertia else {
         return Ok(None);
     };
-    let Some(moving) = VariableMass::of(oscillator)? else {
+    let Some(moving) = VariableMass::from_oscillator(oscillator)? else {
         return Ok(None);
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
@@ -244,14 +244,17 @@ fn mass_name(oscillator: &Oscillator) -> Symbol {
     named("M", oscillator)
 }
 
-fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
+fn mass_lines(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+) -> Result<Vec<DerivationLine>, Refusal> {
     let (x, velocity) = (oscillator.coordinate, Expr::from(oscillator.velocity()));
     let (name, potential) = (mass_name(oscillator), named("U", oscillator));
     let mass = match &moving.mass {
-        Some(mass) => Line::equation(name, mass),
+        Some(mass) => DerivationLine::equation(name, mass),
         None => {
             let variable = named("u", oscillator);
-            let exponent = Formula::Integral {
+            let exponent = DerivationFormula::Integral {
                 factor: Expr::from(2),
                 from: Expr::zero(),
                 to: x.into(),
@@ -259,18 +262,18 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
                 variable,
             };
             let logarithm = Expr::function(Function::Log, vec![name.into()])?;
-            Line::equation(logarithm, exponent)
+            DerivationLine::equation(logarithm, exponent)
         }
     };
     let kinetic = Expr::from(name) * velocity.integer_power(2)?;
     let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::from(potential);
-    let slope = Formula::Slope { factor: Expr::one(), of: potential, by: x };
+    let slope = DerivationFormula::Slope { factor: Expr::one(), of: potential, by: x };
     let weighted = moving.weighted_force();
     let weighted = weighted.unwrap_or_else(|| Expr::from(name) * &moving.force);
     Ok(vec![
         mass.because(format!("times {name} the equation has an energy")),
-        Line::equation(named("E", oscillator), energy),
-        Line::equation(slope, weighted),
+        DerivationLine::equation(named("E", oscillator), energy),
+        DerivationLine::equation(slope, weighted),
     ])
 }
 
@@ -289,13 +292,13 @@ fn exact(
     let named_mass = Expr::from(mass_name(oscillator));
     let named_force = &named_mass * &moving.force;
     let energy = match &closed {
-        Some((root, force)) => Energy {
+        Some((root, force)) => EnergyIntegral {
             force,
             potential: potential(force, x),
             root_of_mass: root.clone(),
             is_odd: moving.is_odd(oscillator)?,
         },
-        None => Energy {
+        None => EnergyIntegral {
             force: &named_force,
             potential: None,
             root_of_mass: named_mass.sqrt()?,
@@ -350,10 +353,10 @@ fn energy_balance(
         Some((rise, inertia, law)) => {
             let kinetic = &quarter * &squared * &inertia;
             solution.derivation.push(
-                Line::equation(kinetic, rise)
+                DerivationLine::equation(kinetic, rise)
                     .because(format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4")),
             );
-            solution.derivation.push(Line::equation(squared, &law));
+            solution.derivation.push(DerivationLine::equation(squared, &law));
             set_law(&mut solution, &law)?;
         }
         None => {
@@ -370,19 +373,19 @@ fn energy_balance(
                     "the energy of {AMPLITUDE}*cos(θ) at θ = pi/4, {there} the value of {name} there"
                 ),
             };
-            let work = Formula::Integral {
+            let work = DerivationFormula::Integral {
                 factor: Expr::one(),
                 from: eighth,
                 to: amplitude,
                 integrand: Box::new(weighted.into()),
                 variable: x,
             };
-            let line = Line::equation(quarter * squared * mass, work).because(words);
+            let line = DerivationLine::equation(quarter * squared * mass, work).because(words);
             solution.derivation.push(line);
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(CollocationInstant::EighthOfPeriod));
     Ok(solution)
 }
 
@@ -418,15 +421,16 @@ fn hamiltonian(
     match law() {
         Some((kinetic, potential, law)) => {
             let [k, p] = ["K", "P"].map(|name| named(name, oscillator));
-            let slope = |of: Symbol, factor: Expr| Formula::Slope { factor, of, by: "A".into() };
+            let slope =
+                |of: Symbol, factor: Expr| DerivationFormula::Slope { factor, of, by: "A".into() };
             solution.derivation.extend([
-                Line::equation(k, kinetic).because(format!(
+                DerivationLine::equation(k, kinetic).because(format!(
                     "mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2"
                 )),
-                Line::equation(p, potential).because("mean potential energy"),
-                Line::equal([slope(k, squared.clone()), slope(p, Expr::one())])
+                DerivationLine::equation(p, potential).because("mean potential energy"),
+                DerivationLine::equal([slope(k, squared.clone()), slope(p, Expr::one())])
                     .because(format!("stationary in {AMPLITUDE}")),
-                Line::equation(squared, &law),
+                DerivationLine::equation(squared, &law),
             ]);
             set_law(&mut solution, &law)?;
         }
@@ -440,7 +444,7 @@ fn hamiltonian(
             };
             let (growth, force) =
                 (moving.growth.substitute(x, &along)?, moving.force.substitute(x, &along)?);
-            let over_half = |factor: Expr, integrand: Expr| Formula::Integral {
+            let over_half = |factor: Expr, integrand: Expr| DerivationFormula::Integral {
                 factor,
                 from: Expr::zero(),
                 to: Expr::pi(),
@@ -449,7 +453,7 @@ fn hamiltonian(
             };
             let bracket = &amplitude * &cosine.integer_power(2)?
                 - amplitude.integer_power(2)? * growth * sine.integer_power(2)? * &cosine;
-            let line = Line::equal([
+            let line = DerivationLine::equal([
                 over_half(squared, &mass * &bracket),
                 over_half(Expr::one(), mass * force * cosine),
             ]);
@@ -460,7 +464,7 @@ fn hamiltonian(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfEquation));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfEquation));
     Ok(solution)
 }
 
@@ -509,10 +513,10 @@ fn harmonic_balance(
         cosine[k] = Polynomial::symbol(name);
     }
     solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
-    let typed = Line::equal([(&oscillator.residual).into(), Expr::zero().into()]);
+    let typed = DerivationLine::equal([(&oscillator.residual).into(), Expr::zero().into()]);
     solution.derivation = vec![
         typed.because("balanced as it stands"),
-        Line::equation(x, solution.displacement.clone()),
+        DerivationLine::equation(x, solution.displacement.clone()),
     ];
     match (balances(oscillator, &solution.displacement, &harmonics)?, names.as_slice()) {
         (Some(balances), [_]) => one_balance(&mut solution, &balances[0])?,
@@ -528,7 +532,7 @@ fn harmonic_balance(
 }
 
 /// The cosine parts of the equation as typed along a motion with unknown coefficients, one for each
-/// harmonic; `None` where it is no polynomial, or too long to be written out.
+/// harmonic; `None` if it is not a polynomial, or too long to be written out.
 fn balances(
     oscillator: &Oscillator,
     motion: &FourierSeries<Polynomials>,
@@ -568,18 +572,18 @@ fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refu
         &Expr::divide(&still, &amplitude)?.expand()?,
         &Expr::divide(&inertia, &amplitude)?.expand()?,
     )?;
-    let condition = Line::equation(balance, Expr::zero()).because("the cos(θ) part");
-    solution.derivation.extend([condition, Line::equation(squared, &law)]);
+    let condition = DerivationLine::equation(balance, Expr::zero()).because("the cos(θ) part");
+    solution.derivation.extend([condition, DerivationLine::equation(squared, &law)]);
     set_law(solution, &law)
 }
 
 /// The balances of several harmonics, whose coefficients add up to the amplitude.
-fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<System, Refusal> {
+fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<AlgebraicSystem, Refusal> {
     let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
     let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
     equations.push((sum - Expr::symbol("A")).expand()?);
     let omega = std::iter::once(Symbol::new("omega"));
-    Ok(System { unknowns: omega.chain(names.iter().copied()).collect(), equations })
+    Ok(AlgebraicSystem { unknowns: omega.chain(names.iter().copied()).collect(), equations })
 }
 
 /// The balances as integrals, where they are not written out.
@@ -587,10 +591,10 @@ fn projections(
     oscillator: &Oscillator,
     harmonics: &[usize],
     names: &[Symbol],
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     let k = named("k", oscillator);
-    let projection = Formula::Integral {
+    let projection = DerivationFormula::Integral {
         factor: Expr::one(),
         from: Expr::zero(),
         to: Expr::pi(),
@@ -600,17 +604,17 @@ fn projections(
         ),
         variable: oscillator.phase(),
     };
-    let line = Line::equal([projection, Expr::zero().into()]);
+    let line = DerivationLine::equal([projection, Expr::zero().into()]);
     let mut lines = vec![line.because(format!("for {k} = {}", kept.join(", ")))];
     if names.len() > 1 {
         let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
-        lines.push(Line::equation("A", sum));
+        lines.push(DerivationLine::equation("A", sum));
     }
     Ok(lines)
 }
 
 /// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out;
-/// `None` where the law is explicit, or there are none.
+/// `None` if the law is explicit, or there are none.
 pub(super) fn at_numbers(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -623,12 +627,12 @@ pub(super) fn at_numbers(
     centred.force = oscillator.force.substitute(oscillator.coordinate, &moved).ok()?;
     centred.residual = oscillator.residual.substitute(oscillator.coordinate, &moved).ok()?;
     let oscillator = &centred;
-    let moving = VariableMass::of(oscillator).ok()??;
+    let moving = VariableMass::from_oscillator(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers, amplitude)?;
     let force =
-        Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
-    let approach = Entry::of(solution.method).inertia.as_ref()?;
+        CentredForce::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
+    let approach = MethodEntry::for_method(solution.method).inertia.as_ref()?;
     (approach.numbers)(&EquationAtNumbers {
         moving: &moving,
         oscillator,
@@ -648,13 +652,13 @@ struct EquationAtNumbers<'a> {
     numbers: &'a BTreeMap<Symbol, f64>,
     amplitude: f64,
     mass: &'a dyn Fn(f64) -> f64,
-    force: &'a Force,
+    force: &'a CentredForce,
 }
 
 impl EquationAtNumbers<'_> {
     /// The slope of the potential.
     fn weighted(&self, x: f64) -> f64 {
-        (self.mass)(x) * self.force.at(x)
+        (self.mass)(x) * self.force.value(x)
     }
 
     fn one_term(&self, squared: f64) -> Option<AtNumbers> {
@@ -665,7 +669,7 @@ impl EquationAtNumbers<'_> {
 
 fn exact_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
-    let force = energy::Force::smooth(&weighted);
+    let force = energy::PiecewiseForce::smooth(&weighted);
     let (period, cosine) =
         weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;
@@ -778,7 +782,7 @@ impl SampledResidual {
     }
 
     /// Residual and slopes at a state.
-    fn at(&self, state: [f64; 3]) -> Vec<f64> {
+    fn evaluate(&self, state: [f64; 3]) -> Vec<f64> {
         let mut arguments = self.arguments.clone();
         arguments[..3].copy_from_slice(&state);
         self.functions.iter().map(|function| function.call(&arguments)).collect()
@@ -786,7 +790,7 @@ impl SampledResidual {
 
     /// omega0^2 at rest.
     fn linear(&self) -> Option<f64> {
-        let at_rest = self.at([0.0; 3]);
+        let at_rest = self.evaluate([0.0; 3]);
         let squared = at_rest[1] / at_rest[3];
         (squared > 0.0 && squared.is_finite()).then_some(squared)
     }
@@ -813,7 +817,7 @@ impl SampledResidual {
                     slope -= coefficient * k * sine;
                     bend -= coefficient * k * k * cosine;
                 }
-                let values = self.at([x, omega * slope, squared * bend]);
+                let values = self.evaluate([x, omega * slope, squared * bend]);
                 let by_frequency = values[2] * slope / (2.0 * omega) + values[3] * bend;
                 for (row, wave) in waves.iter().enumerate() {
                     residual[row] += values[0] * wave.1;

@@ -28,14 +28,14 @@ use super::one_term::{
 };
 use super::{Options, Reason, Refusal, not_polynomial};
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh_stem};
@@ -51,10 +51,10 @@ const MOST_HARMONICS: usize = 125;
 /// Harmonics of the first iterate kept where the force has infinitely many.
 const HIGHEST_HARMONIC: usize = 5;
 
-/// Frequency and motion after so many passes, one by default.
+/// Frequency and motion after this many passes, one by default.
 ///
 /// # Errors
-/// A force that is not conservative, by its term; above one pass, a force that is no polynomial.
+/// A force that is not conservative, by its term; above one pass, a force that is not a polynomial.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
@@ -69,22 +69,25 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.derivation = match polynomial_coefficients(oscillator, &force)? {
         Some(coefficients) => {
             let start = cosine(Polynomial::symbol(Symbol::new("A")));
-            let mut lines = vec![Line::equation(numbered(oscillator, 0), start.clone())];
-            lines.extend(Pass::new(oscillator, &coefficients, &start)?.lines(oscillator, 1, None)?);
+            let mut lines = vec![DerivationLine::equation(numbered(oscillator, 0), start.clone())];
+            lines.extend(
+                IterationPass::new(oscillator, &coefficients, &start)?
+                    .lines(oscillator, 1, None)?,
+            );
             lines
         }
         None => frozen_function(oscillator, &force)?,
     };
     if let Some(law) = law_of(&solution) {
         let squared = Expr::symbol("omega").integer_power(2)?;
-        solution.derivation.push(Line::equation(squared, law));
+        solution.derivation.push(DerivationLine::equation(squared, law));
     }
     note_even_part_last(&mut solution);
     Ok(solution)
 }
 
-/// Puts the first iterate into an answer: its harmonics are exact for polynomials, the lowest of
-/// them otherwise.
+/// Sets the first iterate of an answer: its harmonics are exact for polynomials, the lowest of them
+/// otherwise.
 pub(super) fn first_iterate(
     solution: &mut Solution,
     oscillator: &Oscillator,
@@ -147,9 +150,9 @@ fn iterated(
     let mut solution = unsolved(oscillator, options, METHOD, passes);
     let mut motion = cosine(Polynomial::symbol(amplitude));
     let mut secular = Polynomial::zero();
-    let mut lines = vec![Line::equation(numbered(oscillator, 0), motion.clone())];
+    let mut lines = vec![DerivationLine::equation(numbered(oscillator, 0), motion.clone())];
     for number in 1..=passes {
-        let pass = Pass::new(oscillator, &coefficients, &motion)?;
+        let pass = IterationPass::new(oscillator, &coefficients, &motion)?;
         let (particular, resonance) = pass.right_side.solve_oscillator();
         secular = resonance.cosine.constant_term();
         let particular =
@@ -167,7 +170,7 @@ fn iterated(
     };
     solution.displacement = motion;
     solution.derivation = lines;
-    solution.validity.push(Note::Cut(Cut::Passes {
+    solution.validity.push(Note::Cut(Truncation::Passes {
         passes,
         linear_frequency: Some(solution.linear_frequency_name()),
     }));
@@ -175,12 +178,12 @@ fn iterated(
 }
 
 /// One pass: the factor frozen at the motion before, and what it leaves on the right side.
-struct Pass {
+struct IterationPass {
     factor: FourierSeries<Polynomials>,
     right_side: FourierSeries<Polynomials>,
 }
 
-impl Pass {
+impl IterationPass {
     fn new(
         oscillator: &Oscillator,
         coefficients: &[Polynomial],
@@ -204,29 +207,30 @@ impl Pass {
         oscillator: &Oscillator,
         number: u32,
         next: Option<&FourierSeries<Polynomials>>,
-    ) -> Result<Vec<Line>, Refusal> {
+    ) -> Result<Vec<DerivationLine>, Refusal> {
         let (before, after) = (numbered(oscillator, number - 1), numbered(oscillator, number));
         let omega = Expr::symbol("omega").integer_power(2)?;
         let x = Expr::from(oscillator.coordinate);
         let factor = Expr::divide(&oscillator.force, &x)?.expand()?;
         let factor = factor.substitute(oscillator.coordinate, &before.into())?;
-        let left = Formula::Oscillator { of: after, square: omega };
+        let left = DerivationFormula::Oscillator { of: after, square: omega };
         let secular = self.right_side.cosine(1).constant_term();
         let mut lines = vec![
-            Line::equation(factor, self.factor.clone())
+            DerivationLine::equation(factor, self.factor.clone())
                 .because(format!("pass {number}, the factor frozen at {before}")),
-            Line::equal([left, self.right_side.clone().into()]).because(format!(
+            DerivationLine::equal([left, self.right_side.clone().into()]).because(format!(
                 "{after}'' + {FREQUENCY}^2*{after} = ({FREQUENCY}^2 - factor)*{before}"
             )),
         ];
         let zero = Expr::zero();
         match next {
             Some(motion) => {
-                lines.push(Line::equation(after, motion.clone()).because(format!(
+                lines.push(DerivationLine::equation(after, motion.clone()).because(format!(
                     "the secular term left out: {FREQUENCY} follows from the last pass"
                 )));
             }
-            None => lines.push(Line::equation(&secular, zero).because("no cos(θ) on the right")),
+            None => lines
+                .push(DerivationLine::equation(&secular, zero).because("no cos(θ) on the right")),
         }
         Ok(lines)
     }
@@ -238,18 +242,22 @@ pub(super) fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
     Symbol::new(&format!("{letter}{number}"))
 }
 
-/// The first pass of a force that is no polynomial.
-fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
+/// The first pass of a force that is not a polynomial.
+fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<DerivationLine>, Refusal> {
     let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
     let along = Expr::symbol("A") * Expr::from(oscillator.phase()).cos()?;
     let factor = Expr::divide(force, &oscillator.coordinate.into())?;
     let frozen = factor.substitute(oscillator.coordinate, &along)?;
     let squared = Expr::symbol("omega").integer_power(2)?;
     Ok(vec![
-        Line::equation(start, along),
-        Line::equal([Formula::Oscillator { of: first, square: frozen }, Expr::zero().into()])
-            .because(format!("the factor frozen at {start}")),
-        Line::equation(squared, first_projection(oscillator, force)?).because("no cos(θ) remains"),
+        DerivationLine::equation(start, along),
+        DerivationLine::equal([
+            DerivationFormula::Oscillator { of: first, square: frozen },
+            Expr::zero().into(),
+        ])
+        .because(format!("the factor frozen at {start}")),
+        DerivationLine::equation(squared, first_projection(oscillator, force)?)
+            .because("no cos(θ) remains"),
     ])
 }
 

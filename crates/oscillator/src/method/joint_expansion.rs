@@ -34,7 +34,7 @@ pub(super) struct JointExpansion {
     pub parameters: Vec<Symbol>,
 }
 
-/// Expands to `delta^order`; `None` where no linear restoring force is left or a term is no
+/// Expands to `delta^order`; `None` if no linear restoring force is left or a term is not a
 /// polynomial.
 pub(super) fn expand_jointly(
     oscillator: &Oscillator,

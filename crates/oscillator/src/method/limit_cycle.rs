@@ -13,7 +13,7 @@
 //! `delta g' < 0`, and a root where `g'` vanishes too begins no expansion. At the orders above, the
 //! amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
 //!
-//! An amplitude that is no fraction and no product of parameters enters as a symbol `a0`. Where
+//! An amplitude that is not a fraction and no product of parameters enters as a symbol `a0`. Where
 //! `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay exact:
 //! powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
 
@@ -36,7 +36,7 @@ use crate::symbol::{Symbol, fresh};
 
 /// The equation `g(z) = 0` for the square of the amplitude.
 pub(super) struct AmplitudeEquation {
-    /// What all coefficients have in common, with every symbol in it.
+    /// Greatest common divisor of all coefficients, with every symbol in it.
     factor: Monomial,
     /// The power of `z` that stands before the rest.
     lowest: i32,
@@ -49,31 +49,31 @@ pub(super) struct AmplitudeEquation {
 pub(super) struct Cycle {
     /// The amplitude.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` where the
+    /// A polynomial that is positive if the cycle attracts and negative if it repels; `None` if the
     /// slope vanishes.
     pub attracts_where: Option<Polynomial>,
     /// The amplitude as a single term: a number, a product of parameters, or `a0`.
     pub unit: Polynomial,
-    /// What `a0` stands for.
+    /// The definition of `a0`.
     pub definition: Option<Definition>,
     /// `1/J`, where an expansion cannot find it by itself.
     pub inverse_slope: Option<Polynomial>,
-    /// What has to be said of the amplitude.
+    /// A remark on the amplitude.
     pub remark: Option<Note>,
-    relation: Option<Relation>,
+    relation: Option<PowerRelation>,
 }
 
 /// `symbol^degree = value`, with lower powers of the symbol in `value`.
 #[derive(Clone)]
-struct Relation {
+struct PowerRelation {
     symbol: Symbol,
     degree: i32,
     value: Polynomial,
 }
 
 impl AmplitudeEquation {
-    /// `None` where the first order has no secular sine at any amplitude: the amplitude is free.
-    pub fn new(force: &PerturbedForce, units: &Units) -> Option<Self> {
+    /// `None` if the first order has no secular sine at any amplitude: the amplitude is free.
+    pub fn new(force: &PerturbedForce, units: &FrequencyUnits) -> Option<Self> {
         let equation = coefficients(force, units);
         let lowest = equation.iter().position(|coefficient| !coefficient.is_zero())?;
         let factor = common_monomial(&equation);
@@ -115,10 +115,10 @@ impl AmplitudeEquation {
         AmplitudeCondition { sine, unknown, value: cycle.amplitude.clone() }
     }
 
-    /// All limit cycles, smallest amplitude first: none where the motion dies out or grows.
+    /// All limit cycles, smallest amplitude first: empty if the motion dies out or grows.
     ///
     /// # Errors
-    /// Why the equation cannot be solved.
+    /// The reason why the equation cannot be solved.
     pub fn cycles(
         &self,
         delta: Symbol,
@@ -209,7 +209,11 @@ impl AmplitudeEquation {
             inverse_slope: inverse
                 .map(|list| in_name(&list).times_monomial(&self.factor.power(-1))),
             remark,
-            relation: Some(Relation { symbol: name, degree: 2 * degree, value: in_name(&lower) }),
+            relation: Some(PowerRelation {
+                symbol: name,
+                degree: 2 * degree,
+                value: in_name(&lower),
+            }),
         }
     }
 
@@ -278,7 +282,7 @@ impl AmplitudeEquation {
             definition,
             inverse_slope: None,
             remark: None,
-            relation: exact.is_none().then(|| Relation {
+            relation: exact.is_none().then(|| PowerRelation {
                 symbol: name,
                 degree: 2 * m,
                 value: squared,
@@ -291,7 +295,7 @@ impl AmplitudeEquation {
 impl Cycle {
     /// A polynomial with the powers of `a0` that can be expressed by lower ones so expressed.
     pub fn reduced(&self, polynomial: &Polynomial) -> Polynomial {
-        let Some(Relation { symbol, degree, value }) = &self.relation else {
+        let Some(PowerRelation { symbol, degree, value }) = &self.relation else {
             return polynomial.clone();
         };
         let mut reduced = polynomial.clone();
@@ -340,7 +344,7 @@ impl Cycle {
 }
 
 /// The linear frequency, in whose powers the terms are measured.
-pub(super) struct Units {
+pub(super) struct FrequencyUnits {
     /// The linear frequency, a single term.
     pub frequency: Polynomial,
     /// Its square, where even powers are better written with it: `x'` and `x'^3` then have like
@@ -348,7 +352,7 @@ pub(super) struct Units {
     square: Option<Polynomial>,
 }
 
-impl Units {
+impl FrequencyUnits {
     /// The square takes the place of even powers where it is a number, so that a letter such as
     /// `omega0 = sqrt(2)` stays out of the expansion, and where the equation for the amplitude has
     /// sums without it.
@@ -418,7 +422,7 @@ pub(super) fn amplitude_of(
 }
 
 /// `g_k`, the coefficients of `z^k` in the secular sine over the amplitude.
-fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
+fn coefficients(force: &PerturbedForce, units: &FrequencyUnits) -> Vec<Polynomial> {
     let mut equation: Vec<Polynomial> = vec![];
     let first = force.terms.iter().filter(|term| term.order == 1 && term.velocity % 2 == 1);
     for term in first {
@@ -457,8 +461,8 @@ fn common_monomial(polynomials: &[Polynomial]) -> Monomial {
     })
 }
 
-/// What of a monomial decides its sign: odd powers, but not of the linear frequency, which is
-/// positive.
+/// The factors of a monomial that decide its sign: odd powers, but not of the linear frequency,
+/// which is positive.
 fn sign_of(monomial: &Monomial, linear_frequency: &Polynomial) -> Monomial {
     let positive = linear_frequency.symbols();
     let odd = monomial

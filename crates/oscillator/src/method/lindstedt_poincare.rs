@@ -10,7 +10,7 @@
 //! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
 //! ```
 //!
-//! What remains is [`secular::expand`](super::secular::expand), over whole numbers where every
+//! The expansion itself is [`secular::expand`](super::secular::expand), over whole numbers if every
 //! symbol can be scaled away (Duffing depends on `eps*A^2` alone) and over polynomials otherwise.
 //!
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the
@@ -34,18 +34,18 @@ use num_traits::{One, Zero};
 
 use super::expansion::{ExactSeries, expand_exactly};
 use super::joint_expansion::expand_jointly;
-use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
+use super::limit_cycle::{AmplitudeEquation, Cycle, FrequencyUnits, amplitude_of, chosen};
 use super::linear::is_free_and_linear;
-use super::secular::{Amplitude, Detuning, Extent, Scheme, SecularError, bounded};
+use super::secular::{AmplitudeKind, Detuning, ExpansionScope, Scheme, SecularError, bounded};
 use super::{Options, Reason, Refusal, Refuser, first_order, first_term};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
-use crate::solution::note::{Cut, ExactBy};
+use crate::solution::note::{ExactBy, Truncation};
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
@@ -57,7 +57,9 @@ use crate::symbol::{Symbol, fresh};
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        return Err(Reason::Forcing.by(Refuser::Expansion).about(first_term(&parts.forcing)));
+        return Err(Reason::Forcing
+            .refused_by(Refuser::Expansion)
+            .about(first_term(&parts.forcing)));
     }
     let mut perturbation = match perturbation(oscillator, &parts, options) {
         Err(
@@ -72,9 +74,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     perturbation.force.write_with_frequency(&oscillator.names());
     let force = &perturbation.force;
     let LinearPart { frequency: linear_frequency, root, mut definitions, taken } =
-        LinearPart::of(force, oscillator);
+        LinearPart::new(force, oscillator);
 
-    let units = Units::new(force, linear_frequency.clone());
+    let units = FrequencyUnits::new(force, linear_frequency.clone());
     let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
     let cycle = excited.as_ref().map(SelfExcitation::cycle);
     let convention = options.amplitude.unwrap_or(match cycle {
@@ -85,8 +87,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     definitions.extend(of_cycle.clone());
     definitions.extend(perturbation.bookkeeping.clone());
     let extent = match options.frequency_alone {
-        true => Extent::Frequency,
-        false => Extent::Motion,
+        true => ExpansionScope::Frequency,
+        false => ExpansionScope::Motion,
     };
     let names = (taken.as_slice(), extent);
     let supervision = options.supervision;
@@ -112,9 +114,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     // In powers of the amplitude, the small parameter is the symbol that stands for it.
     let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
     let amplitude = match extent {
-        Extent::Motion => amplitude_of(&displacement, convention),
+        ExpansionScope::Motion => amplitude_of(&displacement, convention),
         // To leading order: the rest of it belongs to the motion.
-        Extent::Frequency => in_numbers(unit.clone()),
+        ExpansionScope::Frequency => in_numbers(unit.clone()),
     };
     let limit_cycle =
         excited.as_ref().map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
@@ -155,7 +157,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         convergence: None,
         validity,
         steps: series.steps,
-        derivation: vec![Line::equation(
+        derivation: vec![DerivationLine::equation(
             Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
             &force.linear,
         )],
@@ -166,7 +168,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 pub(super) struct LinearPart {
     /// `omega0`, or what it is a name of.
     pub(super) frequency: Polynomial,
-    /// What `omega0` stands for, where it is no polynomial.
+    /// The definition of `omega0`, if it is not a polynomial.
     pub(super) root: Option<Definition>,
     /// That, and the constants of the other terms.
     pub(super) definitions: Vec<Definition>,
@@ -175,7 +177,7 @@ pub(super) struct LinearPart {
 }
 
 impl LinearPart {
-    pub(super) fn of(force: &PerturbedForce, oscillator: &Oscillator) -> Self {
+    pub(super) fn new(force: &PerturbedForce, oscillator: &Oscillator) -> Self {
         let mut taken = oscillator.names();
         let (frequency, root) = force.linear_frequency(&taken);
         let constants = constants_beside(force, &frequency);
@@ -199,7 +201,7 @@ fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Ve
 struct SelfExcitation {
     equation: AmplitudeEquation,
     cycles: Vec<Cycle>,
-    /// Which of them is asked for, counted from one.
+    /// Number of the cycle asked for, counted from one.
     number: usize,
 }
 
@@ -228,7 +230,7 @@ impl SelfExcitation {
 /// The limit cycles and the one that is asked for, where the equation determines its amplitude.
 fn self_excitation(
     perturbation: &Perturbation,
-    units: &Units,
+    units: &FrequencyUnits,
     parts: &Parts,
     asked: Option<u32>,
     taken: &[Symbol],
@@ -258,8 +260,8 @@ fn self_excitation(
     Ok(Some(SelfExcitation { equation, cycles, number }))
 }
 
-/// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a
-/// free one.
+/// The unit of the motion: the amplitude of the cycle to leading order, or the amplitude symbol of
+/// a free motion.
 fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial {
     cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
 }
@@ -276,17 +278,17 @@ fn reduced(cycle: Option<&Cycle>, polynomial: Polynomial) -> Polynomial {
 fn expanded(
     perturbation: &Perturbation,
     excited: Option<&SelfExcitation>,
-    units: &Units,
+    units: &FrequencyUnits,
     parts: &Parts,
     convention: AmplitudeConvention,
-    (names, supervision): ((&[Symbol], Extent), Supervision),
+    (names, supervision): ((&[Symbol], ExpansionScope), Supervision),
 ) -> Result<ExactSeries, Refusal> {
     let cycle = excited.map(SelfExcitation::cycle);
     let scheme = Scheme {
         normalisation: convention,
         amplitude: match cycle {
-            Some(_) => Amplitude::Determined,
-            None => Amplitude::Free,
+            Some(_) => AmplitudeKind::Determined,
+            None => AmplitudeKind::Free,
         },
         detuning: Detuning::Acceleration,
     };
@@ -310,7 +312,7 @@ fn expanded(
     })?;
     if let Some(excited) = excited {
         let is_parameter = delta == perturbation.small;
-        // What marked the order of a term is one where it is no parameter of the answer.
+        // The bookkeeping parameter is one if it is not a parameter of the answer.
         let one = Polynomial::constant(One::one());
         let unmarked =
             |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
@@ -343,10 +345,10 @@ pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Ration
     written
 }
 
-/// What is expanded, and in what.
+/// The force to be expanded, and the small parameters.
 struct Perturbation {
     force: PerturbedForce,
-    /// The parameter that marks the orders; `None` where it is the amplitude.
+    /// The parameter that marks the orders; `None` if it is the amplitude.
     marker: Option<Symbol>,
     /// The small parameter of the answer.
     small: Symbol,
@@ -358,15 +360,15 @@ struct Perturbation {
 }
 
 impl Perturbation {
-    /// What marks the orders: the symbol of the amplitude where no parameter does.
+    /// The expansion parameter: the symbol of the amplitude if there is no other.
     fn delta(&self, convention: AmplitudeConvention) -> Symbol {
         self.marker.unwrap_or(convention.symbol())
     }
 
-    /// How the expansion is cut, in the small parameter of the answer.
+    /// The note of the truncation, in the small parameter of the answer.
     fn cut(&self, small: Symbol) -> Note {
         let together = self.small_with.iter().copied();
-        Note::Cut(Cut::Truncated {
+        Note::Cut(Truncation::Truncated {
             small: std::iter::once(small).chain(together).collect(),
             order: self.order,
             marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
@@ -374,7 +376,7 @@ impl Perturbation {
     }
 }
 
-/// The first order in a parameter, of a force that is no polynomial; `None` where the amplitude is
+/// The first order in a parameter, of a force that is not a polynomial; `None` if the amplitude is
 /// the small parameter.
 fn in_a_parameter(
     oscillator: &Oscillator,
@@ -435,7 +437,7 @@ fn perturbation(
         }
     }
     let force = match expanded {
-        // What stops the expansion is named as what it is.
+        // Damping and excitation are named as the reason of the refusal.
         Err(OscillatorError::NotSmall { .. })
             if small == SmallParameter::Amplitude && !parts.damping.is_zero() =>
         {
@@ -471,8 +473,7 @@ fn perturbation(
     })
 }
 
-/// An error where powers are so high that even the first order of the amplitude would take too
-/// long.
+/// An error if powers are so high that even the first order of the amplitude would take too long.
 fn within_reach(force: &PerturbedForce, parts: &Parts, order: u32) -> Result<(), SecularError> {
     let terms = force.terms.iter().map(|term| (term.order, term.position + term.velocity));
     // The last amplitude of a limit cycle follows from one order more.
@@ -494,7 +495,7 @@ pub(super) fn may_balance(force: &PerturbedForce) -> bool {
 }
 
 fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
-    AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency(&[]).0))
+    AmplitudeEquation::new(force, &FrequencyUnits::new(force, force.linear_frequency(&[]).0))
 }
 
 fn damped(parts: &Parts) -> Refusal {
@@ -516,7 +517,7 @@ fn amplitude_not_free(parts: &Parts) -> Refusal {
 
 /// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this
 /// file.
-fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
+fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &FrequencyUnits) -> Vec<Term> {
     let scale = |term: &Term| {
         let exponent = (term.position + term.velocity) as i32 - 1;
         let unit = unit.power(exponent).unwrap_or_else(Polynomial::zero);

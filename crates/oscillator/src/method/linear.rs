@@ -14,10 +14,10 @@
 
 use std::collections::BTreeMap;
 
-use super::drive::{Quadrature, Wave};
+use super::drive::{HarmonicExcitation, Quadrature};
 use super::one_term::unsolved;
 use super::{Options, Reason, Refusal, transient};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::Polynomial;
 use crate::expr::{Expr, ExprError, Function};
 use crate::oscillator::Oscillator;
@@ -35,7 +35,7 @@ pub(super) struct Linear {
     /// `k` of `k x`.
     stiffness: Expr,
     /// The drives on the left side.
-    waves: Vec<Wave>,
+    waves: Vec<HarmonicExcitation>,
 }
 
 /// Whether a linear force `k x` with a constant `k` that pulls back is all there is.
@@ -55,8 +55,8 @@ pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusa
 }
 
 impl Linear {
-    /// `None` where a term is not linear, or a coefficient or a drive is no constant and no wave;
-    /// and where nothing drives or damps.
+    /// `None` if a term is not linear, or a coefficient or a drive is no constant and no wave; and
+    /// where nothing drives or damps.
     ///
     /// # Errors
     /// The equation cannot be taken apart.
@@ -79,8 +79,8 @@ impl Linear {
             return Ok(None);
         };
         let waves = parts.forcing.terms().iter().filter(|term| !term.is_zero());
-        let waves: Result<Vec<Wave>, _> =
-            waves.map(|term| Wave::new(term, Method::Exact)).collect();
+        let waves: Result<Vec<HarmonicExcitation>, _> =
+            waves.map(|term| HarmonicExcitation::new(term, Method::Exact)).collect();
         let restores = !stiffness.is_zero() && !stiffness.has_leading_minus();
         Ok(waves.ok().filter(|_| restores).map(|waves| Self { damping, stiffness, waves }))
     }
@@ -243,7 +243,7 @@ impl Linear {
     }
 
     /// The amplitude of the steady motion under one wave.
-    fn steady_amplitude(&self, wave: &Wave) -> Result<Expr, ExprError> {
+    fn steady_amplitude(&self, wave: &HarmonicExcitation) -> Result<Expr, ExprError> {
         let spring = (&self.stiffness - &(&wave.rate * &wave.rate)).expand()?;
         let drag = (&self.damping * &wave.rate).expand()?;
         let size =
@@ -252,7 +252,7 @@ impl Linear {
     }
 
     /// The particular solution of a wave, and what is to be said of it.
-    fn forced_by(&self, wave: &Wave) -> Result<(Expr, Option<Note>), Refusal> {
+    fn forced_by(&self, wave: &HarmonicExcitation) -> Result<(Expr, Option<Note>), Refusal> {
         let size = -&wave.factor;
         let time = Expr::symbol("t");
         let angle = &(&wave.rate * &time) + &wave.phase;
@@ -291,10 +291,10 @@ fn characteristic(
     oscillator: &Oscillator,
     damping: &Expr,
     stiffness: &Expr,
-) -> Result<Line, Refusal> {
+) -> Result<DerivationLine, Refusal> {
     let exponent = Expr::from(fresh("lambda", &oscillator.names()));
     let left = exponent.integer_power(2)? + damping * &exponent + stiffness.clone();
-    Ok(Line::equation(left, Expr::zero()).because("a free motion exp(lambda*t) has"))
+    Ok(DerivationLine::equation(left, Expr::zero()).because("a free motion exp(lambda*t) has"))
 }
 
 /// The frequency as a law.

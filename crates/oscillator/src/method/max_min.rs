@@ -38,7 +38,7 @@ use super::{Options, Reason, Refusal};
 use crate::conservative::features::Features;
 use crate::conservative::{split, take_powers};
 use crate::decimal::decimal;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, Function, Node};
 use crate::numeric::ode::root::find_root;
@@ -67,22 +67,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
             .unwrap_or_else(|| quotient.clone());
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
-    let squared: Formula = Expr::symbol("omega").integer_power(2)?.into();
+    let squared: DerivationFormula = Expr::symbol("omega").integer_power(2)?.into();
     let names = oscillator.names();
     let [q, rest, end, turn] =
         ["q", "q_rest", &format!("q_{AMPLITUDE}"), "q_s"].map(|name| fresh(name, &names));
     let [lo, hi, share] = ["lo", "hi", "k"].map(|name| Expr::from(fresh(name, &names)));
     let [rest, end] = [rest, end].map(Expr::from);
     let mut lines = vec![
-        Line::equation(q, &quotient)
+        DerivationLine::equation(q, &quotient)
             .because(format!("{coordinate}'' + {q}*{coordinate} = 0 with the factor")),
-        Line::equation(rest.clone(), &at_rest).because("at rest"),
-        Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = {AMPLITUDE}")),
+        DerivationLine::equation(rest.clone(), &at_rest).because("at rest"),
+        DerivationLine::equation(end.clone(), &at_turning)
+            .because(format!("at {coordinate} = {AMPLITUDE}")),
     ];
     lines.extend(integral_law(oscillator, &force, &solution)?);
     let law = law_of(&solution);
     let between = |bounds: [&Expr; 2]| {
-        Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]))
+        DerivationLine::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]))
     };
     let range = match turning_backs(oscillator, &quotient, &force) {
         None => {
@@ -91,10 +92,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                     .because(format!("while {q} runs from one to the other without turning back")),
             );
             if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
-                lines.push(Line::equal(place).because(format!(
+                lines.push(DerivationLine::equal(place).because(format!(
                     "it turns back where the right side is positive and {AMPLITUDE} lies beyond"
                 )));
-                lines.push(Line::equation(turn, value).because("the bound there"));
+                lines.push(DerivationLine::equation(turn, value).because("the bound there"));
             }
             let slope = quotient.differentiate(coordinate)?.expand()?;
             let mut letters = slope.symbols();
@@ -126,9 +127,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         quotient_of(&above, &(&at_turning - &at_rest).expand().ok()?)
     });
     if let Some(value) = exact_share {
-        lines.push(Line::equation(share, value));
+        lines.push(DerivationLine::equation(share, value));
     } else if let (Some(law), true) = (law, turns) {
-        lines.push(Line::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
+        lines.push(DerivationLine::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
     }
     solution.derivation = lines;
     let bounds = Note::Bounds { at_rest, at_turning, range };
@@ -139,14 +140,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 /// The most places where `f(x)/x` turns back that are written out.
 const MOST_PIECES: usize = 4;
 
-/// Where `f(x)/x` turns back for `x > 0`, with its value there, up to the end of the well; `None`
-/// where that depends on parameters.
+/// Extrema of `f(x)/x` for `x > 0` with their values, up to the end of the well; `None` if they
+/// depend on parameters.
 fn turning_backs(
     oscillator: &Oscillator,
     quotient: &Expr,
     force: &Expr,
 ) -> Option<Vec<(f64, f64)>> {
-    /// The search goes through the decades of what a number can be in SI units, so many points in
+    /// The search goes through the decades of what a number can be in SI units, this many points in
     /// each.
     const DECADES: i32 = 24;
     const POINTS: i32 = 48;
@@ -226,7 +227,7 @@ fn pieces(
     at_rest: &Expr,
     oscillator: &Oscillator,
     [end, lo, hi]: [&Expr; 3],
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     let rest = compiled(oscillator, at_rest, &BTreeMap::new()).map_or(f64::NAN, |value| value(0.0));
     let (mut least, mut largest) = (rest, rest);
     let taken = oscillator.names();
@@ -234,7 +235,7 @@ fn pieces(
     let mut lines = Vec::new();
     for (index, &(place, value)) in places.iter().enumerate() {
         if index == MOST_PIECES {
-            lines.push(Line::words(format!(
+            lines.push(DerivationLine::words(format!(
                 "{q} goes on turning back beyond {}: left out",
                 decimal(place)
             )));
@@ -244,7 +245,7 @@ fn pieces(
         let number = index + 1;
         let [least_name, largest_name] =
             [&l, &h].map(|letter| Symbol::new(&format!("{letter}{number}")));
-        lines.push(Line::words(format!(
+        lines.push(DerivationLine::words(format!(
             "{x} = {}: {q} turns back at {}; up to there the least is {least_name} = {}, the largest {largest_name} = {}",
             decimal(place),
             decimal(value),
@@ -260,17 +261,17 @@ fn pieces(
         };
         let minimum = Expr::function(Function::Minimum, vec![least_name.into(), end.clone()])?;
         let maximum = Expr::function(Function::Maximum, vec![largest_name.into(), end.clone()])?;
-        lines.push(Line::equation(lo, minimum).because(range));
-        lines.push(Line::equation(hi, maximum));
+        lines.push(DerivationLine::equation(lo, minimum).because(range));
+        lines.push(DerivationLine::equation(hi, maximum));
     }
     Ok(lines)
 }
 
-/// Of `a + b x^m + c x^n`: where it is stationary, as `x^(n-m) = -m b/(n c)`, and its value there.
+/// The stationary point of `a + b x^m + c x^n` as `x^(n-m) = -m b/(n c)`, and the value there.
 fn stationary_point(
     quotient: &Expr,
     coordinate: Symbol,
-) -> Result<Option<(Vec<Formula>, Expr)>, Refusal> {
+) -> Result<Option<(Vec<DerivationFormula>, Expr)>, Refusal> {
     let Some(polynomial) = quotient.to_polynomial(&mut |_| None)? else {
         return Ok(None);
     };

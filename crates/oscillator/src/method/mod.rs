@@ -58,13 +58,13 @@ pub use refusal::{Reason, Refusal, Refuser};
 
 pub use resonance::with_resonance_at;
 
-pub use crate::conservative::{Force, cosine_coefficient, is_odd, is_smooth, potential};
+pub use crate::conservative::{CentredForce, cosine_coefficient, is_odd, is_smooth, potential};
 pub use crate::equilibrium::with_numbers_where_needed;
 
 use std::collections::BTreeMap;
 
 use num_traits::Zero;
-use table::{Choice, Entry};
+use table::{Choice, MethodEntry};
 
 use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
@@ -84,7 +84,7 @@ pub const HIGHEST_ORDER: u32 = 400;
 /// fewer.
 pub const HIGHEST_ORDER_OF_FREQUENCY: u32 = 2000;
 
-/// What a user may choose; `None` leaves the choice to the method.
+/// The options of a derivation; `None` leaves the choice to the method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The method.
@@ -102,17 +102,18 @@ pub struct Options {
     /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for
     /// where it is not given.
     pub hbar: Option<Expr>,
-    /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the
-    /// smallest that attracts.
+    /// Number of the limit cycle of a self-excited equation, counted from one by amplitude; if
+    /// `None`, the smallest that attracts.
     pub cycle: Option<u32>,
-    /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in
-    /// numbers, or the primary one, 2:1 where the drive is in a coefficient. Both are whole numbers
-    /// from 1 to 9.
+    /// The resonance of a driven motion, Omega : omega0, two whole numbers from 1 to 9; if `None`,
+    /// the nearest one to numerical frequencies, or the primary one, 2:1 for a drive in a
+    /// coefficient.
     pub resonance: Option<(u32, u32)>,
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less
     /// time.
     pub frequency_alone: bool,
-    /// Who may stop a long expansion, which then ends with the orders that there are.
+    /// The interrupt and the progress of a long expansion, which ends, if interrupted, with the
+    /// orders that there are.
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;
@@ -122,7 +123,7 @@ pub struct Options {
     /// // Stopped before it begins: the orders that need no long work are there.
     /// static STOP: AtomicBool = AtomicBool::new(true);
     /// static COUNTER: Counter = Counter::new();
-    /// let supervision = Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&COUNTER) };
+    /// let supervision = Supervision { interrupt: Interrupt::from_flag(&STOP), progress: Progress::from_counter(&COUNTER) };
     /// let options = Options { order: Some(300), frequency_alone: true, supervision, ..Options::default() };
     /// let solution = solve(&Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?, &options)?;
     /// assert!((1..300).contains(&solution.order));
@@ -175,8 +176,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     })
 }
 
-/// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force
-/// take no damping and no drive: where there is one the way leads on to numbers.
+/// Adds a way forward to a refusal for want of a linear restoring force. If `x = 0` repels, it
+/// names the stable equilibria. Methods that need no linear force take no damping and no drive:
+/// with one of them it leads to the numerical commands.
 fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Refusal {
     let Reason::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal.reason else {
         return refusal;
@@ -250,7 +252,7 @@ fn solve_in_its_coordinate(
         None => default_method(oscillator) == Method::LindstedtPoincare,
         Some(method) => method == Method::LindstedtPoincare,
     };
-    // What damps is not seen at the order 0, and rules a periodic motion out all the same.
+    // Damping does not appear at order 0, and rules a periodic motion out all the same.
     if options.order == Some(0) && may_expand {
         let first = Options { order: Some(1), ..options.clone() };
         if let Err(refusal) = solve_by(Method::LindstedtPoincare, oscillator, &first)
@@ -271,12 +273,12 @@ fn solve_by(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let entry = Entry::of(method);
+    let entry = MethodEntry::for_method(method);
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
     // moved back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    // The formulas of a driven motion have a letter for an equilibrium that is no fraction.
+    // The formulas of a driven motion have a letter for an equilibrium that is not a fraction.
     let driven = oscillator.force.contains(Symbol::new("t"));
     let degree = (entry.rounded_degree)(options, polynomial).filter(|_| !(driven && polynomial));
     let centred = centred(oscillator, degree)?;
@@ -288,7 +290,7 @@ fn solve_by(
     };
     let mut solution =
         answer.map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
-    // The first order of a force that is no polynomial projects the force as it is, corners and
+    // The first order of a force that is not a polynomial projects the force as it is, corners and
     // all.
     let projected = method == Method::LindstedtPoincare && solution.law.frequency().is_none();
     if entry.expands() && !projected && has_corners(&oscillator.force) {
@@ -326,7 +328,7 @@ fn solve_by(
 }
 
 /// An option that a method has no use for is a mistake, and never ignored.
-fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), Refusal> {
+fn refuse_what_it_does_not_take(entry: &MethodEntry, options: &Options) -> Result<(), Refusal> {
     let given = [
         (Choice::Order, options.order.is_some()),
         (Choice::Degrees, options.degrees.is_some()),
@@ -363,7 +365,7 @@ fn move_back(
 ) -> Result<(), Refusal> {
     let x = oscillator.coordinate;
     let written = centred.written.to_polynomial(&mut |_| None)?;
-    // What is no polynomial has a symbol.
+    // An equilibrium that is not a polynomial has a symbol.
     let position = written.unwrap_or_else(Polynomial::zero);
     // A motion known by numbers alone is left to them.
     if !solution.displacement.is_zero() {
@@ -406,7 +408,7 @@ fn has_corners(force: &Expr) -> bool {
     corners.into_iter().any(|function| force.contains_function(function))
 }
 
-/// The refusal of a force that is no polynomial in the coordinate, by the terms that are none.
+/// The refusal of a force that is not a polynomial in the coordinate, by the terms that are none.
 fn not_polynomial(force: &Expr, coordinate: Symbol, method: Method) -> Refusal {
     let constant = fresh("c", &[coordinate]);
     let is_none = |term: &Expr, constants: bool| {

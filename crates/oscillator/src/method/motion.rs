@@ -28,7 +28,7 @@ use crate::values::Values;
 /// let solution = solve(&Oscillator::parse("x'' + x + eps*x^3 = 0")?, &Options::default())?;
 /// let motion = solution.motion_at(&"eps = 1/10, A = 1".parse()?)?;
 /// assert_eq!(motion.to_string(), "x(t) = 0.9971*cos(1.03671*t) + 0.00289062*cos(3.11013*t) + 9.76563e-6*cos(5.18355*t)");
-/// assert!((motion.at(0.0) - 1.0).abs() < 1e-15 && motion.velocity(0.0) == 0.0);
+/// assert!((motion.displacement_at(0.0) - 1.0).abs() < 1e-15 && motion.velocity(0.0) == 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl Motion {
     }
 
     /// The displacement at the time `t`; the motion starts at a turning point at `t = 0`.
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn displacement_at(&self, t: f64) -> f64 {
         self.displacement.evaluate(self.frequency * t)
     }
 

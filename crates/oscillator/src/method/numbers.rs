@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use num_traits::Zero as _;
 
 use super::exact_motion::{cosines, motion_about};
-use super::table::{Choice, Entry, Motion};
+use super::table::{Choice, MethodEntry, MotionEvaluation};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
@@ -38,14 +38,14 @@ const NO_DIGITS: f64 = 1e-6;
 pub struct Numbers {
     /// omega^2, of either sign.
     pub frequency_squared: f64,
-    /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where
-    /// omega^2 is solved for.
+    /// Bound of the relative change of omega^2 by rounding of the coefficients of the formula; zero
+    /// if omega^2 is solved for numerically.
     pub rounding: f64,
-    /// The motion in theta; `None` where the frequency is not real.
+    /// The motion in theta; `None` if the frequency is not real.
     pub motion: Option<FourierSeries<Doubles>>,
     /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
-    /// What a reader should know of these numbers beside them.
+    /// A remark on these numbers for the reader.
     pub remark: Option<String>,
 }
 
@@ -60,26 +60,26 @@ pub struct SymbolValues {
     pub phase: f64,
 }
 
-/// What the amplitudes that were asked for before have left for the next, all else being the same:
-/// a balance goes on from where it was, and what a force is at rest is found once.
+/// Results shared between amplitudes, all else being the same: a balance continues from its last
+/// solution, and the force at rest is analysed once.
 #[derive(Default)]
-pub struct Known {
+pub struct NumbersCache {
     balance: balance::Continuation,
-    force: OnceCell<Option<Force>>,
+    force: OnceCell<Option<CentredForce>>,
 }
 
-impl Known {
-    /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+impl NumbersCache {
+    /// The force about the equilibrium of an answer; `None` if a symbol of it has no number.
     fn force(
         &self,
         oscillator: &Oscillator,
         solution: &Solution,
         numbers: &BTreeMap<Symbol, f64>,
-    ) -> Option<Force> {
+    ) -> Option<CentredForce> {
         let amplitude = amplitude_of(solution, numbers);
         let known = self.force.get_or_init(|| {
             let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
-            Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
+            CentredForce::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
         });
         Some(known.as_ref()?.with_amplitude(amplitude))
     }
@@ -93,11 +93,11 @@ pub enum NoNumbers {
     /// for.
     #[error("not real: the root that continues the linear frequency ends at {} = {}", AMPLITUDE, significant(*amplitude, 6))]
     BranchEnds {
-        /// Where.
+        /// The amplitude.
         amplitude: f64,
     },
-    /// About an unstable equilibrium no root of an implicit relation continues that of its first
-    /// order.
+    /// No root of an implicit relation continues that of its first order about an unstable
+    /// equilibrium.
     #[error("not real: no root continues the frequency of order 1 at this amplitude")]
     NoneOfFirstOrder,
     /// omega^2 is not positive.
@@ -120,7 +120,7 @@ pub enum NoNumbers {
     Gap {
         /// The coordinate.
         coordinate: Symbol,
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// A symbol that the law is written with has no real value.
@@ -259,7 +259,7 @@ pub fn evaluate(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Numbers, NoNumbers> {
-    let known = &Known::default();
+    let known = &NumbersCache::default();
     let mut chosen = Vec::new();
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
@@ -281,20 +281,20 @@ pub fn evaluate(
     if rounding > NO_DIGITS && squared != 0.0 {
         return Err(NoNumbers::Cancels { rounding });
     }
-    let motion = match Entry::of(solution.method).motion {
-        Motion::Exact if squared > 0.0 => {
+    let motion = match MethodEntry::for_method(solution.method).motion {
+        MotionEvaluation::Exact if squared > 0.0 => {
             exact_motion(oscillator, solution, &numbers, known).ok().map(|found| found.1)
         }
-        Motion::Exact => None,
+        MotionEvaluation::Exact => None,
         // The frequency alone.
-        Motion::Formula if solution.displacement.is_zero() => None,
+        MotionEvaluation::Formula if solution.displacement.is_zero() => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
     Ok(Numbers { frequency_squared: squared, rounding, motion, chosen, remark: None })
 }
 
-/// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits
-/// that are left, so that its zeros can be looked for.
+/// omega^2 alone, without the motion if that costs more. Cancellation of its terms is not refused, so
+/// that its zeros can be bracketed.
 ///
 /// # Errors
 /// As [`evaluate`].
@@ -314,7 +314,7 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
-    frequency_squared_along(oscillator, solution, numbers, &Known::default())
+    frequency_squared_along(oscillator, solution, numbers, &NumbersCache::default())
 }
 
 /// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a
@@ -326,7 +326,7 @@ pub fn frequency_squared_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<f64, NoNumbers> {
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
@@ -349,8 +349,8 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
     if initial == own || numbers.contains_key(&own) || !numbers.contains_key(&initial) {
         return numbers;
     }
-    // What the motion has at its start beside the amplitude and the equilibrium, by the power of
-    // the amplitude and by the order: each is marked by the small parameters, or by the amplitude
+    // The initial displacement beside the amplitude and the equilibrium, by the power of the
+    // amplitude and by the order: each term is marked by the small parameters, or by the amplitude
     // itself.
     let in_amplitude = solution.small_parameter == own;
     let one: Polynomial = Polynomial::symbol(own);
@@ -406,7 +406,8 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
     let hbar = homotopy_analysis::convergence_control(solution);
-    let open = Entry::of(solution.method).takes(Choice::Hbar) && !numbers.contains_key(&hbar);
+    let open = MethodEntry::for_method(solution.method).takes(Choice::Hbar)
+        && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }
 
@@ -416,7 +417,7 @@ fn balanced(
     motion: &FourierSeries<Doubles>,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Vec<(Symbol, f64)> {
-    if Entry::of(solution.method).motion != Motion::Balance {
+    if MethodEntry::for_method(solution.method).motion != MotionEvaluation::Balance {
         return vec![];
     }
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
@@ -437,7 +438,7 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
 fn by_size(solution: &Solution) -> bool {
     solution.law.relation().is_none()
         && solution.amplitude == AmplitudeConvention::Initial
-        && !Entry::of(solution.method).signed
+        && !MethodEntry::for_method(solution.method).signed
         || is_first_order(solution)
 }
 
@@ -453,7 +454,7 @@ pub fn motion_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
     by_size(solution) && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
 }
 
-/// Whether an expansion stopped at the projection of a force that is no polynomial.
+/// Whether an expansion stopped at the projection of a force that is not a polynomial.
 fn is_first_order(solution: &Solution) -> bool {
     // The series itself always has omega beside omega^2.
     solution.method.counts() == Counts::Powers && solution.law.frequency().is_none()
@@ -461,7 +462,7 @@ fn is_first_order(solution: &Solution) -> bool {
 
 /// Whether the law is that of the true motion.
 fn is_exact(solution: &Solution) -> bool {
-    Entry::of(solution.method).motion == Motion::Exact
+    MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
@@ -472,8 +473,8 @@ fn of_one_term(solution: &Solution) -> bool {
 /// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or
 /// `omega`.
 pub fn law_name(solution: &Solution) -> &'static str {
-    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals
-    // for omega^2.
+    // Laws that are solved numerically give omega itself, but the one-term laws, which are
+    // integrals for omega^2, give that.
     let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
     match solution.law.closed_form() {
         _ if solution.law.frequency_squared().is_some()
@@ -497,7 +498,7 @@ fn frequency_squared(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, f64), NoNumbers> {
     let symbol = solution.amplitude.symbol();
     if of_one_term(solution) {
@@ -543,7 +544,8 @@ fn frequency_squared(
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|name| *name == missing)
     };
-    // What the exact motion is refused for is said rather than that its formula has no value.
+    // The reason for which the exact motion is refused is reported rather than that its formula has
+    // no value.
     let no_motion = || match is_exact(solution) {
         true => exact_motion(oscillator, solution, numbers, known).err(),
         false => None,
@@ -582,7 +584,7 @@ fn stays_defined(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(), NoNumbers> {
     if matches!(oscillator.polynomial_degree(), Ok(Some(_))) {
         return Ok(());
@@ -600,12 +602,13 @@ fn stays_defined(
     }
 }
 
-/// What of the force is beyond double precision along a motion of one term, where something is.
+/// The part of the force that is beyond double precision along a motion of one term; `None` if
+/// there is none.
 fn overflow(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<NoNumbers> {
     let force = known.force(oscillator, solution, numbers)?;
     let amplitude = amplitude_of(solution, numbers);
@@ -622,7 +625,7 @@ fn by_definition(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<(f64, f64)> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if is_exact(solution) {
@@ -630,11 +633,11 @@ fn by_definition(
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
-        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
+        CentredForce::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
     } else {
         known.force(oscillator, solution, numbers)?
     };
-    let definition = Entry::of(solution.method).definition?;
+    let definition = MethodEntry::for_method(solution.method).definition?;
     definition(&force, size).filter(|law| law.0.is_finite())
 }
 
@@ -651,8 +654,8 @@ pub fn error_of_integral(
         return None;
     }
     let amplitude = numbers.get(&solution.amplitude.symbol())?.abs();
-    let force = Known::default().force(oscillator, solution, numbers)?;
-    let (value, change) = one_term::coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
+    let force = NumbersCache::default().force(oscillator, solution, numbers)?;
+    let (value, change) = one_term::coefficient_by_quadrature(&|y| force.value(y), amplitude, 1);
     Some((change / value).abs().max(1e-15))
 }
 
@@ -827,7 +830,9 @@ fn lost_projections(
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
 ) -> Option<Vec<(usize, f64)>> {
-    if Entry::of(solution.method).motion != Motion::Iterate || solution.law.relation().is_some() {
+    if MethodEntry::for_method(solution.method).motion != MotionEvaluation::Iterate
+        || solution.law.relation().is_some()
+    {
         return None;
     }
     let symbol = solution.amplitude.symbol();
@@ -846,18 +851,19 @@ fn lost_projections(
     if kept {
         return None;
     }
-    let force = Known::default().force(oscillator, solution, numbers)?;
+    let force = NumbersCache::default().force(oscillator, solution, numbers)?;
     let harmonics = solution.displacement.harmonics().into_iter();
     let projections = harmonics.filter(|entry| entry.0 != 1);
     Some(projections.map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0)).collect())
 }
 
-/// What has to be solved: balances, integrals, the exact motion; and a remark.
+/// Solves the laws that are not explicit: balances, integrals, the exact motion. The last value is
+/// a remark.
 fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, FourierSeries<Doubles>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
@@ -878,7 +884,7 @@ fn solve(
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
-    if Entry::of(solution.method).motion == Motion::Balance {
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Balance {
         let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
@@ -909,7 +915,7 @@ fn exact_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let start = amplitude_of(solution, numbers);
@@ -918,15 +924,16 @@ fn exact_motion(
     let frequency = std::f64::consts::TAU / period;
     // A motion that is written down is judged as it is written.
     let written = solution.closed_motion.as_ref();
-    let written = written.and_then(|motion| along(solution, motion, numbers, frequency));
+    let written =
+        written.and_then(|motion| harmonics_of_closed_form(solution, motion, numbers, frequency));
     Ok((
         frequency * frequency,
         FourierSeries::from_parts(Doubles, written.unwrap_or(cosine), vec![]),
     ))
 }
 
-/// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
-fn along(
+/// The coefficients of `cos(k theta)` of a motion in closed form; `None` if it has no value.
+fn harmonics_of_closed_form(
     solution: &Solution,
     motion: &Expr,
     numbers: &BTreeMap<Symbol, f64>,
@@ -953,12 +960,12 @@ fn best_hbar(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     hbar: Symbol,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    // What does not depend on hbar is computed once.
+    // Definitions that do not depend on hbar are computed once.
     let mut numbers = numbers.clone();
     let fixed =
         solution.definitions.iter().take_while(|definition| !definition.meaning.contains(hbar));
@@ -991,7 +998,7 @@ fn best_hbar(
         let acceleration = motion.derivative().derivative();
         let defect = |(cosine, sine): &(f64, f64)| {
             let distance = motion.evaluate_at(*cosine, *sine) - force.equilibrium();
-            squared * acceleration.evaluate_at(*cosine, *sine) + force.at(distance)
+            squared * acceleration.evaluate_at(*cosine, *sine) + force.value(distance)
         };
         let sum: f64 = circle.iter().map(|point| defect(point).powi(2)).sum();
         if sum.is_finite() { sum } else { f64::INFINITY }

@@ -17,18 +17,18 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::{Options, Reason, Refusal, Refuser, first_term};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::is_odd;
 use crate::conservative::parity::twice_even_part;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_piecewise};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{
-    AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep,
+    AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::ExactFirstStep,
 };
 use crate::symbol::Symbol;
 
@@ -133,8 +133,7 @@ pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomials> {
     FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, coefficient))
 }
 
-/// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form
-/// otherwise.
+/// Sets the law for omega^2 of an answer: a polynomial if it is one, otherwise a closed form.
 pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
     solution.law = match law.to_polynomial(&mut |_| None)? {
         Some(polynomial) => Law::squared(polynomial),
@@ -166,13 +165,13 @@ pub(super) fn solve_by_integral(
         None => {
             let squared = Expr::symbol("omega").integer_power(2)?;
             let integral = first_projection(oscillator, &force)?;
-            solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
+            solution.law = Law::Quadrature(vec![DerivationLine::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation =
-        vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+        vec![DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())];
     let law = integral_law(oscillator, &force, &solution)?;
     solution.derivation.extend(law);
     Ok(solution)
@@ -191,7 +190,7 @@ pub(super) fn note_even_part(
     Ok(())
 }
 
-/// Puts what is said of the even part of the force behind what was said since.
+/// Moves the note of the even part of the force behind the notes that were added since.
 pub(super) fn note_even_part_last(solution: &mut Solution) {
     // False sorts before true, and the others keep their order.
     solution.validity.sort_by_key(|note| matches!(note, Note::EvenPartLeftOut(_)));
@@ -201,10 +200,10 @@ pub(super) fn note_even_part_last(solution: &mut Solution) {
 pub(super) fn first_projection(
     oscillator: &Oscillator,
     force: &Expr,
-) -> Result<Formula, ExprError> {
+) -> Result<DerivationFormula, ExprError> {
     let (amplitude, cosine) = (Expr::symbol("A"), Expr::from(oscillator.phase()).cos()?);
     let along = force.substitute(oscillator.coordinate, &(&amplitude * &cosine))?;
-    Ok(Formula::Integral {
+    Ok(DerivationFormula::Integral {
         factor: Expr::divide(&Expr::from(2), &(Expr::pi() * amplitude))?,
         from: Expr::zero(),
         to: Expr::pi(),
@@ -219,11 +218,11 @@ pub(super) fn integral_law(
     oscillator: &Oscillator,
     force: &Expr,
     solution: &Solution,
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     let squared = Expr::symbol("omega").integer_power(2)?;
     let mut equal = vec![squared.into(), first_projection(oscillator, force)?];
-    equal.extend(law_of(solution).map(Formula::from));
-    Ok(vec![Line::equal(equal).because("no cos(θ) remains in the equation")])
+    equal.extend(law_of(solution).map(DerivationFormula::from));
+    Ok(vec![DerivationLine::equal(equal).because("no cos(θ) remains in the equation")])
 }
 
 /// omega^2 of an answer that has it as a polynomial or in closed form.
@@ -237,7 +236,10 @@ pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
 
 /// `c_1/A` of a force by numbers, with a bound of its error, relative: what defines the methods
 /// whose law is the shared integral.
-pub(super) fn first_projection_over_amplitude(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
+pub(super) fn first_projection_over_amplitude(
+    force: &CentredForce,
+    amplitude: f64,
+) -> Option<(f64, f64)> {
     let (projection, error) = coefficient(force, amplitude, 1);
     Some((projection / amplitude, error / projection.abs()))
 }
@@ -278,17 +280,17 @@ pub(crate) fn coefficient_by_quadrature(
 
 /// `c_k` of a force about its equilibrium, and a bound of its error: between corners and narrow
 /// places by Gauss's rule, as fine as it has to be, where there are any.
-pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64) {
+pub(crate) fn coefficient(force: &CentredForce, amplitude: f64, k: usize) -> (f64, f64) {
     const TOLERANCE: f64 = 1e-14;
     let cuts = force.cuts(-amplitude.abs(), amplitude.abs());
     if cuts.is_empty() {
-        return coefficient_by_quadrature(&|y| force.at(y), amplitude, k);
+        return coefficient_by_quadrature(&|y| force.value(y), amplitude, k);
     }
     let mut angles: Vec<f64> =
         cuts.iter().map(|cut| (cut / amplitude).clamp(-1.0, 1.0).acos()).collect();
     angles.extend([0.0, PI]);
     angles.sort_by(f64::total_cmp);
-    let integrand = |theta: f64| force.at(amplitude * theta.cos()) * (k as f64 * theta).cos();
+    let integrand = |theta: f64| force.value(amplitude * theta.cos()) * (k as f64 * theta).cos();
     let sum = match integrate_piecewise(integrand, &angles, TOLERANCE) {
         Ok(found) => found,
         Err(QuadratureError::NotConverged { value, error_estimate, .. }) => (value, error_estimate),

@@ -29,7 +29,7 @@ use num_traits::{One, Zero};
 
 use super::power_series::{CONSTANT, PowerSeries, Resummed, STOPPED, TOO_LONG, has_values, scaled};
 use super::{Options, Reason, Refusal};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::big_float::BigFloat;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
@@ -46,7 +46,7 @@ const METHOD: Method = Method::Pade;
 /// The largest degree, of numerator and denominator.
 const LARGEST_DEGREE: u32 = 60;
 
-/// Beyond this degree of the denominator fractions are long, and primes faster.
+/// Degree of the denominator beyond which fractions are long, and primes faster.
 const LARGEST_BY_FRACTIONS: usize = 12;
 
 /// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums
@@ -68,7 +68,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let order = numerator_degree + denominator_degree;
     let resummed =
-        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+        Resummed::new(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let series = &resummed.series;
     let quotient = quotient(series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
@@ -81,7 +81,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &resummed.names()));
     let derivation = match resummed.long {
         // Equations by the dozen, with coefficients of thousands of digits.
-        true => vec![Line::words(format!(
+        true => vec![DerivationLine::words(format!(
             "the {denominator_degree} linear equations for the denominator are solved modulo many primes, and put together"
         ))],
         false => linear_system(series, &quotient, &letters),
@@ -146,7 +146,7 @@ fn by_primes(
     Ok(Quotient { above: polynomials(above, symbols), below: polynomials(below, &Monomial::one()) })
 }
 
-/// Why there is no quotient.
+/// The reason why there is no quotient.
 const SINGULAR: &str = "the equations for its denominator are singular";
 
 /// The equations for the denominator and then for the numerator, with the coefficients of this
@@ -155,7 +155,7 @@ fn linear_system(
     series: &PowerSeries,
     Quotient { above, below }: &Quotient,
     [p, q]: &[String; 2],
-) -> Vec<Line> {
+) -> Vec<DerivationLine> {
     let (l, m) = (above.len() as i64 - 1, below.len() - 1);
     let name = |letter: &str, index: usize| Symbol::new(&format!("{letter}{index}"));
     let unknown = |j: usize| match j {
@@ -180,30 +180,31 @@ fn linear_system(
     let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
     let [numerator, denominator] =
         [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
-    let mut lines =
-        vec![Line::equation(squared.clone(), &series.law).because("the exact series begins")];
+    let mut lines = vec![
+        DerivationLine::equation(squared.clone(), &series.law).because("the exact series begins"),
+    ];
     if let Ok(quotient) = Expr::divide(&numerator, &denominator) {
-        lines.push(Line::equation(squared, quotient).because("agrees with"));
+        lines.push(DerivationLine::equation(squared, quotient).because("agrees with"));
     }
     for k in 1..=m {
         let words = match k {
             1 => "multiplied out, the powers beyond the numerator vanish",
             _ => "",
         };
-        lines.push(Line::equation(&sum(l + k as i64, m), Expr::zero()).because(words));
+        lines.push(DerivationLine::equation(&sum(l + k as i64, m), Expr::zero()).because(words));
     }
     for (j, coefficient) in below.iter().enumerate().skip(1) {
         let words = if j == 1 { "the denominator" } else { "" };
-        lines.push(Line::equation(name(q, j), value(coefficient)).because(words));
+        lines.push(DerivationLine::equation(name(q, j), value(coefficient)).because(words));
     }
     for (i, coefficient) in above.iter().enumerate() {
         let words = if i == 0 { "the numerator" } else { "" };
         let (combination, value) = (Expr::from(&sum(i as i64, i.min(m))), value(coefficient));
-        let mut equal: Vec<Formula> = vec![name(p, i).into(), combination.clone().into()];
+        let mut equal: Vec<DerivationFormula> = vec![name(p, i).into(), combination.clone().into()];
         if combination != value {
             equal.push(value.into());
         }
-        lines.push(Line::equal(equal).because(words));
+        lines.push(DerivationLine::equal(equal).because(words));
     }
     lines
 }
@@ -240,7 +241,7 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
     Ok(below)
 }
 
-/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows
+/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` if the rows
 /// depend on each other.
 fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
     for column in 0..rows.len() {

@@ -26,7 +26,7 @@
 use super::iteration_perturbation::numbered;
 use super::one_term::{conservative_force, integral_law, solve_by_integral};
 use super::{Options, Refusal, homotopy_perturbation, not_polynomial};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
@@ -34,10 +34,10 @@ use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{fresh, fresh_stem};
 
 /// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the
-/// force is no polynomial.
+/// force is not a polynomial.
 ///
 /// # Errors
-/// A force that is not conservative, by its term; above the first order, a force that is no
+/// A force that is not conservative, by its term; above the first order, a force that is not a
 /// polynomial.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::ParameterExpansion;
@@ -53,10 +53,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
         let names = oscillator.names();
         let (p, w, omega0) = (fresh("p", &names), fresh_stem("w", &names), fresh("omega0", &names));
-        let left = Formula::Oscillator { of: first, square: omega };
+        let left = DerivationFormula::Oscillator { of: first, square: omega };
         solution.derivation = vec![
-            Line::equation(start, along).because(format!("at {p}^0")),
-            Line::equation(left, driven).because(format!(
+            DerivationLine::equation(start, along).because(format!("at {p}^0")),
+            DerivationLine::equation(left, driven).because(format!(
                 "at {p}^1, {omega0}^2 - {FREQUENCY}^2 = {p}*{w}1 and the nonlinear terms together"
             )),
         ];

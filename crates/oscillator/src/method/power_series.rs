@@ -4,7 +4,7 @@
 use num_traits::{One, Zero};
 
 use super::{Options, Reason, Refusal, lindstedt_poincare};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
@@ -26,8 +26,8 @@ pub struct PowerSeries {
 }
 
 impl PowerSeries {
-    /// In the squared amplitude where the series has even powers alone.
-    pub fn of(solution: &Solution, in_amplitude: bool) -> Self {
+    /// The series of a solution, in the squared amplitude if it has even powers alone.
+    pub fn from_solution(solution: &Solution, in_amplitude: bool) -> Self {
         let small = solution.small_parameter;
         let law = solution.law.frequency_squared().cloned();
         let law = law.unwrap_or_else(Polynomial::zero);
@@ -98,7 +98,7 @@ pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)>
     Some((unit, numbers?))
 }
 
-/// The series to so many powers, and the answer that it belongs to.
+/// The series to this many powers, and the answer that it belongs to.
 pub(crate) struct Resummed {
     pub series: PowerSeries,
     solution: Solution,
@@ -107,23 +107,23 @@ pub(crate) struct Resummed {
     pub long: bool,
 }
 
-/// Why there is no approximant.
+/// The reason why there is no approximant.
 pub(crate) const CONSTANT: &str = "omega^2 does not depend on the amplitude";
 pub(crate) const STOPPED: &str = "the series was stopped before it was long enough";
 pub(crate) const TOO_LONG: &str = "its coefficients are too long for a value in double precision";
 
 impl Resummed {
-    /// The series through the power `order` of its variable; `None` where that was stopped.
+    /// The series through the power `order` of its variable; `None` if that was stopped.
     ///
     /// # Errors
     /// As for the method of Lindstedt and Poincare.
-    pub fn of(
+    pub fn new(
         oscillator: &Oscillator,
         options: &Options,
         (method, order): (Method, u32),
     ) -> Result<Option<Self>, Refusal> {
-        /// Beyond, the series is derived without its motion, of which the first correction is all
-        /// that is used.
+        /// Order beyond which the series is derived without its motion, of which only the first
+        /// correction is used.
         const LONG: u32 = 24;
         if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
             return Err(Reason::Convention.to(method));
@@ -145,16 +145,16 @@ impl Resummed {
         // Quadratic approximants of an even series are not unique in the parameter itself.
         let even = method == Method::HermitePade
             && !in_amplitude
-            && PowerSeries::of(&solution, true).step == 2;
+            && PowerSeries::from_solution(&solution, true).step == 2;
         if of_cycle || even {
             let Some(further) = series_to(2 * order, long)? else {
                 return Ok(None);
             };
-            if PowerSeries::of(&further, true).step == 2 {
+            if PowerSeries::from_solution(&further, true).step == 2 {
                 solution = further;
             }
         }
-        let series = PowerSeries::of(&solution, in_amplitude || of_cycle || even);
+        let series = PowerSeries::from_solution(&solution, in_amplitude || of_cycle || even);
         if long {
             let Some(first) = series_to(u32::try_from(series.step).unwrap_or(1), false)? else {
                 return Ok(None);
@@ -171,7 +171,7 @@ impl Resummed {
         self.solution.names()
     }
 
-    /// Puts `omega0^2` for a symbol of which `omega0` is the root, so that one of the two is left.
+    /// Replaces a symbol whose root is `omega0` by `omega0^2`, so that one of the two is left.
     pub fn write_squares_by_their_roots(&mut self) {
         for definition in &self.solution.definitions {
             let square =
@@ -183,7 +183,7 @@ impl Resummed {
         }
     }
 
-    /// How far an approximant of these degrees agrees with the series.
+    /// The note of the order through which an approximant of these degrees agrees with the series.
     pub fn agreement(&self, degrees: Degrees) -> Note {
         Note::AgreesThrough {
             degrees,
@@ -199,7 +199,7 @@ impl Resummed {
         self,
         degrees: Degrees,
         (value, definitions): (Expr, Vec<Definition>),
-        (validity, derivation): (Vec<Note>, Vec<Line>),
+        (validity, derivation): (Vec<Note>, Vec<DerivationLine>),
     ) -> Solution {
         let mut solution = self.solution;
         let harmonics = solution.displacement.harmonics();

@@ -45,7 +45,7 @@ pub(super) fn as_typed(
         Reason::NotOddAbout(..) => None,
         _ => refusal.quoted.as_deref_mut(),
     };
-    let found = term.and_then(|term| Some((typed(term, oscillator, centred)?, term)));
+    let found = term.and_then(|term| Some((typed_terms(term, oscillator, centred)?, term)));
     // It may be the factor of the acceleration that brings the velocity in: then the term is shown
     // over that.
     let shows_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
@@ -59,7 +59,7 @@ pub(super) fn as_typed(
 }
 
 /// The typed terms from which the terms of a sum come.
-fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
+fn typed_terms(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
     let expression = sum.expression();
     let sum = expression.expand().ok()?;
     let of = |term: &Expr| term.factors().1.to_vec();
@@ -114,8 +114,8 @@ fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<u
     numbers.map(|(number, _)| number).collect()
 }
 
-/// What each typed term adds to the force about the equilibrium; nothing for those with the
-/// acceleration in them, and for the zero of `= 0`.
+/// The contribution of each typed term to the force about the equilibrium; `None` for those with
+/// the acceleration in them, and for the zero of `= 0`.
 fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
     let (coordinate, acceleration) = (oscillator.coordinate, oscillator.velocity().derivative());
     let Ok(mass) = oscillator.residual.differentiate(acceleration) else {

@@ -12,21 +12,21 @@ use crate::solution::{Advice, AmplitudeConvention, Degrees, Method, Setting, con
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 
-/// Why a method does not answer, and what to do instead.
+/// The reason why a method does not answer, and what to do instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// What is in the way.
+    /// The reason.
     pub reason: Reason,
     refuser: Option<Refuser>,
     pub(super) quoted: Option<Box<Quotation>>,
 }
 
-/// What is in the way of an answer. A term of the equation, where there is one to name, is that of
+/// The reason of a refusal. The term of the equation, if there is one to name, is that of
 /// [`Refusal::term`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The equation is no oscillator, or cannot be expanded.
+    /// The equation is not an oscillator, or cannot be expanded.
     Oscillator(OscillatorError),
     /// A parameter with the name of something in the answer.
     NameOfAnswer(Symbol),
@@ -38,7 +38,7 @@ pub enum Reason {
         /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z
         /// of its own.
         equation: Polynomial,
-        /// Why that is not possible.
+        /// The reason why that is not possible.
         reason: &'static str,
     },
     /// A self-excited oscillator without a limit cycle, and the polynomial in z = amplitude^2.
@@ -51,7 +51,7 @@ pub enum Reason {
     Unbounded(String),
     /// A force that is flat at half the amplitude.
     NoSlope(String),
-    /// The algebra grew beyond so many terms.
+    /// The algebra grew beyond this many terms.
     TooLong(usize),
     /// Degrees for which this kind of approximant does not exist.
     Approximant {
@@ -59,7 +59,7 @@ pub enum Reason {
         method: Method,
         /// The degrees asked for.
         degrees: Degrees,
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
     /// The order asked for is too high.
@@ -82,7 +82,7 @@ pub enum Reason {
     Velocity,
     /// A method that measures the amplitude in one way only.
     Convention,
-    /// A term that depends on time, but is no single wave.
+    /// A term that depends on time, but is not a single wave.
     NoWave,
     /// A second driving frequency.
     SecondDrive,
@@ -92,10 +92,10 @@ pub enum Reason {
     NoResonance {
         /// Omega : omega0 as asked for.
         asked: (u32, u32),
-        /// Those that there are.
+        /// The resonances that there are.
         others: Vec<(u32, u32)>,
     },
-    /// No linear restoring force, and a term that the methods that need none do not take.
+    /// There is no linear restoring force, and a term that the methods without one do not take.
     NoLinearForce {
         /// The linear force.
         force: Expr,
@@ -117,7 +117,8 @@ pub enum Reason {
     ConventionOfFirstHarmonic,
     /// An even term of the force, in a method for odd forces.
     NotOdd,
-    /// The same about an equilibrium that is not zero: the coordinate, and its value there.
+    /// The force is not odd about an equilibrium that is not zero: the coordinate, and its value
+    /// there.
     NotOddAbout(Symbol, Expr),
     /// A term of inertia that grows beyond all bounds towards the equilibrium, or has no value
     /// there: no motion passes it.
@@ -145,14 +146,14 @@ pub enum Reason {
     PolynomialOnly,
 }
 
-/// What a refusal says is unsuited.
+/// The subject of a refusal, which is unsuited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refuser {
     /// A method, by its title.
     Method(Method),
     /// The expansion of Lindstedt and Poincare, whoever uses it.
     Expansion,
-    /// The first order of that method for a force that is no polynomial.
+    /// The first order of that method for a force that is not a polynomial.
     FirstOrder,
 }
 
@@ -172,11 +173,11 @@ const IN_NUMBERS: &str = "in numbers any equation can be followed: `lindstedt si
 impl Reason {
     /// The refusal of a method.
     pub fn to(self, method: Method) -> Refusal {
-        self.by(Refuser::Method(method))
+        self.refused_by(Refuser::Method(method))
     }
 
     /// The refusal of a method or a part of one.
-    pub fn by(self, refuser: Refuser) -> Refusal {
+    pub fn refused_by(self, refuser: Refuser) -> Refusal {
         Refusal { refuser: Some(refuser), ..self.into() }
     }
 }
@@ -217,18 +218,18 @@ impl fmt::Display for Refusal {
 impl std::error::Error for Refusal {}
 
 impl Refusal {
-    /// The same with the term that is in the way.
+    /// Returns the refusal with the term that is the reason.
     pub(super) fn about(self, term: &Expr) -> Self {
         Self { quoted: Some(Box::new(term.clone().into())), ..self }
     }
 
     /// The refusal of a term that damps, or feeds, as it stands in the force.
     pub(super) fn damping(term: &Expr, refuser: Refuser) -> Self {
-        // What stands as a product with a sum in it may do both.
+        // A product with a sum in it may both feed and damp.
         let written_out = term.expand();
         let feeds = written_out
             .is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
-        Reason::Damping { feeds }.by(refuser).about(term)
+        Reason::Damping { feeds }.refused_by(refuser).about(term)
     }
 
     /// The message without the name of the method at its head, for lists that name it already.
@@ -252,7 +253,7 @@ impl Refusal {
         self.row().1
     }
 
-    /// What it says after the name of who refuses, and a way forward.
+    /// The words after the name of the refusing method, and a way forward.
     fn row(&self) -> (String, Option<Advice>) {
         let term = self.term().unwrap_or_default();
         let words = |words: &str| Advice::words(words);

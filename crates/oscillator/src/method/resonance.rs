@@ -9,7 +9,7 @@ use crate::oscillator::Oscillator;
 use crate::solution::Method;
 use crate::values::Values;
 
-/// Those that are looked for, Omega : omega0.
+/// The resonances that are tried, Omega : omega0.
 pub(super) const RESONANCES: [(u32, u32); 5] = [(1, 1), (2, 1), (1, 2), (3, 1), (1, 3)];
 
 /// The largest of either number that is asked for: the motion needs as many harmonics.
@@ -34,7 +34,7 @@ pub(super) fn by_distance(mut resonances: Vec<(u32, u32)>, ratio: f64) -> Vec<(u
     resonances
 }
 
-/// An error where a ratio of frequencies is far from the resonance that is nearest to it: the
+/// An error if a ratio of frequencies is far from the resonance that is nearest to it: the
 /// detuning, which is to be small, is more than half of the linear frequency beside.
 pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<(), Refusal> {
     const FAR: f64 = 0.5;
@@ -90,8 +90,8 @@ pub fn with_resonance_at(
     Ok(chosen)
 }
 
-/// The resonances of the drive, and the ratio of the frequencies at these values; `None` where
-/// nothing drives, or one is missing.
+/// The resonances of the drive, and the ratio of the frequencies at these values; `None` if nothing
+/// drives, or one is missing.
 fn ratio_at(
     oscillator: &Oscillator,
     at: &Values,
@@ -100,7 +100,7 @@ fn ratio_at(
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
     let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
-    let drive = Drive::of(&parts, oscillator, method).ok()?;
+    let drive = Drive::from_parts(&parts, oscillator, method).ok()?;
     let mut numbers = at.numbers();
     if let Some(definition) = &centred.definition {
         numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);

@@ -1,7 +1,7 @@
 //! The table of methods: a row each, with what the rest of the program needs to know of it.
 //!
-//! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it
-//! sees of a force.
+//! In: a [`Method`]. Out: its [`MethodEntry`]: the function that solves, the options it takes, what
+//! it sees of a force.
 
 use super::{
     Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula,
@@ -9,66 +9,68 @@ use super::{
     iteration_perturbation, lindstedt_poincare, max_min, multiple_scales, one_term, pade,
     parameter_expansion, variational_iteration,
 };
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::oscillator::Oscillator;
 use crate::solution::{Degrees, Method, Solution};
 
 /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the
 /// equilibrium and the size of the amplitude. With a bound of its error, relative.
-pub type Definition = fn(&Force, f64) -> Option<(f64, f64)>;
+pub type Definition = fn(&CentredForce, f64) -> Option<(f64, f64)>;
 
 /// A row of [`METHODS`].
-pub struct Entry {
+pub struct MethodEntry {
     /// The method.
     pub method: Method,
     /// Derives its answer for an oscillator that swings about zero.
     pub solve: fn(&Oscillator, &Options) -> Result<Solution, Refusal>,
-    /// What a user may choose, beside the meaning of the amplitude and the small parameter.
+    /// Options that the method takes, beside the definition of the amplitude and the small
+    /// parameter.
     pub takes: &'static [Choice],
-    /// What it sees of the force.
-    pub sees: Sees,
-    /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded
-    /// coefficients that stands for the force, zero for a polynomial force kept whole; `None` where
-    /// the force is taken as it is. The flag says whether the force is a polynomial.
+    /// The representation of the force that the method uses.
+    pub sees: ForceRepresentation,
+    /// The degree of the Taylor polynomial with rounded coefficients that stands for the force
+    /// about an equilibrium without a closed form, zero for a polynomial force kept whole; `None`
+    /// if the force is taken as it is. The flag says whether the force is a polynomial.
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
-    /// For methods of one term.
+    /// The definition of the frequency of a method of one term.
     pub definition: Option<Definition>,
     /// Whether its law knows the sign of the amplitude; one that does not is written for positive
     /// ones.
     pub signed: bool,
-    /// How its motion becomes numbers.
-    pub motion: Motion,
-    /// How it takes equations whose inertia depends on the position as they are, where it does.
+    /// The way in which its motion is evaluated numerically.
+    pub motion: MotionEvaluation,
+    /// Its treatment of equations with a position-dependent inertia; `None` if it has none of its
+    /// own.
     pub inertia: Option<inertia::Approach>,
 }
 
-/// How a motion becomes numbers.
+/// The way in which a motion is evaluated numerically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// By its formula.
+pub enum MotionEvaluation {
+    /// The formula.
     Formula,
-    /// By the formula of an iterate, whose projections of the force may be taken by quadrature.
+    /// The formula of an iterate, whose projections of the force may be taken by quadrature.
     Iterate,
-    /// By solving a balance of harmonics.
+    /// The solution of a balance of harmonics.
     Balance,
-    /// By quadrature of the energy: the true motion.
+    /// Quadrature of the energy: the true motion.
     Exact,
 }
 
 /// A method whose omega^2 is the projection of the force on the first harmonic, over the amplitude.
-const OF_THE_SHARED_INTEGRAL: Entry = Entry {
+const OF_THE_SHARED_INTEGRAL: MethodEntry = MethodEntry {
     method: Method::Hamiltonian,
     solve: hamiltonian::solve,
     takes: &[Choice::Order],
-    sees: Sees::Force,
+    sees: ForceRepresentation::Force,
     rounded_degree: |_, _| None,
     definition: Some(one_term::first_projection_over_amplitude),
     signed: false,
-    motion: Motion::Formula,
+    motion: MotionEvaluation::Formula,
     inertia: None,
 };
 
-/// What a user may choose.
+/// An option of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// An order: a power of the small parameter, a number of harmonics or of passes.
@@ -102,9 +104,9 @@ impl Choice {
     }
 }
 
-/// What a method sees of the force.
+/// The representation of the force that a method uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sees {
+pub enum ForceRepresentation {
     /// Its derivatives at the equilibrium.
     Derivatives,
     /// Its derivatives, as a Taylor polynomial of a chosen degree.
@@ -114,21 +116,21 @@ pub enum Sees {
 }
 
 /// Every method, in the order of [`Method::ALL`].
-pub const METHODS: [Entry; Method::ALL.len()] = [
-    Entry {
+pub const METHODS: [MethodEntry; Method::ALL.len()] = [
+    MethodEntry {
         method: Method::LindstedtPoincare,
         solve: lindstedt_poincare::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::FrequencyAlone],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HomotopyPerturbation,
         solve: homotopy_perturbation::solve,
         takes: &[Choice::Order, Choice::Taylor],
-        sees: Sees::TaylorPolynomial,
+        sees: ForceRepresentation::TaylorPolynomial,
         rounded_degree: |options, _| {
             Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
@@ -136,11 +138,11 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HomotopyAnalysis,
         solve: homotopy_analysis::solve,
         takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
-        sees: Sees::TaylorPolynomial,
+        sees: ForceRepresentation::TaylorPolynomial,
         rounded_degree: |options, _| {
             Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
@@ -148,16 +150,16 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::IterationPerturbation,
         solve: iteration_perturbation::solve,
         rounded_degree: |options, polynomial| {
             (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0)
         },
-        motion: Motion::Iterate,
+        motion: MotionEvaluation::Iterate,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::ParameterExpansion,
         solve: parameter_expansion::solve,
         takes: &[Choice::Order, Choice::Taylor],
@@ -167,41 +169,41 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         },
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HarmonicBalance,
         solve: harmonic_balance::solve,
-        motion: Motion::Balance,
+        motion: MotionEvaluation::Balance,
         inertia: Some(inertia::HARMONIC_BALANCE),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::EnergyBalance,
         solve: energy_balance::solve,
         definition: Some(energy_balance::by_quadrature),
         inertia: Some(inertia::ENERGY_BALANCE),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry { method: Method::MaxMin, solve: max_min::solve, ..OF_THE_SHARED_INTEGRAL },
-    Entry {
+    MethodEntry { method: Method::MaxMin, solve: max_min::solve, ..OF_THE_SHARED_INTEGRAL },
+    MethodEntry {
         method: Method::AmplitudeFrequency,
         solve: amplitude_frequency::solve,
         definition: Some(amplitude_frequency::by_definition),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry { inertia: Some(inertia::HAMILTONIAN), ..OF_THE_SHARED_INTEGRAL },
-    Entry {
+    MethodEntry { inertia: Some(inertia::HAMILTONIAN), ..OF_THE_SHARED_INTEGRAL },
+    MethodEntry {
         method: Method::VariationalIteration,
         solve: variational_iteration::solve,
-        motion: Motion::Iterate,
+        motion: MotionEvaluation::Iterate,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::FrequencyFormula,
         solve: frequency_formula::solve,
         definition: Some(frequency_formula::by_definition),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Averaging,
         solve: averaging::solve,
         takes: &[Choice::Order, Choice::Resonance],
@@ -210,11 +212,11 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Pade,
         solve: pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| {
             let sum = options.degrees.map_or(3, Degrees::sum);
             Some(beyond_twice(sum))
@@ -223,11 +225,11 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HermitePade,
         solve: hermite_pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| {
             Some(beyond_twice(options.degrees.map_or(3, Degrees::sum).saturating_add(1)))
         },
@@ -235,30 +237,30 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::MultipleScales,
         solve: multiple_scales::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::Resonance],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
         definition: None,
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Exact,
         solve: exact::solve,
         takes: &[],
         definition: None,
-        motion: Motion::Exact,
+        motion: MotionEvaluation::Exact,
         inertia: Some(inertia::EXACT),
         ..OF_THE_SHARED_INTEGRAL
     },
 ];
 
-impl Entry {
+impl MethodEntry {
     /// The row of a method.
-    pub fn of(method: Method) -> &'static Self {
+    pub fn for_method(method: Method) -> &'static Self {
         // The order is that of `Method::ALL`, which is that of the variants; a test holds it.
         &METHODS[method as usize]
     }
@@ -270,7 +272,10 @@ impl Entry {
 
     /// Whether it sees of the force only its derivatives at the equilibrium.
     pub fn expands(&self) -> bool {
-        matches!(self.sees, Sees::Derivatives | Sees::TaylorPolynomial)
+        matches!(
+            self.sees,
+            ForceRepresentation::Derivatives | ForceRepresentation::TaylorPolynomial
+        )
     }
 }
 
@@ -307,7 +312,7 @@ mod tests {
     #[test]
     fn every_method_has_its_row() {
         for method in Method::ALL {
-            assert_eq!(Entry::of(method).method, method);
+            assert_eq!(MethodEntry::for_method(method).method, method);
         }
         assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
         assert_eq!(

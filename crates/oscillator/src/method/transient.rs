@@ -48,31 +48,31 @@ pub(crate) fn from_release(
     };
     let start = named(&format!("{FIRST_HARMONIC}0"), &mut release.amplitude);
     let phase = named("psi0", &mut release.phase);
-    let found = closed(a, rate, phase_rate, [&start, &phase]);
+    let found = closed_form(a, rate, phase_rate, [&start, &phase]);
     (definitions, found)
 }
 
 /// The amplitude and the phase from their values at the start, the first of which is a symbol;
-/// `None` where the amplitude has no closed form here.
-fn closed(
+/// `None` if the amplitude has no closed form here.
+fn closed_form(
     a: Symbol,
     rate: &Expr,
     phase_rate: &Expr,
     [start, begins]: [&Expr; 2],
 ) -> Option<Transient> {
-    let law = PowerLaw::of(rate, a)?;
+    let law = PowerLaw::from_rate(rate, a)?;
     let (amplitude, ends) = law.solved(start)?;
     let phase = law.phase(phase_rate, a, &amplitude, start);
     Some(Transient {
         start: start.as_symbol()?,
-        amplitude: tidy(&amplitude)?,
-        phase: phase.and_then(|phase| tidy(&(begins + &phase))),
+        amplitude: merge_exponentials(&amplitude)?,
+        phase: phase.and_then(|phase| merge_exponentials(&(begins + &phase))),
         ends,
     })
 }
 
 /// Powers of exponentials as exponentials: `exp(u)^2 = exp(2 u)`.
-fn tidy(expression: &Expr) -> Option<Expr> {
+fn merge_exponentials(expression: &Expr) -> Option<Expr> {
     let tidied: Result<Expr, ExprError> = expression.fold(|expr, children: &[Expr]| {
         let whole = expr.with_children(children)?;
         let (base, exponent) = whole.base_and_exponent();
@@ -88,11 +88,11 @@ fn tidy(expression: &Expr) -> Option<Expr> {
 }
 
 /// The amplitudes that stay, each with its stability: the one at which the two terms of a rate
-/// balance, where letters or numbers make it positive, or those of a rate that is no sum of powers,
-/// found by numbers where only a factor and a scale of the amplitude are letters.
+/// balance, where letters or numbers make it positive, or those of a rate that is not a sum of
+/// powers, found by numbers where only a factor and a scale of the amplitude are letters.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
-        let law = PowerLaw::of(rate, a)?;
+        let law = PowerLaw::from_rate(rate, a)?;
         let [(p, c), (q, d)] = law.0.as_slice() else {
             return None;
         };
@@ -107,14 +107,14 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
             return None;
         }
         let amplitude = Expr::power(&size, &Expr::divide(&Expr::one(), &power).ok()?).ok()?;
-        // Where what comes first feeds the motion, what takes over drains it.
+        // If the leading term feeds the motion, the term that overtakes it drains it.
         let feeds = if is_sum { -other } else { lower.clone() };
         let (number, factors) = feeds.factors();
         let sign = Expr::number(number.signum());
         let letters = factors.iter().filter(|factor| !factor.symbols().is_empty()).cloned();
         Some(LeadingCycle { amplitude, attracts_where: Some(sign * Expr::product(letters)) })
     };
-    match PowerLaw::of(rate, a) {
+    match PowerLaw::from_rate(rate, a) {
         Some(_) => balance().into_iter().collect(),
         None => steady_by_numbers(a, rate).unwrap_or_default(),
     }
@@ -141,7 +141,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
     });
     std::iter::once(Expr::one()).chain(of_letters).find_map(|scale| {
         let scaled = rate.substitute(a, &(&scale * &Expr::from(a))).ok()?.expand().ok()?;
-        // What every term has in common with the first.
+        // Factors that every term has in common with the first.
         let (number, factors) = scaled.terms().first()?.factors();
         let (outside, _): (Vec<Expr>, Vec<Expr>) =
             factors.iter().cloned().partition(|factor| !factor.contains(a));
@@ -178,8 +178,8 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
 struct PowerLaw(Vec<(Expr, Expr)>);
 
 impl PowerLaw {
-    /// `None` where the amplitude stands elsewhere.
-    fn of(rate: &Expr, a: Symbol) -> Option<Self> {
+    /// `None` if the amplitude stands elsewhere.
+    fn from_rate(rate: &Expr, a: Symbol) -> Option<Self> {
         let mut law: Vec<(Expr, Expr)> = Vec::new();
         for term in rate.expand().ok()?.terms() {
             let (number, factors) = term.factors();
@@ -219,7 +219,7 @@ impl PowerLaw {
 
     /// `psi(t)`.
     fn phase(&self, rate: &Expr, a: Symbol, amplitude: &Expr, start: &Expr) -> Option<Expr> {
-        let parts = Self::of(rate, a)?;
+        let parts = Self::from_rate(rate, a)?;
         let mut sum = Vec::new();
         for (k, coefficient) in &parts.0 {
             let integral = self.integral(k, amplitude, start)?;

@@ -25,7 +25,7 @@ use super::one_term::{
     conservative_force, first_order_only, integral_law, note_even_part_last, solve_by_integral,
 };
 use super::{Options, Refusal};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
@@ -49,7 +49,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let defect =
         force.substitute(oscillator.coordinate, &along)? - omega.integer_power(2)? * &along;
     let multiplier = Expr::divide(&(&omega * &(s - &t)).sin()?, &omega)?;
-    let functional = Formula::Integral {
+    let functional = DerivationFormula::Integral {
         factor: Expr::one(),
         from: Expr::zero(),
         to: t.clone(),
@@ -57,8 +57,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         variable,
     };
     solution.derivation = vec![
-        Line::equation(start.clone(), &amplitude * &(&omega * &t).cos()?).because("first iterate"),
-        Line::equation(first - start, functional).because("correction functional"),
+        DerivationLine::equation(start.clone(), &amplitude * &(&omega * &t).cos()?)
+            .because("first iterate"),
+        DerivationLine::equation(first - start, functional).because("correction functional"),
     ];
     solution.derivation.extend(integral_law(oscillator, &force, &solution)?);
     note_even_part_last(&mut solution);

@@ -75,7 +75,7 @@ fn side(corner: &Expr, own: [Symbol; 2]) -> Result<Option<CornerSide>, ExprError
     };
     let mut at_rest = argument;
     for name in own {
-        // Where the argument has no value at rest it has no side either.
+        // If the argument has no value at rest, it has no side either.
         match at_rest.substitute(name, &Expr::zero()) {
             Ok(there) => at_rest = there,
             Err(_) => return Ok(None),

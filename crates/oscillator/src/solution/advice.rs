@@ -1,5 +1,5 @@
-//! What to try instead of what was refused. The library speaks of options; a program puts its own
-//! spelling in their place.
+//! Advice after a refusal. The library names options; a program puts its own spelling in their
+//! place.
 
 use std::fmt;
 

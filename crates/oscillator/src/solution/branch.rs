@@ -13,9 +13,9 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
-//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
-//! pass, there is no branch from rest. The root is then followed at one amplitude from that of the
-//! first order, all beyond which is made small and let in again:
+//! If omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass,
+//! there is no branch from rest. The root is then followed at one amplitude from that of the first
+//! order, by a homotopy in d that turns the higher orders on:
 //!
 //! ```text
 //! F(z, d) = c_n z^n + c_(n-1) z^(n-1) + d c_(n-2) z^(n-2) + d^2 c_(n-3) z^(n-3) + ... = 0,   d = 0 ... 1
@@ -29,7 +29,7 @@
 use crate::exact::scaled::Scaled;
 
 /// A term `coefficient A^amplitude z^frequency`.
-pub(super) struct Term {
+pub(super) struct BranchTerm {
     pub(super) coefficient: Scaled,
     pub(super) amplitude: i32,
     pub(super) frequency: i32,
@@ -53,20 +53,20 @@ pub enum Branch {
 }
 
 /// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively;
-/// `None` where it has no start, or a value is not finite.
-pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
+/// `None` if it has no start, or a value is not finite.
+pub(super) fn follow(terms: &[BranchTerm], amplitude: f64, precision: f64) -> Option<Branch> {
     if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
         return None;
     }
     if rest_is_unstable(terms) {
         let highest = terms.iter().map(|term| term.frequency).max()?;
         let size = Scaled::new(amplitude);
-        let graded = |term: &Term| Term {
+        let graded = |term: &BranchTerm| BranchTerm {
             coefficient: term.coefficient.product(size.power(term.amplitude)),
             amplitude: i32::max(highest - 1 - term.frequency, 0),
             frequency: term.frequency,
         };
-        let graded: Vec<Term> = terms.iter().map(graded).collect();
+        let graded: Vec<BranchTerm> = terms.iter().map(graded).collect();
         return Some(match follow_up(&graded, 1.0, precision) {
             Some(found @ Branch::At { .. }) => found,
             _ => Branch::NoneOfFirstOrder,
@@ -78,7 +78,7 @@ pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<B
 /// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
 /// pass. In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one
 /// term.
-fn rest_is_unstable(terms: &[Term]) -> bool {
+fn rest_is_unstable(terms: &[BranchTerm]) -> bool {
     let highest = terms.iter().map(|term| term.frequency).max().unwrap_or(0);
     let lowest = |frequency: i32| {
         let terms = || {
@@ -96,13 +96,14 @@ fn rest_is_unstable(terms: &[Term]) -> bool {
 }
 
 /// As [`follow`], from small amplitudes.
-fn follow_up(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
+fn follow_up(terms: &[BranchTerm], amplitude: f64, precision: f64) -> Option<Branch> {
     const LONGEST: f64 = 0.5;
     const SHORTEST: f64 = 1e-11;
     if !amplitude.is_finite() {
         return None;
     }
-    let relation = Relation { highest: terms.iter().map(|term| term.frequency).max()?, terms };
+    let relation =
+        FrequencyRelation { highest: terms.iter().map(|term| term.frequency).max()?, terms };
     let target = Scaled::new(amplitude);
     let (mut at, mut z) = relation.start(target)?;
     let (mut length, goal) = (LONGEST / 8.0, target.logarithm());
@@ -136,16 +137,16 @@ fn follow_up(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
     (squared.is_finite() && rounding.is_finite()).then_some(Branch::At { squared, rounding })
 }
 
-struct Relation<'a> {
-    terms: &'a [Term],
+struct FrequencyRelation<'a> {
+    terms: &'a [BranchTerm],
     highest: i32,
 }
 
-impl Relation<'_> {
+impl FrequencyRelation<'_> {
     /// Every term at an amplitude and `z = u 2^k`, as what stands before `u^q`, all in one unit in
     /// which the largest is of order one.
     fn values(&self, amplitude: Scaled, k: i64) -> Vec<f64> {
-        let value = |term: &Term| {
+        let value = |term: &BranchTerm| {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
             Scaled { exponent: value.exponent + k * i64::from(term.frequency), ..value }
         };
@@ -172,23 +173,27 @@ impl Relation<'_> {
     /// An amplitude, not above the one asked for, at which the lowest terms alone decide, and the
     /// root there.
     fn start(&self, amplitude: Scaled) -> Option<(Scaled, Scaled)> {
-        /// What the other terms may add: of the isolation of the root by Rouche's theorem nothing
-        /// is lost.
+        /// Relative size of all other terms together, so small that the isolation of the root by
+        /// Rouche's theorem is kept.
         const SMALL: f64 = 1e-3;
         const HALVINGS: usize = 10_000;
-        let exponent = |term: &Term| {
+        let exponent = |term: &BranchTerm| {
             let below = self.highest - term.frequency;
             (below > 0).then(|| f64::from(term.amplitude) / f64::from(below))
         };
         let used = self.terms.iter().filter(|term| term.coefficient.mantissa != 0.0);
         let growth = used.filter_map(exponent).fold(f64::INFINITY, f64::min);
-        let decides = |term: &Term| match exponent(term) {
+        let decides = |term: &BranchTerm| match exponent(term) {
             Some(own) => own == growth,
             None => term.amplitude == 0,
         };
-        let lowest: Vec<Term> =
-            self.terms.iter().filter(|term| decides(term)).map(|term| Term { ..*term }).collect();
-        let lowest = Relation { terms: &lowest, highest: self.highest };
+        let lowest: Vec<BranchTerm> = self
+            .terms
+            .iter()
+            .filter(|term| decides(term))
+            .map(|term| BranchTerm { ..*term })
+            .collect();
+        let lowest = FrequencyRelation { terms: &lowest, highest: self.highest };
         let mut at = amplitude;
         for _ in 0..HALVINGS {
             let z = lowest.largest_root(at)?;
@@ -214,7 +219,7 @@ impl Relation<'_> {
 
     /// The largest root, by Newton's iteration from above all roots.
     fn largest_root(&self, amplitude: Scaled) -> Option<Scaled> {
-        let size = |term: &Term| {
+        let size = |term: &BranchTerm| {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
             value.logarithm()
         };
@@ -316,7 +321,7 @@ impl Relation<'_> {
         way <= SHARE * f64::min(0.5 / gamma, 1.0)
     }
 
-    /// How far a root moves, relatively, where every term is changed by `precision` of itself.
+    /// Relative change of a root if every term is changed by `precision` of itself.
     fn rounding(&self, amplitude: Scaled, z: Scaled, precision: f64) -> f64 {
         let values = self.values(amplitude, z.exponent);
         let (mut sizes, mut slope) = (0.0, 0.0);
@@ -335,8 +340,8 @@ mod tests {
 
     /// `(z - 1 - s)(z - s/4)(z - s/9)` with `s = A^2`: the branch of the linear frequency is 1 + s,
     /// and the others pass close to what it was at smaller amplitudes.
-    fn three_branches() -> Vec<Term> {
-        let term = |coefficient: f64, amplitude, frequency| Term {
+    fn three_branches() -> Vec<BranchTerm> {
+        let term = |coefficient: f64, amplitude, frequency| BranchTerm {
             coefficient: Scaled::new(coefficient),
             amplitude,
             frequency,
@@ -358,7 +363,7 @@ mod tests {
     /// as it is changed by `d`.
     #[test]
     fn the_branch_above_an_unstable_rest_continues_the_first_order() {
-        let term = |coefficient: f64, amplitude, frequency| Term {
+        let term = |coefficient: f64, amplitude, frequency| BranchTerm {
             coefficient: Scaled::new(coefficient),
             amplitude,
             frequency,
@@ -404,7 +409,7 @@ mod tests {
     #[test]
     fn the_end_of_a_branch_is_found() {
         // z^2 - z + A^2 = 0 turns back at A = 1/2.
-        let term = |coefficient: f64, amplitude, frequency| Term {
+        let term = |coefficient: f64, amplitude, frequency| BranchTerm {
             coefficient: Scaled::new(coefficient),
             amplitude,
             frequency,
@@ -430,7 +435,7 @@ mod tests {
         // sqrt(D)/2 come close and part again.
         let l = |s: f64| 0.5 - 57.0 / 80.0 * s + 117.0 / 320.0 * s * s;
         let d = [1.0, -57.0 / 20.0, 2019.0 / 640.0, -24453.0 / 16000.0, 77571.0 / 256000.0];
-        let term = |coefficient: f64, amplitude, frequency| Term {
+        let term = |coefficient: f64, amplitude, frequency| BranchTerm {
             coefficient: Scaled::new(coefficient),
             amplitude,
             frequency,
@@ -461,7 +466,7 @@ mod tests {
         // z - (1 - s + s^2/3) by its terms, s = A^2: the root itself, against coefficients changed
         // in the twelfth digit.
         let law = |factor: f64| {
-            let term = |coefficient: f64, amplitude, frequency| Term {
+            let term = |coefficient: f64, amplitude, frequency| BranchTerm {
                 coefficient: Scaled::new(coefficient),
                 amplitude,
                 frequency,

@@ -1,4 +1,4 @@
-//! How far the series of omega^2 converges, by its own coefficients.
+//! Convergence of the series of omega^2, by its own coefficients.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -12,11 +12,11 @@ use crate::expr::Expr;
 use crate::series::singularity::{Estimate, Singularity};
 use crate::symbol::Symbol;
 
-/// What the coefficients of a long series say of the function that it is of.
+/// The singularity that the coefficients of a long series show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// What the series runs in: a power of the small parameter times whatever enters in step with
-    /// it, `mu^2`, `eps*A^2`.
+    /// The variable of the series: a power of the small parameter times the symbols that enter in
+    /// step with it, `mu^2`, `eps*A^2`.
     pub variable: Monomial,
     /// The highest power of it in the series.
     pub highest: usize,
@@ -44,7 +44,7 @@ impl Convergence {
     }
 
     /// The singularity, or the pair: `mu^2 = 3.42 e^(+-1.79i)`.
-    fn place(&self) -> String {
+    fn singularity_in_words(&self) -> String {
         let Singularity { radius, angle, .. } = &self.nearest;
         let (variable, radius) = (self.variable_in_words(), radius.to_string());
         match self.nearest.sign() {
@@ -54,7 +54,7 @@ impl Convergence {
         }
     }
 
-    /// What kind of singularity it is.
+    /// The kind of singularity in words.
     fn kind(&self) -> String {
         let Some(exponent) = &self.nearest.exponent else {
             return String::new();
@@ -89,7 +89,7 @@ impl fmt::Display for Convergence {
             "the series converges for |{name}| < {}: by {} coefficients the nearest singularity is at {}{}; error about {}",
             size,
             self.highest,
-            self.place(),
+            self.singularity_in_words(),
             self.kind(),
             significant(self.nearest.radius.error, 1)
         )

@@ -9,20 +9,20 @@ use std::fmt;
 /// use lindstedt::solution::Degrees;
 ///
 /// assert_eq!(Degrees::Quotient(2, 1).to_string(), "[2/1]");
-/// assert_eq!(Degrees::of(&[3, 2]), Some(Degrees::Quotient(3, 2)));
-/// assert_eq!(Degrees::of(&[3]), None);
+/// assert_eq!(Degrees::from_list(&[3, 2]), Some(Degrees::Quotient(3, 2)));
+/// assert_eq!(Degrees::from_list(&[3]), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Degrees {
-    /// Of numerator and denominator.
+    /// The degrees of numerator and denominator.
     Quotient(u32, u32),
-    /// Of the coefficients P, Q and R of `P + Q f + R f^2`.
+    /// The degrees of the coefficients P, Q and R of `P + Q f + R f^2`.
     Quadratic(u32, u32, u32),
 }
 
 impl Degrees {
     /// The degrees in a list; `None` for a list that no approximant has.
-    pub fn of(list: &[u32]) -> Option<Self> {
+    pub fn from_list(list: &[u32]) -> Option<Self> {
         match *list {
             [numerator, denominator] => Some(Self::Quotient(numerator, denominator)),
             [p, q, r] => Some(Self::Quadratic(p, q, r)),
@@ -38,7 +38,7 @@ impl Degrees {
         }
     }
 
-    /// What they add up to.
+    /// The sum of the degrees.
     pub fn sum(self) -> u32 {
         self.list().into_iter().fold(0, u32::saturating_add)
     }

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 
-/// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of
-/// the equation, the amplitude symbol and the symbols of the definitions of the solution.
+/// The law of frequency and amplitude. Polynomials and expressions are in the parameters of the
+/// equation, the amplitude symbol and the symbols of the definitions of the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// omega^2 as a polynomial, and omega itself beside it where the method expands both.
@@ -30,12 +30,12 @@ pub enum Law {
         /// The relation solved for omega^2.
         root: Option<Root>,
     },
-    /// An expression that is no polynomial.
+    /// An expression that is not a polynomial.
     Closed(ClosedForm),
     /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`; the lines say which.
-    Quadrature(Vec<Line>),
+    Quadrature(Vec<DerivationLine>),
     /// The equations of a balance of several harmonics, solved by numbers.
-    System(System),
+    System(AlgebraicSystem),
 }
 
 /// A relation solved for omega^2.
@@ -47,7 +47,7 @@ pub enum Root {
     Closed(ClosedForm),
 }
 
-/// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
+/// A law that is not a polynomial: `omega^2 = 2*J1(A)/A`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedForm {
     /// Whether the value is omega^2; otherwise omega.
@@ -58,8 +58,8 @@ pub struct ClosedForm {
 
 /// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
-    /// What is solved for: `omega` and the coefficients of the motion.
+pub struct AlgebraicSystem {
+    /// The unknowns: `omega` and the coefficients of the motion.
     pub unknowns: Vec<Symbol>,
     /// Each is equal to zero.
     pub equations: Vec<Expr>,
@@ -97,7 +97,7 @@ impl Law {
         }
     }
 
-    /// The expression for omega or omega^2 that is no polynomial.
+    /// The expression for omega or omega^2 that is not a polynomial.
     pub fn closed_form(&self) -> Option<&ClosedForm> {
         match self {
             Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
@@ -108,7 +108,7 @@ impl Law {
     }
 
     /// The lines of a law that only numbers solve.
-    pub fn quadrature(&self) -> Option<&[Line]> {
+    pub fn quadrature(&self) -> Option<&[DerivationLine]> {
         match self {
             Self::Quadrature(lines) => Some(lines),
             _ => None,
@@ -116,7 +116,7 @@ impl Law {
     }
 
     /// The equations of a balance.
-    pub fn system(&self) -> Option<&System> {
+    pub fn system(&self) -> Option<&AlgebraicSystem> {
         match self {
             Self::System(system) => Some(system),
             _ => None,
@@ -165,7 +165,7 @@ impl Law {
             Self::Quadrature(lines) => {
                 Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect())
             }
-            Self::System(system) => Self::System(System {
+            Self::System(system) => Self::System(AlgebraicSystem {
                 equations: system.equations.iter().map(changed).collect(),
                 ..system
             }),
@@ -197,33 +197,33 @@ impl Law {
 
 /// A law in one of the forms in which reports show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shown<'a> {
+pub enum DisplayedLaw<'a> {
     /// omega^2 is this polynomial.
     Squared(&'a Polynomial),
     /// omega is this polynomial.
     Frequency(&'a Polynomial),
     /// This polynomial in omega and the amplitude is zero.
     Relation(&'a Polynomial),
-    /// An expression that is no polynomial.
+    /// An expression that is not a polynomial.
     Closed(&'a ClosedForm),
     /// Integrals.
-    Quadrature(&'a [Line]),
+    Quadrature(&'a [DerivationLine]),
     /// Equations for numbers.
-    System(&'a System),
+    System(&'a AlgebraicSystem),
 }
 
 impl Law {
     /// All forms of it that a report of one answer shows, in their order. A relation that is solved
     /// by a polynomial is left out.
-    pub fn shown(&self) -> Vec<Shown<'_>> {
+    pub fn display_forms(&self) -> Vec<DisplayedLaw<'_>> {
         let shown = self.in_one_line();
         let beside = match self {
-            Self::Series { frequency, .. } => frequency.as_ref().map(Shown::Frequency),
+            Self::Series { frequency, .. } => frequency.as_ref().map(DisplayedLaw::Frequency),
             _ => None,
         };
         let before = match self {
             Self::Relation { relation, root: Some(Root::Closed(_)) } => {
-                Some(Shown::Relation(relation))
+                Some(DisplayedLaw::Relation(relation))
             }
             _ => None,
         };
@@ -231,24 +231,24 @@ impl Law {
     }
 
     /// The form that stands for it where there is room for one.
-    pub fn in_one_line(&self) -> Shown<'_> {
+    pub fn in_one_line(&self) -> DisplayedLaw<'_> {
         match self {
             Self::Series { squared, .. }
             | Self::Relation { root: Some(Root::Polynomial(squared)), .. } => {
-                Shown::Squared(squared)
+                DisplayedLaw::Squared(squared)
             }
-            Self::Frequency(frequency) => Shown::Frequency(frequency),
+            Self::Frequency(frequency) => DisplayedLaw::Frequency(frequency),
             Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
-                Shown::Closed(form)
+                DisplayedLaw::Closed(form)
             }
-            Self::Relation { relation, root: None } => Shown::Relation(relation),
-            Self::Quadrature(lines) => Shown::Quadrature(lines),
-            Self::System(system) => Shown::System(system),
+            Self::Relation { relation, root: None } => DisplayedLaw::Relation(relation),
+            Self::Quadrature(lines) => DisplayedLaw::Quadrature(lines),
+            Self::System(system) => DisplayedLaw::System(system),
         }
     }
 }
 
-impl Shown<'_> {
+impl DisplayedLaw<'_> {
     /// The symbols of a formula, those of its integrals included; of a system of equations none.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
@@ -256,7 +256,7 @@ impl Shown<'_> {
                 law.symbols().into_iter().collect()
             }
             Self::Closed(form) => form.value.symbols(),
-            Self::Quadrature(lines) => lines.iter().flat_map(Line::symbols).collect(),
+            Self::Quadrature(lines) => lines.iter().flat_map(DerivationLine::symbols).collect(),
             Self::System(_) => BTreeSet::new(),
         }
     }

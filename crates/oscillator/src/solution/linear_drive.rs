@@ -17,12 +17,12 @@ pub enum LinearDrive {
         /// Its amplitude, where one drive alone acts.
         amplitude: Option<Expr>,
     },
-    /// Nothing damps, and the drive has the linear frequency.
+    /// There is no damping, and the drive has the linear frequency.
     Grows {
         /// The drive.
         term: Expr,
     },
-    /// Nothing damps, and the drive may have the linear frequency for some values.
+    /// There is no damping, and the drive has the linear frequency for some values.
     Detuned {
         /// The square of its frequency.
         square: Expr,

@@ -39,7 +39,7 @@ pub enum Method {
     Exact,
 }
 
-/// What the order of an answer counts.
+/// The meaning of the order of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counts {
     /// Powers of the small parameter.
@@ -53,9 +53,9 @@ pub enum Counts {
     Passes,
     /// Harmonics.
     Harmonics,
-    /// The degrees of so many polynomials.
+    /// The degrees of this many polynomials.
     Degrees(usize),
-    /// Nothing: there is one order.
+    /// There is only one order.
     Nothing,
 }
 
@@ -127,7 +127,7 @@ impl Method {
         self.words().1
     }
 
-    /// What the order of its answers counts.
+    /// The meaning of the order of its answers.
     pub fn counts(self) -> Counts {
         self.words().2
     }

@@ -35,17 +35,17 @@ pub struct Modulation {
     pub phase_rate: Expr,
     /// Parameters that are small together with the small parameter of the solution.
     pub small_with: Vec<Symbol>,
-    /// What is in resonance with what; `None` for a free motion.
+    /// The resonance of drive and motion; `None` for a free motion.
     pub resonance: Option<Resonance>,
-    /// Where a motion released at rest from `x = A` begins; `None` for a driven motion.
+    /// Initial amplitude and phase of a motion released from rest at `x = A`; `None` for a driven
+    /// motion.
     pub release: Option<Release>,
     /// The motion from a start in closed form, where there is one.
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first, each with its stability, where
     /// they can be written down.
     pub steady: Vec<LeadingCycle>,
-    /// Where the displacement of the solution is that on a limit cycle: the motion in the
-    /// amplitude.
+    /// The motion in the amplitude, if the displacement of the solution is that on a limit cycle.
     pub motion: Option<FourierSeries<Polynomials>>,
 }
 
@@ -82,13 +82,13 @@ pub struct Transient {
     pub amplitude: Expr,
     /// `psi(t)`, where that is closed as well.
     pub phase: Option<Expr>,
-    /// The time from which on the amplitude is zero, or at which it grows without bound; `None`
-    /// where the formula holds for all times.
+    /// The time from which on the amplitude is zero, or at which it grows without bound; `None` if
+    /// the formula holds for all times.
     pub ends: Option<Expr>,
 }
 
 impl Release {
-    /// To leading order: `a(0) = A`, `psi(0) = 0`.
+    /// The initial values to leading order: `a(0) = A`, `psi(0) = 0`.
     pub fn at_start() -> Self {
         Self { amplitude: Expr::from(AmplitudeConvention::Initial.symbol()), phase: Expr::zero() }
     }
@@ -133,7 +133,7 @@ impl Solution {
     }
 
     /// The periodic motion at an amplitude that stays: the smallest that attracts for small
-    /// positive parameters, else the smallest; `None` where none is known.
+    /// positive parameters, else the smallest; `None` if none is known.
     pub fn on_cycle(&self) -> Option<Self> {
         let modulation =
             self.modulation.as_ref().filter(|modulation| modulation.resonance.is_none())?;
@@ -144,7 +144,7 @@ impl Solution {
         let number = modulation.steady.iter().position(attracts).unwrap_or(0);
         let amplitude = modulation.steady.get(number)?.amplitude.clone();
         let mut periodic = self.clone();
-        // An amplitude that is no polynomial has a name.
+        // An amplitude that is not a polynomial has a name.
         let unit = match amplitude.to_polynomial(&mut |_| None).ok()? {
             Some(unit) => unit,
             None => {
@@ -173,7 +173,7 @@ impl Solution {
             small_with: modulation.small_with.clone(),
         });
         periodic.modulation = None;
-        // What tells where a motion began is nothing of the cycle.
+        // Definitions that contain the initial amplitude have no meaning on the cycle.
         let start = AmplitudeConvention::Initial.symbol();
         periodic.definitions.retain(|definition| !definition.meaning.contains(start));
         Some(periodic)

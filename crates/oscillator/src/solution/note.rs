@@ -1,5 +1,4 @@
-//! What an answer says of itself beside its formulas: how it was cut, what was left out, where it
-//! holds.
+//! Notes on an answer beside its formulas: its truncation, the parts left out, its validity.
 
 use std::fmt;
 
@@ -18,9 +17,9 @@ use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 #[non_exhaustive]
 pub enum Note {
     /// A motion of one term, or a balance of one harmonic: exact for what is linear.
-    FirstStep(FirstStep),
+    FirstStep(ExactFirstStep),
     /// A one-term motion whose equation is met at one instant.
-    Collocated(Instant),
+    Collocated(CollocationInstant),
     /// A letter that the answer writes otherwise than usual, since the equation has the usual one
     /// for something of its own.
     OtherLetter {
@@ -36,15 +35,15 @@ pub enum Note {
     Misleading {
         /// The parameter.
         name: Symbol,
-        /// How that would be written.
+        /// The form to write instead.
         instead: String,
     },
     /// The slope of the force at half the amplitude.
     SlopeAtHalf,
     /// The part of the force that a motion of one term leaves out.
     EvenPartLeftOut(Expr),
-    /// How an expansion was cut.
-    Cut(Cut),
+    /// The truncation of the expansion.
+    Cut(Truncation),
     /// The motion is left at its leading term.
     MotionAtLeadingOrder {
         /// The small parameter.
@@ -64,7 +63,7 @@ pub enum Note {
     },
     /// The harmonics of a balance.
     Balanced {
-        /// Those that are kept.
+        /// The harmonics that are kept.
         harmonics: Vec<usize>,
         /// Whether numbers alone solve it.
         by_numbers: bool,
@@ -80,10 +79,10 @@ pub enum Note {
         at_rest: Expr,
         /// `f(x)/x` at the turning point.
         at_turning: Expr,
-        /// For which amplitudes.
+        /// The amplitudes for which it holds.
         range: BoundsHold,
     },
-    /// How far a quotient agrees with the series that it comes from.
+    /// The order through which a quotient agrees with its series.
     AgreesThrough {
         /// The degrees.
         degrees: Degrees,
@@ -105,8 +104,8 @@ pub enum Note {
     },
     /// The real zeros of the denominator of a quotient.
     Poles(Poles),
-    /// How the root of a quadratic equation goes from rest on, where its formula alone does not say
-    /// so.
+    /// The continuation from rest of the root of a quadratic equation, if the formula alone does
+    /// not determine it.
     Followed(FollowedRoot),
     /// A resummation has the motion of the series to its first correction.
     MotionOfSeries,
@@ -131,12 +130,12 @@ pub enum Note {
         resonance: (u32, u32),
         /// Whether the drive is in a coefficient.
         parametric: bool,
-        /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums
-        /// and differences of them are.
+        /// Ratio to omega0 of the drive in resonance among several; `None` if only sums and
+        /// differences of them are in resonance.
         nearest: Option<(u32, u32)>,
-        /// What counts as small.
+        /// The small quantities.
         small: Vec<Expr>,
-        /// As which power of the small parameter.
+        /// The power of the small parameter as which it counts.
         power: usize,
     },
     /// A drive against dry friction: below the least force there is no steady motion.
@@ -146,18 +145,18 @@ pub enum Note {
         /// The least force.
         least: Expr,
     },
-    /// Where the steady amplitudes come from, where they are not written down.
+    /// The equation of the steady amplitudes, if they are not written down.
     SteadyAmplitudes {
         /// The square of the amplitude.
         square: Symbol,
-        /// What it is a root of.
+        /// The polynomial of which it is a root.
         polynomial: Polynomial,
-        /// Why they are not written down.
+        /// The reason why they are not written down.
         reason: &'static str,
     },
     /// Viscous damping of a motion in a force that is not linear.
     Action {
-        /// What stands before the velocity.
+        /// The coefficient of the velocity.
         rate: Expr,
         /// Whether it is the pendulum, whose action is known.
         pendulum: bool,
@@ -166,7 +165,7 @@ pub enum Note {
     HalfSwings {
         /// The potential energy at a turning point less that at the next.
         lost: Expr,
-        /// What stands before the sign of the velocity.
+        /// The coefficient of the sign of the velocity.
         size: Expr,
     },
     /// An average along the true motion without damping, whose shape is the same at every
@@ -206,7 +205,7 @@ pub enum Note {
     InsteadOf {
         /// The usual one.
         usual: Method,
-        /// Why it does not answer.
+        /// The reason why it does not answer.
         reason: String,
     },
     /// An expansion in the amplitude where letters might have been small, for what quadratic terms
@@ -247,19 +246,19 @@ pub enum Note {
     Stated(String),
 }
 
-/// How an expansion was cut.
+/// The truncation of an expansion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cut {
+pub enum Truncation {
     /// After a power of what is small.
     Truncated {
-        /// What is small, together.
+        /// The small parameters, counted together.
         small: Vec<Symbol>,
         /// The highest power kept.
         order: u32,
         /// The value of a small parameter that marks terms of an equation without one.
         marks: Option<Expr>,
     },
-    /// The first order of a force that is no polynomial.
+    /// The first order of a force that is not a polynomial.
     FirstOrderOnly {
         /// The small parameter.
         small: Symbol,
@@ -270,19 +269,19 @@ pub enum Cut {
         bookkeeping: Symbol,
         /// The highest power kept.
         order: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
-        /// starts at the first order.
+        /// The linear frequency, where the root starts; `None` if rest is unstable, and it starts
+        /// at the first order.
         linear_frequency: Option<Symbol>,
     },
-    /// A relation after so many passes of an iteration.
+    /// A relation after this many passes of an iteration.
     Passes {
-        /// How many.
+        /// Number of passes.
         passes: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
-        /// starts at the first order.
+        /// The linear frequency, where the root starts; `None` if rest is unstable, and it starts
+        /// at the first order.
         linear_frequency: Option<Symbol>,
     },
-    /// After so many corrections of the first frequency.
+    /// After this many corrections of the first frequency.
     Corrections {
         /// One more than the number of corrections.
         order: u32,
@@ -291,9 +290,9 @@ pub enum Cut {
     },
 }
 
-/// What a first step is exact for.
+/// The equations for which a first step is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FirstStep {
+pub enum ExactFirstStep {
     /// One term in a force.
     TermOfForce,
     /// One term in an equation whose inertia depends on the position.
@@ -302,20 +301,20 @@ pub enum FirstStep {
     Harmonic,
 }
 
-/// Where a motion of one term meets its equation.
+/// The instant at which a motion of one term satisfies its equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instant {
-    /// At an eighth of the period.
+pub enum CollocationInstant {
+    /// An eighth of the period.
     EighthOfPeriod,
-    /// Where the square of the cosine is three quarters.
+    /// The square of the cosine is three quarters.
     CosineSquared,
 }
 
-/// For which amplitudes omega^2 lies between the values of `f(x)/x` at rest and at the turning
+/// The amplitudes for which omega^2 lies between the values of `f(x)/x` at rest and at the turning
 /// point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BoundsHold {
-    /// For all.
+    /// All amplitudes.
     Always,
     /// As long as the slope of `f(x)/x` keeps its sign.
     While {
@@ -326,14 +325,14 @@ pub enum BoundsHold {
         /// Parameters that need only be positive for that.
         positive: Option<Vec<Symbol>>,
     },
-    /// Up to the place where `f(x)/x` turns back.
+    /// Amplitudes up to the extremum of `f(x)/x`.
     UpTo(f64),
 }
 
 /// The real zeros of a denominator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Poles {
-    /// It depends on several symbols.
+    /// The range depends on several symbols.
     Unknown,
     /// These values of one product of symbols; none where there are none.
     At {
@@ -344,36 +343,36 @@ pub enum Poles {
     },
 }
 
-/// How a root of a quadratic equation is followed from rest.
+/// The continuation of a root of a quadratic equation from rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowedRoot {
-    /// What the coefficients of the equation depend on.
+    /// The variable of the coefficients of the equation.
     pub variable: Expr,
-    /// What stands before the square root.
+    /// The symbol in front of the square root.
     pub sign: Symbol,
-    /// Where both roots cross, the nearest first.
+    /// Points at which both roots cross, the nearest first.
     pub crossings: Vec<f64>,
-    /// Where it ends, and why.
+    /// Points at which the root ends, and why.
     pub ends: Vec<(f64, RootEnd)>,
 }
 
-/// Why a root ends.
+/// The reason why a root ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RootEnd {
-    /// It meets the other root.
+    /// The root meets the other one.
     Meets,
-    /// It is infinite.
+    /// The root is infinite.
     Infinite,
 }
 
-/// How an exact law is given.
+/// The form of an exact law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactBy {
     /// In closed form.
     ClosedForm,
-    /// By quadrature of the energy, where the inertia depends on the position.
+    /// Quadrature of the energy with a position-dependent inertia.
     EnergyQuadrature,
-    /// By quadrature, because nothing else is known.
+    /// Quadrature, for want of a closed form.
     Quadrature,
     /// As the motion of a linear equation.
     Linear,
@@ -382,20 +381,20 @@ pub enum ExactBy {
 /// A corner of a force whose side at rest the sign of a letter decides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerSide {
-    /// What is taken to be positive.
+    /// The letter or expression that is taken to be positive.
     pub positive: Expr,
     /// The function with the corner: `max(0, d + x)`.
     pub corner: Expr,
-    /// What it is near rest.
+    /// The branch of the function near rest.
     pub taken: Expr,
 }
 
-/// An equilibrium as people read it.
+/// An equilibrium in the usual form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Position {
     /// In closed form.
     Exact(Expr),
-    /// By its number.
+    /// A numerical value.
     Number(f64),
     /// In closed form, where its value depends on parameters.
     WhereReal(Expr),
@@ -408,9 +407,9 @@ pub struct CrossWell {
     pub coordinate: Symbol,
     /// The unstable equilibrium.
     pub equilibrium: Expr,
-    /// The amplitude that they exceed; `None` where it has no closed form in the letters.
+    /// The amplitude that they exceed; `None` if it has no closed form in the letters.
     pub from: Option<Position>,
-    /// Where they end.
+    /// The end of the range of amplitudes.
     pub to: CrossWellEnd,
     /// Whether there are others farther out, over hilltops between other wells.
     pub others: bool,
@@ -418,12 +417,12 @@ pub struct CrossWell {
     pub positive: Vec<Symbol>,
 }
 
-/// Where the motions over several wells end.
+/// The end of the range of motions over several wells.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CrossWellEnd {
-    /// Nowhere.
+    /// They do not end.
     Never,
-    /// At this amplitude.
+    /// The end at this amplitude.
     At(Position),
     /// Somewhere, as values of letters decide.
     Somewhere,
@@ -464,11 +463,12 @@ impl fmt::Display for CrossWell {
 }
 
 impl Note {
-    /// The same of motions that do not begin at rest: the root of a relation is then the one that
-    /// continues the first order.
+    /// Adapts the note to motions that do not begin at rest: the root of a relation is then the one
+    /// that continues the first order.
     pub(crate) fn take_root_of_first_order(&mut self) {
         if let Self::Cut(
-            Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. },
+            Truncation::TruncatedRelation { linear_frequency, .. }
+            | Truncation::Passes { linear_frequency, .. },
         ) = self
         {
             *linear_frequency = None;
@@ -736,7 +736,7 @@ fn driven(
     )
 }
 
-impl fmt::Display for Instant {
+impl fmt::Display for CollocationInstant {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let at = match self {
             Self::EighthOfPeriod => "an eighth of the period",
@@ -788,7 +788,7 @@ fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt
     write!(formatter, "near rest {}", sides.join(", "))
 }
 
-impl fmt::Display for Cut {
+impl fmt::Display for Truncation {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Truncated { small, order, marks } => {
@@ -867,7 +867,7 @@ fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Option<Symbol>) ->
     }
 }
 
-impl fmt::Display for FirstStep {
+impl fmt::Display for ExactFirstStep {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (terms, linear) = match self {
             Self::TermOfForce => ("one term", "force"),

@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 pub(super) struct PlanePolynomial(Vec<(f64, [i32; 2])>);
 
 impl PlanePolynomial {
-    /// `None` where a value is missing.
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         polynomial: &Polynomial,
@@ -110,12 +110,12 @@ impl PlanePolynomial {
 /// A polynomial in the amplitude, the constant first, and the same with the sizes of all that was
 /// added up.
 #[derive(Clone, Default)]
-struct Powers {
+struct AmplitudePolynomial {
     coefficients: Vec<f64>,
     sizes: Vec<f64>,
 }
 
-impl Powers {
+impl AmplitudePolynomial {
     fn add(&mut self, power: usize, value: f64) {
         if self.coefficients.len() <= power {
             self.coefficients.resize(power + 1, 0.0);
@@ -126,7 +126,7 @@ impl Powers {
     }
 
     /// Without what rounding leaves of terms that cancel.
-    fn cleaned(mut self) -> Self {
+    fn without_rounding_noise(mut self) -> Self {
         const ROUNDING: f64 = 1e-13;
         for (value, size) in self.coefficients.iter_mut().zip(&self.sizes) {
             if value.abs() <= ROUNDING * size {
@@ -152,7 +152,7 @@ impl Powers {
             self.add(power, -value);
             self.sizes[power] += size - value.abs();
         }
-        self.cleaned()
+        self.without_rounding_noise()
     }
 
     fn is_zero(&self) -> bool {
@@ -165,17 +165,17 @@ impl Powers {
 }
 
 /// One wave of the phase, `P + P_c cos(g theta) + P_s sin(g theta)`, in powers of the amplitude.
-type PhaseWave = [Powers; 3];
+type PhaseWave = [AmplitudePolynomial; 3];
 
 /// Slow equations in the plane at numbers.
-pub(super) struct Field {
+pub(super) struct PlaneField {
     rates: [PlanePolynomial; 2],
     /// `p`: the phase of the slow equations in terms of the angle in the plane.
     times: f64,
 }
 
-impl Field {
-    /// `None` where a value is missing.
+impl PlaneField {
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         plane: &Plane,
@@ -230,8 +230,8 @@ impl Field {
 
     /// `a'` and `a theta'` by harmonics of the angle in the plane: the coefficients of cosine and
     /// sine in powers of the amplitude.
-    fn harmonics(&self) -> BTreeMap<i32, [[Powers; 2]; 2]> {
-        let mut found: BTreeMap<i32, [[Powers; 2]; 2]> = BTreeMap::new();
+    fn harmonics(&self) -> BTreeMap<i32, [[AmplitudePolynomial; 2]; 2]> {
+        let mut found: BTreeMap<i32, [[AmplitudePolynomial; 2]; 2]> = BTreeMap::new();
         for (rate, polynomial) in self.rates.iter().enumerate() {
             for (factor, [i, j]) in &polynomial.0 {
                 let power = (i + j).unsigned_abs() as usize;
@@ -240,7 +240,7 @@ impl Field {
                     // and z = e^(i theta) multiplies all.
                     let value = factor * number / 2.0_f64.powi(i + j);
                     let m = k + 1;
-                    // What i to its power makes of the number: real and imaginary part.
+                    // Real and imaginary part of i to its power times the number.
                     let (real, imaginary) = match (*j + i32::from(rate == 1)).rem_euclid(4) {
                         0 => (value, 0.0),
                         1 => (0.0, value),
@@ -261,15 +261,19 @@ impl Field {
         }
         found
             .into_iter()
-            .map(|(m, rates)| (m, rates.map(|waves| waves.map(Powers::cleaned))))
+            .map(|(m, rates)| {
+                (m, rates.map(|waves| waves.map(AmplitudePolynomial::without_rounding_noise)))
+            })
             .collect()
     }
 
-    /// The places by one polynomial in the amplitude; `None` where the rates have more than one
-    /// wave of the phase, or one that tells nothing of it.
+    /// The places by one polynomial in the amplitude; `None` if the rates have more than one wave
+    /// of the phase, or one that tells nothing of it.
     fn on_one_wave(&self) -> Option<Vec<[f64; 2]>> {
         let mut harmonics = self.harmonics();
-        harmonics.retain(|m, rates| *m == 0 || !rates.iter().flatten().all(Powers::is_zero));
+        harmonics.retain(|m, rates| {
+            *m == 0 || !rates.iter().flatten().all(AmplitudePolynomial::is_zero)
+        });
         let still = harmonics.remove(&0).unwrap_or_default();
         let common = harmonics.keys().fold(0, |common: i32, m| common.gcd(m));
         if common == 0 {
@@ -347,7 +351,7 @@ impl Field {
 
     /// A radius beyond which the terms of the highest degree outweigh all others, as far as they
     /// vanish nowhere on it.
-    fn outermost(&self) -> f64 {
+    fn outer_radius(&self) -> f64 {
         const ANGLES: usize = 72;
         /// The least part of their sizes that counts where they almost vanish.
         const LEAST: f64 = 1e-2;
@@ -388,7 +392,7 @@ impl Field {
         /// Parts of the largest square within which a place is the origin, up to rounding.
         const ORIGIN: f64 = 1e-10;
         let mut places: Vec<[f64; 2]> = vec![];
-        let half = self.outermost();
+        let half = self.outer_radius();
         let is_elsewhere = |[u, v]: &[f64; 2]| u.hypot(*v) > ORIGIN * half;
         let mut squares = VecDeque::from([([0.0, 0.0], half, 0)]);
         let mut count = 0;
@@ -490,7 +494,7 @@ enum Look {
 /// `D`, `D cos(g theta)` and `D sin(g theta)`.
 fn solved(
     [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[PhaseWave; 2],
-) -> [Powers; 3] {
+) -> [AmplitudePolynomial; 3] {
     [
         rate_cos.product(turn_sin).minus(&rate_sin.product(turn_cos)),
         rate_sin.product(turn).minus(&rate.product(turn_sin)),

@@ -1,4 +1,4 @@
-//! Steady motions by slow equations in amplitude and phase that are no polynomials.
+//! Steady motions by slow equations in amplitude and phase that are not polynomials.
 //!
 //! ```text
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/m = Q + Q_c cos(psi) + Q_s sin(psi),   the coefficients functions of a
@@ -17,7 +17,7 @@ use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::{find_minimum, find_root};
 use crate::symbol::Symbol;
 
-/// Every steady motion at given values, largest amplitude first; `None` where a value is missing.
+/// Every steady motion at given values, largest amplitude first; `None` if a value is missing.
 pub(super) fn steady_states(
     solution: &Solution,
     modulation: &Modulation,
@@ -100,7 +100,7 @@ impl PolarRates {
         }
     }
 
-    /// What vanishes at the amplitude of a steady motion, as a part of what it is made of.
+    /// A function that vanishes at the amplitude of a steady motion, over the size of its terms.
     fn excess(&self, amplitude: f64) -> f64 {
         let [determinant, cosine, sine] = self.waves(amplitude).solved();
         let (drive, rest) = (determinant * determinant, cosine * cosine + sine * sine);
@@ -150,7 +150,7 @@ impl PolarRates {
     /// The motion without a part of its own, where no force drives it, or dry friction drains more
     /// than a force feeds: about it `B' = lambda B + mu B*`.
     fn rest(&self) -> Option<SteadyState> {
-        /// Near enough, and not so near that rounding counts.
+        /// An amplitude near zero at which rounding does not count yet.
         const NEAR: f64 = 1e-7;
         let size = |waves: &WaveCoefficients| waves.rate[1].hypot(waves.rate[2]);
         let [near, far] = [NEAR, 100.0 * NEAR].map(|amplitude| self.waves(amplitude));
@@ -165,7 +165,7 @@ impl PolarRates {
             true => [(rate + under.sqrt(), 0.0), (rate - under.sqrt(), 0.0)],
             false => [(rate, (-under).sqrt()), (rate, -(-under).sqrt())],
         };
-        // What feeds or drains at rest as well is no rest.
+        // A drive or damping that acts at rest leaves no rest.
         (rate.is_finite() && rate < 1e3).then_some(SteadyState {
             amplitude: 0.0,
             phase: 0.0,

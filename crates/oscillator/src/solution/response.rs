@@ -10,21 +10,21 @@
 use num_traits::{One as _, Zero as _};
 
 use super::Solution;
-use super::plane::Field;
+use super::plane::PlaneField;
 use super::spurious::Orders;
 use crate::exact::rational::Rational;
 use crate::exact::{Monomial, Polynomial};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
-/// What is known of the steady motions of a driven oscillator. Everything is in the amplitude, the
-/// parameters and the definitions of the solution, the detuning among them.
+/// The steady motions of a driven oscillator. Everything is in the amplitude, the parameters and
+/// the definitions of the solution, the detuning among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// `x(t)` in `t`, the amplitude and the phase of the slow equations.
     pub motion: Expr,
-    /// The frequency-response equation: zero at every steady motion; `None` where the phase cannot
-    /// be eliminated.
+    /// The frequency-response equation: zero at every steady motion; `None` if the phase cannot be
+    /// eliminated.
     pub relation: Option<Polynomial>,
     /// The relation solved for the detuning, where it is quadratic in that.
     pub branches: Option<Branches>,
@@ -36,14 +36,14 @@ pub struct Response {
     /// The discriminant of the relation in the square of the amplitude: zero where two branches
     /// meet, which is where the amplitude jumps.
     pub jumps: Option<Polynomial>,
-    /// What stands for the relation and its branches where they are no polynomials.
+    /// The relation and its branches if they are not polynomials.
     pub closed: Option<ClosedRelation>,
     /// The slow equations in coordinates without a singular origin, where they are polynomials in
     /// them.
     pub plane: Option<Plane>,
 }
 
-/// A frequency-response equation of a force that is no polynomial.
+/// A frequency-response equation of a force that is not a polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedRelation {
     /// Zero at every steady motion.
@@ -113,9 +113,8 @@ pub struct Plane {
     pub coordinates: [Symbol; 2],
     /// `u'` and `v'`.
     pub rates: [Polynomial; 2],
-    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase;
-    /// first what leads, then what comes one, two, ... orders later. Nothing where each part has
-    /// one order alone.
+    /// The rates by parts, each by its orders: damping, detuning, and each wave of the phase; first
+    /// the leading order, then the next ones. Empty if each part has one order alone.
     pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
@@ -134,9 +133,9 @@ pub struct SteadyState {
 /// The steady motions of slow equations at numbers, largest amplitude first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteadyMotions {
-    /// Those of the equation.
+    /// The steady motions of the equation.
     pub states: Vec<SteadyState>,
-    /// Those that only the truncation of the slow equations makes.
+    /// The steady motions that only the truncation of the slow equations makes.
     pub spurious: Vec<SteadyState>,
 }
 
@@ -149,7 +148,7 @@ impl SteadyState {
 
 impl Solution {
     /// Every steady motion of a driven oscillator at given values, by its slow equations, largest
-    /// amplitude first; nothing for other motions, and where a value is missing. Those at an
+    /// amplitude first; `None` for other motions, and where a value is missing. Those at an
     /// amplitude at which the series hardly converges are [left out](Self::steady_motions).
     ///
     /// ```
@@ -204,7 +203,7 @@ impl Solution {
         let Some(plane) = &response.plane else {
             return super::polar::steady_states(self, modulation, times, value_of);
         };
-        let field = Field::new(self, plane, times, value_of)?;
+        let field = PlaneField::new(self, plane, times, value_of)?;
         let state = |[u, v]: [f64; 2]| SteadyState {
             amplitude: u.hypot(v),
             phase: wrapped(times * (-v).atan2(u)),
@@ -223,7 +222,7 @@ impl Solution {
 
 /// An angle from -pi to pi.
 pub(super) fn wrapped(angle: f64) -> f64 {
-    /// What rounding leaves of an angle that is zero.
+    /// Rounding error of an angle that is zero.
     const ROUNDING: f64 = 1e-14;
     let angle = angle.sin().atan2(angle.cos());
     if angle.abs() < ROUNDING { 0.0 } else { angle }

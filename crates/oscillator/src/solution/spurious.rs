@@ -18,14 +18,14 @@ use crate::symbol::Symbol;
 
 /// Slow equations by their orders, with numbers.
 pub(super) struct Orders {
-    /// Of each part of the slow equations the rates that each of its orders adds.
+    /// The rates of each order of each part of the slow equations.
     parts: Vec<Vec<[PlanePolynomial; 2]>>,
     /// The angular frequency of the motion.
     frequency: f64,
 }
 
 impl Orders {
-    /// `None` where a value is missing.
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         plane: &Plane,

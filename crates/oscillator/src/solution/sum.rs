@@ -1,4 +1,4 @@
-//! A polynomial with its terms in the order in which people read them.
+//! A polynomial with its terms in the order of printing.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl Sum {
         }
     }
 
-    /// The sum with so many digits of its rounded numbers.
+    /// The sum with this many digits of its rounded numbers.
     #[must_use]
     pub fn with_digits(self, digits: usize) -> Self {
         Self { digits, ..self }

@@ -12,12 +12,12 @@ use crate::exact::Ring;
 
 /// One series in the graph: a leaf, or a product of two others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Node(usize);
+pub struct SeriesNode(usize);
 
 #[derive(Debug)]
 struct Orders<R: Ring> {
     /// `None` for a leaf.
-    factors: Option<(Node, Node)>,
+    factors: Option<(SeriesNode, SeriesNode)>,
     /// The orders known so far.
     known: Vec<FourierSeries<R>>,
     /// The highest order anyone asked for.
@@ -29,22 +29,22 @@ struct Orders<R: Ring> {
 pub struct Convolutions<R: Ring> {
     ring: R,
     nodes: Vec<Orders<R>>,
-    products: HashMap<(Node, Node), Node>,
+    products: HashMap<(SeriesNode, SeriesNode), SeriesNode>,
 }
 
 impl<R: Ring> Convolutions<R> {
-    /// No series yet; those to come are over `ring`.
+    /// A graph without series; those to come are over `ring`.
     pub fn new(ring: R) -> Self {
         Self { ring, nodes: vec![], products: HashMap::new() }
     }
 
     /// A new series whose orders the caller supplies.
-    pub fn leaf(&mut self) -> Node {
+    pub fn leaf(&mut self) -> SeriesNode {
         self.add(None)
     }
 
     /// The product of two series.
-    pub fn product(&mut self, left: Node, right: Node) -> Node {
+    pub fn product(&mut self, left: SeriesNode, right: SeriesNode) -> SeriesNode {
         let factors = (left.min(right), left.max(right));
         if let Some(&known) = self.products.get(&factors) {
             return known;
@@ -56,7 +56,7 @@ impl<R: Ring> Convolutions<R> {
 
     /// The power `base^exponent`, `exponent >= 1`, built by steps of two so that neighbouring
     /// powers share their work.
-    pub fn power(&mut self, base: Node, exponent: u32) -> Node {
+    pub fn power(&mut self, base: SeriesNode, exponent: u32) -> SeriesNode {
         if exponent <= 1 {
             return base;
         }
@@ -66,7 +66,7 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// Asks for `node` up to `order`, and with it for its factors.
-    pub fn require(&mut self, node: Node, order: usize) {
+    pub fn require(&mut self, node: SeriesNode, order: usize) {
         let entry = &mut self.nodes[node.0];
         if entry.needed.is_some_and(|needed| needed >= order) {
             return;
@@ -79,12 +79,12 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// Supplies the next order of a leaf.
-    pub fn push(&mut self, leaf: Node, series: FourierSeries<R>) {
+    pub fn push(&mut self, leaf: SeriesNode, series: FourierSeries<R>) {
         self.nodes[leaf.0].known.push(series);
     }
 
     /// Order `order` of a series, where it is known.
-    pub fn order(&self, node: Node, order: usize) -> Option<&FourierSeries<R>> {
+    pub fn order(&self, node: SeriesNode, order: usize) -> Option<&FourierSeries<R>> {
         self.nodes[node.0].known.get(order)
     }
 
@@ -93,7 +93,7 @@ impl<R: Ring> Convolutions<R> {
         self.nodes.iter().filter_map(move |entry| entry.known.get(order))
     }
 
-    /// How many series there are, the leaves among them.
+    /// Number of series, the leaves included.
     pub fn count(&self) -> usize {
         self.nodes.len()
     }
@@ -123,13 +123,16 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero
-    /// of products that nobody asked for.
-    pub fn variations(&self, of_leaves: &HashMap<Node, FourierSeries<R>>) -> Vec<FourierSeries<R>> {
+    /// for products that were not asked for.
+    pub fn variations(
+        &self,
+        of_leaves: &HashMap<SeriesNode, FourierSeries<R>>,
+    ) -> Vec<FourierSeries<R>> {
         let mut variations: Vec<FourierSeries<R>> = Vec::with_capacity(self.nodes.len());
         for (index, entry) in self.nodes.iter().enumerate() {
             let variation = match entry.factors {
                 None => of_leaves
-                    .get(&Node(index))
+                    .get(&SeriesNode(index))
                     .cloned()
                     .unwrap_or_else(|| FourierSeries::zero(self.ring.clone())),
                 Some((left, right)) => {
@@ -164,13 +167,13 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// The variation that belongs to `node` in the list of [`Convolutions::variations`].
-    pub fn variation_of(variations: &[FourierSeries<R>], node: Node) -> &FourierSeries<R> {
+    pub fn variation_of(variations: &[FourierSeries<R>], node: SeriesNode) -> &FourierSeries<R> {
         &variations[node.0]
     }
 
-    fn add(&mut self, factors: Option<(Node, Node)>) -> Node {
+    fn add(&mut self, factors: Option<(SeriesNode, SeriesNode)>) -> SeriesNode {
         self.nodes.push(Orders { factors, known: vec![], needed: None });
-        Node(self.nodes.len() - 1)
+        SeriesNode(self.nodes.len() - 1)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Short Fourier series: numerators of two machine words over one denominator, without symbols and
 //! without memory for each number.
 //!
-//! What an operation can grow to is bounded before it is done, from the largest numerators of its
-//! arguments. Where that is more than two words hold there is no result, so that none is ever
-//! wrong, and no addition or multiplication has to look for overflow.
+//! The growth of an operation is bounded before it is done, from the largest numerators of its
+//! arguments. If the bound is more than two words, there is no result, so that none is ever wrong,
+//! and no addition or multiplication has to look for overflow.
 
 use num_integer::Integer as _;
 
@@ -18,16 +18,16 @@ const BOUND: f64 = (1_u128 << 126) as f64;
 pub struct ShortSeries {
     /// Cosines or sines; a sine of harmonic zero has the numerator zero.
     pub wave: Wave,
-    harmonics: Harmonics,
+    harmonics: HarmonicParity,
     denominator: i128,
     numerators: Vec<i128>,
     /// The largest numerator, without its sign, rounded.
     largest: f64,
 }
 
-/// Which harmonics stand side by side.
+/// The harmonics that a series stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Harmonics {
+pub enum HarmonicParity {
     /// `0, 1, 2, ...`
     All,
     /// `0, 2, 4, ...`
@@ -36,9 +36,9 @@ pub enum Harmonics {
     Odd,
 }
 
-impl Harmonics {
+impl HarmonicParity {
     /// The harmonic at a place.
-    pub fn at(self, index: usize) -> usize {
+    pub fn harmonic(self, index: usize) -> usize {
         match self {
             Self::All => index,
             Self::Even => 2 * index,
@@ -46,7 +46,7 @@ impl Harmonics {
         }
     }
 
-    /// Those of a product.
+    /// The harmonics of a product.
     pub fn times(self, other: Self) -> Self {
         match (self, other) {
             (Self::All, _) | (_, Self::All) => Self::All,
@@ -57,10 +57,10 @@ impl Harmonics {
 }
 
 impl ShortSeries {
-    /// From numerators over a positive denominator; `None` where they are too long.
+    /// A series from numerators over a positive denominator; `None` if they are too long.
     pub fn new(
         wave: Wave,
-        harmonics: Harmonics,
+        harmonics: HarmonicParity,
         denominator: i128,
         numerators: Vec<i128>,
     ) -> Option<Self> {
@@ -76,7 +76,7 @@ impl ShortSeries {
     }
 
     /// A number; `harmonics` are all or the even ones.
-    pub fn constant(harmonics: Harmonics, numerator: i128, denominator: i128) -> Option<Self> {
+    pub fn constant(harmonics: HarmonicParity, numerator: i128, denominator: i128) -> Option<Self> {
         Self::new(Wave::Cosine, harmonics, denominator, vec![numerator])
     }
 
@@ -85,8 +85,8 @@ impl ShortSeries {
         self.denominator
     }
 
-    /// Which harmonics stand side by side.
-    pub fn harmonics(&self) -> Harmonics {
+    /// The harmonics that are stored.
+    pub fn harmonics(&self) -> HarmonicParity {
         self.harmonics
     }
 
@@ -108,8 +108,8 @@ impl ShortSeries {
     /// The number at a place as a constant series.
     pub fn coefficient(&self, index: usize) -> Option<Self> {
         let harmonics = match self.harmonics {
-            Harmonics::All => Harmonics::All,
-            Harmonics::Even | Harmonics::Odd => Harmonics::Even,
+            HarmonicParity::All => HarmonicParity::All,
+            HarmonicParity::Even | HarmonicParity::Odd => HarmonicParity::Even,
         };
         Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
     }
@@ -168,7 +168,7 @@ impl ShortSeries {
     fn times_harmonics(&self, wave: Wave, factor: impl Fn(i128) -> i128) -> Option<Self> {
         let mut numerators = Vec::with_capacity(self.numerators.len());
         for (index, numerator) in self.numerators.iter().enumerate() {
-            let harmonic = u32::try_from(self.harmonics.at(index)).ok()?;
+            let harmonic = u32::try_from(self.harmonics.harmonic(index)).ok()?;
             numerators.push(numerator.checked_mul(factor(harmonic.into()))?);
         }
         Self::new(wave, self.harmonics, self.denominator, numerators)
@@ -177,10 +177,10 @@ impl ShortSeries {
     /// The solution of `u'' + u = self` without first harmonic: every number over `1 - k^2`.
     pub fn without_resonance_over_divisors(&self) -> Option<Self> {
         let divisor = |index: usize| {
-            let harmonic = i128::from(u32::try_from(self.harmonics.at(index)).ok()?);
+            let harmonic = i128::from(u32::try_from(self.harmonics.harmonic(index)).ok()?);
             Some(harmonic * harmonic - 1)
         };
-        // What is left of each divisor when it has taken from its numerator what it can.
+        // The rest of each divisor after its numerator has been reduced by it.
         let mut left = Vec::with_capacity(self.numerators.len());
         let mut numerators = Vec::with_capacity(self.numerators.len());
         let mut common = 1_i128;
@@ -226,7 +226,7 @@ fn exact_quotient(number: i128, divisor: i128) -> i128 {
     }
 }
 
-/// Of a positive number and any other.
+/// Greatest common divisor of a positive number and any other.
 fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     if is_power_of_two(left) {
         return 1 << left.trailing_zeros().min(right.trailing_zeros());
@@ -242,7 +242,7 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     }
 }
 
-/// Of positive numbers.
+/// Least common multiple of positive numbers.
 fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     if left == right || right == 1 {
         return Some(left);
@@ -299,7 +299,7 @@ fn sum_of_products<'a>(
 ) -> Option<ShortSeries> {
     let mut common = 1;
     let mut length = 1;
-    let mut kind = (Wave::Cosine, Harmonics::Even);
+    let mut kind = (Wave::Cosine, HarmonicParity::Even);
     for (_, left, right) in terms.clone() {
         common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
         length = length.max(left.numerators.len() + right.numerators.len());
@@ -320,10 +320,10 @@ fn sum_of_products<'a>(
         }
         // The odd harmonics first.
         let (first, second) = match (left.harmonics, right.harmonics) {
-            (Harmonics::Even, Harmonics::Odd) => (right, left),
+            (HarmonicParity::Even, HarmonicParity::Odd) => (right, left),
             _ => (left, right),
         };
-        // Where both factors are words, their product is a single instruction.
+        // If both factors are words, their product is a single instruction.
         let largest = (factor as f64).abs() * first.largest;
         let words = largest.max(second.largest) < (1_u64 << 62) as f64;
         let sums = &mut sums[..];
@@ -334,7 +334,7 @@ fn sum_of_products<'a>(
             false => add_doubled_product(sums, factor, (first, second), i128::wrapping_mul),
         }
     }
-    if kind.0 == Wave::Sine && kind.1 != Harmonics::Odd {
+    if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
         sums[0] = 0;
     }
     while sums.len() > 1 && sums.last() == Some(&0) {
@@ -350,7 +350,7 @@ fn add_doubled_product(
     (left, right): (&ShortSeries, &ShortSeries),
     multiply: impl Fn(i128, i128) -> i128,
 ) {
-    let both_odd = left.harmonics == Harmonics::Odd && right.harmonics == Harmonics::Odd;
+    let both_odd = left.harmonics == HarmonicParity::Odd && right.harmonics == HarmonicParity::Odd;
     let apart = usize::from(left.harmonics != right.harmonics);
     let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
     // Of the sine of a difference, the sign of the difference.
@@ -387,11 +387,11 @@ mod tests {
     use super::*;
     use crate::exact::{Integer, Integers};
 
-    /// The same series with numbers of any length.
+    /// The series with integers of any length.
     fn long(series: &ShortSeries) -> FourierSeries<Integers> {
         let mut coefficients = vec![];
         for (index, numerator) in series.numerators.iter().enumerate() {
-            coefficients.resize(series.harmonics.at(index), Integer::from(0));
+            coefficients.resize(series.harmonics.harmonic(index), Integer::from(0));
             coefficients.push(Integer::from(*numerator));
         }
         let (cosine, sine) = match series.wave {
@@ -401,16 +401,16 @@ mod tests {
         FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator))
     }
 
-    /// Of both waves and all kinds of harmonics, with numerators that are no multiples of each
-    /// other.
+    /// Series of both waves and all kinds of harmonics, with numerators that are not multiples of
+    /// each other.
     fn examples() -> Vec<ShortSeries> {
         let mut examples = vec![];
         for wave in [Wave::Cosine, Wave::Sine] {
-            for harmonics in [Harmonics::All, Harmonics::Even, Harmonics::Odd] {
+            for harmonics in [HarmonicParity::All, HarmonicParity::Even, HarmonicParity::Odd] {
                 for (length, denominator) in [(1, 3), (4, 32), (7, 90)] {
                     let mut numerators: Vec<i128> =
                         (0..length).map(|k| k * k * k - 9 * k + 5).collect();
-                    if wave == Wave::Sine && harmonics != Harmonics::Odd {
+                    if wave == Wave::Sine && harmonics != HarmonicParity::Odd {
                         numerators[0] = 0;
                     }
                     examples.push(
@@ -434,8 +434,8 @@ mod tests {
             let solution = left.without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {
-                let mixed =
-                    (left.harmonics == Harmonics::All) != (right.harmonics == Harmonics::All);
+                let mixed = (left.harmonics == HarmonicParity::All)
+                    != (right.harmonics == HarmonicParity::All);
                 if mixed {
                     continue;
                 }
@@ -475,15 +475,15 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_no_series() {
         let half = 1 << 63;
-        let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half])
+        let long = ShortSeries::new(Wave::Cosine, HarmonicParity::Odd, 1, vec![half, half])
             .expect("half of it");
         assert!(square(std::slice::from_ref(&long)).is_none());
         assert!(combination(&[(half, 1, &long)]).is_none());
         assert!(combination(&[(1, half, &long), (1, half - 1, &long)]).is_none());
-        assert!(ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![i128::MIN]).is_none());
+        assert!(ShortSeries::new(Wave::Cosine, HarmonicParity::Odd, 1, vec![i128::MIN]).is_none());
         let prime = (1 << 61) - 1;
         let far =
-            ShortSeries::new(Wave::Cosine, Harmonics::All, 1, vec![prime; 60]).expect("short");
+            ShortSeries::new(Wave::Cosine, HarmonicParity::All, 1, vec![prime; 60]).expect("short");
         assert!(far.without_resonance_over_divisors().is_none());
     }
 }

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
 
-use crate::exact::ring::{Doubles, Indivisible, Ring};
+use crate::exact::ring::{Doubles, NotInvertible, Ring};
 use crate::exact::{Integer, Polynomial, Polynomials, Rational};
 
 /// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation
@@ -36,7 +36,7 @@ pub struct FourierSeries<R: Ring> {
 /// The part of a right-hand side at the natural frequency: `cosine cos theta + sine sin theta`,
 /// each a constant series.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resonance<R: Ring> {
+pub struct ResonantPart<R: Ring> {
     /// The coefficient of `cos theta`.
     pub cosine: FourierSeries<R>,
     /// The coefficient of `sin theta`.
@@ -122,7 +122,7 @@ impl<R: Ring> FourierSeries<R> {
     ///
     /// # Errors
     /// The divisors that remain, as one product.
-    pub fn divided(&self) -> Result<(), Indivisible> {
+    pub fn divided(&self) -> Result<(), NotInvertible> {
         match R::FIELD && !self.denominator.is_one() {
             true => self.ring.divide(std::iter::empty(), &self.denominator),
             false => Ok(()),
@@ -252,8 +252,8 @@ impl<R: Ring> FourierSeries<R> {
 
     /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left
     /// over: `u_k = r_k / (1 - k^2)` for `k != 1`.
-    pub fn solve_oscillator(&self) -> (Self, Resonance<R>) {
-        let resonance = Resonance { cosine: self.cosine(1), sine: self.sine(1) };
+    pub fn solve_oscillator(&self) -> (Self, ResonantPart<R>) {
+        let resonance = ResonantPart { cosine: self.cosine(1), sine: self.sine(1) };
         let mut solution = self.clone();
         for part in [&mut solution.cosine, &mut solution.sine] {
             if let Some(resonant) = part.get_mut(1) {
@@ -305,7 +305,7 @@ impl<R: Ring> FourierSeries<R> {
         self.constant_of(Some(&sum))
     }
 
-    /// The same series over another ring.
+    /// Converts the series to another ring.
     pub fn map<S: Ring>(
         &self,
         ring: S,
@@ -366,7 +366,7 @@ impl<R: Ring> FourierSeries<R> {
     }
 }
 
-/// What brings one term of a sum to the common denominator of all, times its weight.
+/// The factor that brings one term of a sum to the common denominator of all, times its weight.
 enum Factor {
     /// The weight alone, where the term stands over the common denominator already.
     Small(i64),

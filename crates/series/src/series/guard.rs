@@ -24,7 +24,7 @@ impl Guard {
     pub fn new(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Self {
         let is_number = |expr: &Expr| expr.symbols().iter().all(|name| values.contains_key(name));
         let number = |expr: &Expr| expr.evaluate(values).ok().filter(|value| value.is_finite());
-        // What is too long to be written out is compared as it stands.
+        // An argument too long to be written out is compared as it stands.
         let written_out = argument.expand().unwrap_or_else(|_| argument.clone());
         let mut terms = BTreeMap::new();
         for term in written_out.terms() {
@@ -43,8 +43,8 @@ impl Guard {
         Self { terms }
     }
 
-    /// The number that this guard is times another; `None` where they are not in proportion, or one
-    /// of them is zero.
+    /// The number that this guard is times another; `None` if they are not in proportion, or one of
+    /// them is zero.
     pub fn ratio_to(&self, other: &Self) -> Option<f64> {
         /// The relative difference that rounding leaves between ratios that are equal.
         const ROUNDING: f64 = 1e-14;
@@ -80,7 +80,7 @@ pub struct GuardUse {
 }
 
 impl Guards {
-    /// No guards yet; `values` are those of the symbols that count as numbers.
+    /// A list without guards; `values` are those of the symbols that count as numbers.
     pub fn new(values: &BTreeMap<Symbol, f64>) -> Self {
         Self { values: values.clone(), known: vec![] }
     }

@@ -33,19 +33,19 @@ pub(crate) trait Field {
     /// The binary exponent of the size; `None` for zero. Where sizes mean nothing the same for all
     /// others.
     fn exponent(&self, number: &Self::Element) -> Option<i64>;
-    /// By how many binary digits a number must be smaller than what it is made of to be taken for
-    /// zero; `None` where numbers are exact.
+    /// Number of binary digits by which a number must be smaller than its terms to be taken for
+    /// zero; `None` for exact numbers.
     fn noise(&self) -> Option<i64>;
 }
 
 /// One combination of the series.
 #[derive(Clone, Debug)]
 pub(crate) struct Combination<E> {
-    /// What each of the series is multiplied by, the lowest power first.
+    /// The polynomial factor of each of the series, the lowest power first.
     pub factors: Vec<Vec<E>>,
     /// The sum, the lowest power first; what has vanished is left out.
     remainder: Vec<E>,
-    /// How many powers of `s` fit below the degrees.
+    /// Number of powers of `s` that fit below the degrees.
     pub room: i64,
 }
 
@@ -128,7 +128,7 @@ impl<F: Field> HermitePade<F> {
         self.combinations.insert(pivot, chosen);
     }
 
-    /// The binary exponent of the next coefficient of a combination; `None` where it vanishes.
+    /// The binary exponent of the next coefficient of a combination; `None` if it vanishes.
     fn leading(&self, combination: &Combination<F::Element>) -> Option<i64> {
         let exponent = self.field.exponent(combination.remainder.first()?)?;
         let Some(noise) = self.field.noise() else {

@@ -19,7 +19,7 @@ pub mod taylor;
 pub mod terms;
 pub mod waves;
 
-pub use convolution::{Convolutions, Node};
-pub use fourier::{FourierSeries, Resonance, fraction, linear_combination, sum_of_products};
+pub use convolution::{Convolutions, SeriesNode};
+pub use fourier::{FourierSeries, ResonantPart, fraction, linear_combination, sum_of_products};
 pub use recurrence::{RecurrenceError, numeric_taylor};
 pub use taylor::{HIGHEST_DEGREE, TaylorError, taylor};

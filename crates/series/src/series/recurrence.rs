@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 use super::guard::Guards;
 use super::tape::{Operation, Program, Tape};
 
-/// Why an expression has no recurrence.
+/// The reason why an expression has no recurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecurrenceError {
@@ -52,11 +52,11 @@ pub struct Recurrences {
 }
 
 /// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
-fn odd(base: f64, exponent: f64) -> f64 {
+fn odd_root(base: f64, exponent: f64) -> f64 {
     base.abs().powf(exponent).copysign(base)
 }
 
-fn even(base: f64, exponent: f64) -> f64 {
+fn even_root(base: f64, exponent: f64) -> f64 {
     base.abs().powf(exponent)
 }
 
@@ -95,7 +95,7 @@ impl Recurrences {
         Ok(place)
     }
 
-    /// What computes the series of all that was added.
+    /// Returns the tape that computes the series of all outputs.
     pub fn into_tape(mut self) -> Tape {
         self.program.keep_only(&self.outputs);
         Tape::new(self.program)
@@ -211,7 +211,7 @@ impl Recurrences {
                 _ => terms.push((self.constant(1.0), *place)),
             }
         }
-        // What was computed last is needed last.
+        // The latest result is needed last.
         terms.sort_by_key(|(_, place)| *place);
         self.emit(Operation::Sum(terms.into()))
     }
@@ -273,8 +273,8 @@ impl Recurrences {
             };
         }
         let first = match (exponent.denom().is_odd(), exponent.numer().is_odd()) {
-            (true, true) => odd,
-            (true, false) => even,
+            (true, true) => odd_root,
+            (true, false) => even_root,
             (false, _) => f64::powf,
         };
         self.emit(Operation::Power { base, exponent: to_f64(exponent), first })
@@ -427,7 +427,7 @@ impl Recurrences {
 }
 
 /// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s`
-/// and no other symbol; `None` where it is not analytic there, contains another symbol, or a
+/// and no other symbol; `None` if it is not analytic there, contains another symbol, or a
 /// coefficient is out of range.
 ///
 /// ```
@@ -506,7 +506,7 @@ mod tests {
         assert_eq!(numeric_taylor(&high, x, 0.0, 1.0, 2), Some(vec![0.0, 1.0, 0.0]));
     }
 
-    /// What occurs twice is computed once, and sine and cosine come together.
+    /// A part that occurs twice is computed once, and sine and cosine come together.
     #[test]
     fn each_part_is_computed_once() {
         let count = |texts: &[&str]| {

@@ -34,14 +34,14 @@ use super::hermite_pade::{Field, HermitePade};
 use crate::decimal::plain_decimal;
 use crate::exact::big_float::BigFloat;
 use crate::exact::{Rational, Scaled, to_f64};
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// The estimate, rounded to the digits that its error leaves.
     pub value: Rational,
-    /// How far it may be off, what it was rounded by included.
+    /// Bound of the error, rounding included.
     pub error: f64,
 }
 
@@ -63,9 +63,9 @@ pub struct Singularity {
 /// The fewest coefficients that say anything.
 pub const FEWEST: usize = 16;
 
-/// The nearest singularity of a series with these coefficients, the lowest power first; `None`
-/// where they show none: too few of them, too irregular, or several singularities that are equally
-/// far away.
+/// The nearest singularity of a series with these coefficients, the lowest power first; `None` if
+/// they show none: too few of them, too irregular, or several singularities that are equally far
+/// away.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -85,14 +85,14 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
     if is_entire(coefficients) || last_power(coefficients).is_some() {
         return None;
     }
-    let growth = Growth::of(coefficients)?;
+    let growth = Growth::from_coefficients(coefficients)?;
     let bits = BITS_AT_LEAST + BITS_EACH * coefficients.len();
     let scaled: Vec<BigFloat> = (0..)
         .zip(coefficients)
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
-    let find = |kind: &Kind| followed(*kind, &scaled, &growth);
-    let found = each(&KINDS, find).into_iter().flatten().collect();
+    let find = |kind: &ApproximantKind| followed(*kind, &scaled, &growth);
+    let found = par_map(&KINDS, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
 }
 
@@ -100,11 +100,11 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
 const BITS_AT_LEAST: usize = 256;
 const BITS_EACH: usize = 6;
 
-/// What the sizes of the coefficients say.
+/// The growth of the coefficients with the order.
 struct Growth {
     /// The radius lies about here, times `2^unit`.
     radius: f64,
-    /// How far it may be from there: a factor, as a logarithm.
+    /// Uncertainty of that: a factor, as a logarithm.
     margin: f64,
     /// The variable is measured in `2^unit`.
     unit: i64,
@@ -113,7 +113,7 @@ struct Growth {
 }
 
 impl Growth {
-    fn of(coefficients: &[Rational]) -> Option<Self> {
+    fn from_coefficients(coefficients: &[Rational]) -> Option<Self> {
         /// The last coefficients, of which the largest counts.
         const LAST: usize = 12;
         let highest = coefficients.len().checked_sub(1)?;
@@ -158,13 +158,13 @@ impl Growth {
     }
 }
 
-/// The logarithm of the size; `None` of zero.
+/// The logarithm of the size; `None` for zero.
 fn logarithm(value: &Rational) -> Option<f64> {
     Some(Scaled::of_fraction(value).logarithm()).filter(|logarithm| logarithm.is_finite())
 }
 
 /// The last power of a series that ends, with as many coefficients that vanish behind it as there
-/// are up to it; `None` of all others.
+/// are up to it; `None` for all others.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -194,9 +194,9 @@ pub fn is_entire(coefficients: &[Rational]) -> bool {
 }
 
 fn steepens_evenly(coefficients: &[Rational]) -> bool {
-    /// How much steeper they must fall over one doubling of the power: an order of two has 0.35.
+    /// Least increase of the slope over one doubling of the power: an order of two has 0.35.
     const STEEPER: f64 = 0.28;
-    /// How far that may be from the doubling before, as a factor.
+    /// Largest ratio of that to the doubling before.
     const EVENLY: f64 = 2.0;
     // The largest of each half: those of a pair go up and down.
     let slope = |from: usize, to: usize| {
@@ -220,19 +220,20 @@ fn steepens_evenly(coefficients: &[Rational]) -> bool {
     }
 }
 
-/// Which equation an approximant solves.
+/// The equation that an approximant solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum ApproximantKind {
     Quadratic,
     Differential,
     /// Differential, of `f^(-1/2)`.
     OfInverseRoot,
 }
 
-const KINDS: [Kind; 3] = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
+const KINDS: [ApproximantKind; 3] =
+    [ApproximantKind::Quadratic, ApproximantKind::Differential, ApproximantKind::OfInverseRoot];
 
-impl Kind {
-    /// How many equations so many coefficients give.
+impl ApproximantKind {
+    /// Number of equations for this many coefficients.
     fn length(self, coefficients: usize) -> usize {
         match self {
             Self::Quadratic => coefficients,
@@ -249,7 +250,7 @@ struct Complex {
 }
 
 impl Complex {
-    fn of(value: Complex64, bits: usize) -> Self {
+    fn from_complex64(value: Complex64, bits: usize) -> Self {
         Self { re: BigFloat::of_f64(value.re, bits), im: BigFloat::of_f64(value.im, bits) }
     }
 
@@ -261,14 +262,13 @@ impl Complex {
         &(&self.re * &self.re) + &(&self.im * &self.im)
     }
 
-    /// How far away another number is; in doubles, which reach down to where nothing matters any
-    /// more.
+    /// Distance to another number, as a double.
     fn distance(&self, other: &Self) -> f64 {
         (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
     }
 
     /// The quotient; zero where the divisor is.
-    fn over(&self, divisor: &Self) -> Self {
+    fn divided_by(&self, divisor: &Self) -> Self {
         let size = divisor.squared_size();
         let above = self * &Self { re: divisor.re.clone(), im: -&divisor.im };
         Self { re: &above.re / &size, im: &above.im / &size }
@@ -332,7 +332,7 @@ impl Field for Floats {
     }
 }
 
-/// What is zero at a singularity, and what its exponent is made of.
+/// The polynomials of an approximant: one that vanishes at a singularity, and one for its exponent.
 struct Approximant {
     /// D or P.
     zero: Vec<BigFloat>,
@@ -342,7 +342,7 @@ struct Approximant {
 
 /// The approximants to orders so far below the highest.
 fn approximants(
-    kind: Kind,
+    kind: ApproximantKind,
     coefficients: &[BigFloat],
     below: &[usize],
 ) -> Vec<(usize, Approximant)> {
@@ -352,12 +352,12 @@ fn approximants(
     let mut constant = vec![BigFloat::zero(bits); length];
     constant[0] = field.one();
     let mut own = match kind {
-        Kind::Quadratic | Kind::Differential => coefficients.to_vec(),
-        Kind::OfInverseRoot => inverse_root(coefficients),
+        ApproximantKind::Quadratic | ApproximantKind::Differential => coefficients.to_vec(),
+        ApproximantKind::OfInverseRoot => inverse_root(coefficients),
     };
     let last = match kind {
-        Kind::Quadratic => product(&own, &own, length),
-        Kind::Differential | Kind::OfInverseRoot => {
+        ApproximantKind::Quadratic => product(&own, &own, length),
+        ApproximantKind::Differential | ApproximantKind::OfInverseRoot => {
             (1..=length).map(|k| &own[k] * &BigFloat::of_f64(k as f64, bits)).collect()
         }
     };
@@ -371,7 +371,7 @@ fn approximants(
                 continue;
             };
             let approximant = match kind {
-                Kind::Quadratic => {
+                ApproximantKind::Quadratic => {
                     let all = usize::MAX;
                     let mut zero = product(q, q, all);
                     let four = BigFloat::of_f64(4.0, bits);
@@ -381,7 +381,7 @@ fn approximants(
                     }
                     Approximant { zero, beside: vec![] }
                 }
-                Kind::Differential | Kind::OfInverseRoot => {
+                ApproximantKind::Differential | ApproximantKind::OfInverseRoot => {
                     Approximant { zero: r.clone(), beside: q.clone() }
                 }
             };
@@ -407,7 +407,7 @@ fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
     root
 }
 
-/// The product, of at most so many coefficients.
+/// The product, of at most this many coefficients.
 fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> {
     let Some(length) =
         (left.len() + right.len()).checked_sub(1).filter(|_| !left.is_empty() && !right.is_empty())
@@ -424,22 +424,22 @@ fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> 
 }
 
 /// A zero that stays from one approximant to the next.
-struct Followed {
-    kind: Kind,
+struct PersistentZero {
+    kind: ApproximantKind,
     place: Complex,
     error: f64,
-    /// Of a differential approximant, with its error.
+    /// The exponent by a differential approximant, with its error.
     exponent: Option<(f64, f64)>,
 }
 
-impl Followed {
-    /// The power of the distance with which f is singular there; `None` where it is not known.
+impl PersistentZero {
+    /// The power of the distance with which f is singular there; `None` if it is not known.
     fn power_of_function(&self) -> Option<f64> {
         match (self.kind, self.exponent) {
-            (Kind::Quadratic, _) => Some(0.5),
-            (Kind::Differential, Some((value, _))) => Some(value),
-            (Kind::OfInverseRoot, Some((value, _))) if value < 0.0 => Some(-2.0 * value),
-            (Kind::OfInverseRoot, Some((value, _))) => Some(value),
+            (ApproximantKind::Quadratic, _) => Some(0.5),
+            (ApproximantKind::Differential, Some((value, _))) => Some(value),
+            (ApproximantKind::OfInverseRoot, Some((value, _))) if value < 0.0 => Some(-2.0 * value),
+            (ApproximantKind::OfInverseRoot, Some((value, _))) => Some(value),
             (_, None) => None,
         }
     }
@@ -447,7 +447,8 @@ impl Followed {
     /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes
     /// for ever, but omega^2 goes through.
     fn order_of_zero(&self) -> Option<f64> {
-        let (value, error) = self.exponent.filter(|_| self.kind == Kind::OfInverseRoot)?;
+        let (value, error) =
+            self.exponent.filter(|_| self.kind == ApproximantKind::OfInverseRoot)?;
         let order = (-2.0 * value).round();
         (order >= 1.0 && (-2.0 * value - order).abs() <= (4.0 * error).max(WORST_POWER))
             .then_some(order)
@@ -456,12 +457,12 @@ impl Followed {
     /// Whether f is regular there, as far as this approximant and the zeros of f can tell.
     fn is_regular(&self, zeros: &[(Complex64, f64)]) -> bool {
         match (self.kind, self.exponent) {
-            (Kind::OfInverseRoot, Some((_, error))) => {
+            (ApproximantKind::OfInverseRoot, Some((_, error))) => {
                 error > WORST_POWER || self.order_of_zero().is_some()
             }
-            (Kind::OfInverseRoot, None) => true,
+            (ApproximantKind::OfInverseRoot, None) => true,
             // The power of the zero itself; what is singular at a zero has another one.
-            (Kind::Differential, Some((value, _))) => {
+            (ApproximantKind::Differential, Some((value, _))) => {
                 let place = self.place.to_f64();
                 let here =
                     |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
@@ -482,8 +483,12 @@ struct Zero {
 }
 
 /// The zeros that all approximants share, or all but a few.
-fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Followed> {
-    /// So many coefficients show in doubles where to look.
+fn followed(
+    kind: ApproximantKind,
+    coefficients: &[BigFloat],
+    growth: &Growth,
+) -> Vec<PersistentZero> {
+    /// Number of coefficients from which doubles give a first estimate.
     const FIRST: usize = 48;
     let length = kind.length(coefficients.len());
     let window = (length / 8).max(3);
@@ -492,10 +497,10 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
     let wanted: Vec<usize> = starts.into_iter().chain(0..=2 * window).collect();
     let all = approximants(kind, coefficients, &wanted);
     let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
-    let follow = |start: Complex64| -> Option<Followed> {
-        /// Of so many approximants one may lack the zero.
+    let follow = |start: Complex64| -> Option<PersistentZero> {
+        /// Number of approximants one of which may lack the zero.
         const LACKING: usize = 6;
-        let mut near = Complex::of(start, coefficients[0].bits());
+        let mut near = Complex::from_complex64(start, coefficients[0].bits());
         let mut missed = 0;
         for below in starts {
             match at(below).and_then(|own| own.zero_near(&near)) {
@@ -521,8 +526,7 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
                 some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
             };
             let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
-            // What converges slowly is farther away than its last steps by how much longer the way
-            // is.
+            // A slowly converging sequence is farther away than its last steps.
             if 8.0 * recent <= before { FAST * recent } else { SLOW * recent }
         };
         let exponent = end.exponent.map(|value| {
@@ -532,7 +536,7 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
             };
             (value.re, error_of(&distance).max(value.im.abs()))
         });
-        Some(Followed {
+        Some(PersistentZero {
             kind,
             error: error_of(&|one, other| one.place.distance(&other.place)),
             place: end.place,
@@ -560,12 +564,12 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
 const SLOW: f64 = 8.0;
 const FAST: f64 = 4.0;
 
-/// How far a zero may move between approximants, relatively.
+/// Relative change of a zero between approximants up to which it is the same.
 const MOVES: f64 = 0.05;
 
 impl Approximant {
-    /// The zero to which Newton's iteration leads from a place near to it; nothing where that moves
-    /// away, or where two zeros are next to each other, as they are where no branch point is.
+    /// The zero to which Newton's iteration leads from a place near to it; `None` if that moves
+    /// away, or if two zeros are next to each other, as they are where no branch point is.
     fn zero_near(&self, start: &Complex) -> Option<Zero> {
         const ITERATIONS: usize = 60;
         const APART: f64 = 1e-3;
@@ -579,7 +583,7 @@ impl Approximant {
                 last = 0.0;
                 break;
             }
-            let step = value.over(&slope);
+            let step = value.divided_by(&slope);
             let length = step.squared_size().sqrt()?.to_f64();
             // Rounding keeps the last digits moving.
             if length >= last && length < 1e-12 * size {
@@ -593,12 +597,12 @@ impl Approximant {
         }
         let [_, slope, bend] = derivatives(&self.zero, &place);
         let settled = place.distance(start) <= MOVES * size && last < 1e-9 * size;
-        let apart =
-            2.0 * slope.over(&bend).to_f64().norm() > APART * size || bend.squared_size().is_zero();
+        let apart = 2.0 * slope.divided_by(&bend).to_f64().norm() > APART * size
+            || bend.squared_size().is_zero();
         (settled && apart).then(|| Zero {
             exponent: (!self.beside.is_empty()).then(|| {
                 let [value, ..] = derivatives(&self.beside, &place);
-                -value.over(&slope).to_f64()
+                -value.divided_by(&slope).to_f64()
             }),
             place: if start.im.is_zero() {
                 Complex { im: BigFloat::zero(bits), ..place }
@@ -611,7 +615,7 @@ impl Approximant {
 
 /// A polynomial, its slope and half of its second derivative.
 fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
-    let zero = Complex::of(Complex64::default(), place.re.bits());
+    let zero = Complex::from_complex64(Complex64::default(), place.re.bits());
     let mut found = [zero.clone(), zero.clone(), zero];
     for coefficient in polynomial.iter().rev() {
         found[2] = &(&found[2] * place) + &found[1];
@@ -678,54 +682,55 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
 /// Whether every kind of approximant has found one place, the same within their errors, and the
 /// power there may be that of a square root, which all kinds meet; `seen` are the places and errors
 /// of those of `f^(-1/2)`, whose power may not be known yet.
-fn all_agree(found: &[Followed], seen: &[(Complex, f64)]) -> bool {
-    let has = |kind: Kind| found.iter().any(|own| own.kind == kind);
-    let is_root = |own: &Followed| match (own.kind, own.exponent) {
-        (Kind::Differential, Some((value, error))) => {
+fn all_agree(found: &[PersistentZero], seen: &[(Complex, f64)]) -> bool {
+    let has = |kind: ApproximantKind| found.iter().any(|own| own.kind == kind);
+    let is_root = |own: &PersistentZero| match (own.kind, own.exponent) {
+        (ApproximantKind::Differential, Some((value, error))) => {
             error <= WORST_POWER && (value - 0.5).abs() <= error
         }
         _ => true,
     };
-    let together = |one: &Followed| {
+    let together = |one: &PersistentZero| {
         let near = |place: &Complex, error: f64| one.place.distance(place) <= one.error + error;
         found.iter().all(|other| near(&other.place, other.error))
             && seen.iter().any(|other| near(&other.0, other.1))
     };
-    has(Kind::Quadratic)
-        && has(Kind::Differential)
+    has(ApproximantKind::Quadratic)
+        && has(ApproximantKind::Differential)
         && found.iter().all(|own| is_root(own) && together(own))
 }
 
 /// The nearest singularity of those that the kinds of approximants have found, with an error that
 /// covers what they differ by.
-fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Singularity> {
+fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Option<Singularity> {
     /// An exponent with more error is not worth saying.
     const WORST_EXPONENT: f64 = 0.02;
     /// A place with more error, relatively, is none.
     const WORST: f64 = 0.05;
-    /// So many coefficients place a singularity whose power is not known.
+    /// Number of coefficients that determine a singularity of unknown exponent.
     const MANY: usize = 32;
     /// Powers of the period below this may be those of a logarithm.
     const SMALL_POWER: f64 = 0.2;
     /// The factor on the error there.
     const SLOWEST: f64 = 10.0;
-    let size_of = |own: &Followed| own.place.to_f64().norm();
-    // By how much the coefficients grow faster than those of the singularity, over what that may be
-    // off: as a power of their number.
-    let excess = |own: &Followed| {
+    let size_of = |own: &PersistentZero| own.place.to_f64().norm();
+    // Excess of the growth of the coefficients over that by the singularity, over its uncertainty:
+    // as a power of their number.
+    let excess = |own: &PersistentZero| {
         let power = own.power_of_function()? + 1.0;
         Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
     };
-    let zero = |own: &Followed| Some((own.place.to_f64(), own.order_of_zero()?));
+    let zero = |own: &PersistentZero| Some((own.place.to_f64(), own.order_of_zero()?));
     let zeros: Vec<(Complex64, f64)> = found.iter().filter_map(zero).collect();
-    let of_inverse_root = found.iter().filter(|own| own.kind == Kind::OfInverseRoot);
+    let of_inverse_root = found.iter().filter(|own| own.kind == ApproximantKind::OfInverseRoot);
     let seen: Vec<(Complex, f64)> = of_inverse_root
         .filter(|own| own.order_of_zero().is_none() && own.error <= WORST * size_of(own))
         .map(|own| (own.place.clone(), own.error))
         .collect();
-    let singular = |own: &Followed| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
-    // What would make larger coefficients than there are is none.
-    let found: Vec<(Followed, f64)> = found
+    let singular =
+        |own: &PersistentZero| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
+    // A zero that would make larger coefficients than there are is not a singularity.
+    let found: Vec<(PersistentZero, f64)> = found
         .into_iter()
         .filter(singular)
         .filter_map(|own| excess(&own).map(|excess| (own, excess)))
@@ -737,28 +742,28 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     }
     let nearest =
         found.iter().map(|(own, _)| size_of(own) + own.error).fold(f64::INFINITY, f64::min);
-    let on_circle = |own: &Followed| size_of(own) - own.error <= nearest * (1.0 + MOVES);
-    let mut found: Vec<Followed> =
+    let on_circle = |own: &PersistentZero| size_of(own) - own.error <= nearest * (1.0 + MOVES);
+    let mut found: Vec<PersistentZero> =
         found.into_iter().map(|(own, _)| own).filter(on_circle).collect();
-    let exponent_by = |found: &[Followed], wanted: Kind| {
+    let exponent_by = |found: &[PersistentZero], wanted: ApproximantKind| {
         let own = found.iter().filter(|own| own.kind == wanted);
         let best = own.min_by(|a, b| a.error.total_cmp(&b.error))?;
         best.exponent.filter(|(_, error)| *error < WORST_EXPONENT)
     };
-    let exponent = exponent_by(&found, Kind::OfInverseRoot);
-    let power = exponent_by(&found, Kind::Differential);
-    // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a
-    // logarithm of the period.
+    let exponent = exponent_by(&found, ApproximantKind::OfInverseRoot);
+    let power = exponent_by(&found, ApproximantKind::Differential);
+    // A singularity other than a square root is not seen by quadratic approximants, nor a logarithm
+    // of the period by those of omega^2.
     if [exponent, power]
         .into_iter()
         .flatten()
         .any(|(value, error)| (value - 0.5).abs() > 2.0 * error)
     {
-        let others = found.iter().any(|own| own.kind != Kind::Quadratic);
-        found.retain(|own| own.kind != Kind::Quadratic || !others);
+        let others = found.iter().any(|own| own.kind != ApproximantKind::Quadratic);
+        found.retain(|own| own.kind != ApproximantKind::Quadratic || !others);
     }
     if exponent.is_some_and(|(value, error)| value.abs() <= error) {
-        found.retain(|own| own.kind != Kind::Differential);
+        found.retain(|own| own.kind != ApproximantKind::Differential);
     }
     let best = found.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
     let size = best.place.to_f64().norm();
@@ -826,7 +831,7 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// No estimate has more.
+/// Largest number of decimals of an estimate.
 const MOST_DECIMALS: usize = 400;
 
 impl Estimate {
@@ -930,8 +935,8 @@ mod tests {
         assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
     }
 
-    /// Of few coefficients too: pairs of all angles and powers, with a real singularity near them,
-    /// at their own distance or within it.
+    /// Few coefficients give a right result or none: pairs of all angles and powers, with a real
+    /// singularity near them, at their own distance or within it.
     #[test]
     fn few_coefficients_say_what_is_so_or_nothing() {
         for degree in [20, 29] {

@@ -27,7 +27,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::symbol::Symbol;
 
-/// One instruction. Its operands, and its result, are series with a number each, their place.
+/// One instruction. Its operands, and its result, are series, each given by its index in the tape.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
     /// A variable or a number: nothing to compute.
@@ -40,8 +40,8 @@ pub(super) enum Operation {
     Divide(usize, usize, usize),
     /// `s u'`: the coefficients `n u_n`.
     Slope(usize),
-    /// A power that is no whole number, of what is not zero; its value, which is negative where the
-    /// base may be.
+    /// A power that is not a whole number, of what is not zero; its value, which is negative where
+    /// the base may be.
     Power { base: usize, exponent: f64, first: fn(f64, f64) -> f64 },
     /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of
     /// its slope, which is zero beyond an order, and that of `g`.
@@ -103,7 +103,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Nothing yet; series are to have the orders up to this one.
+    /// An empty program for series up to this order.
     pub(super) fn new(degree: usize) -> Self {
         Self {
             length: degree + 1,
@@ -174,7 +174,7 @@ impl Program {
         self.operations.len()
     }
 
-    /// What is at a place.
+    /// The operation at an index.
     pub(super) fn operation(&self, place: usize) -> &Operation {
         &self.operations[place]
     }
@@ -215,7 +215,7 @@ pub struct Tape<const L: usize = 1> {
     program: Arc<Program>,
     /// Place by place its coefficients.
     series: Vec<[f64; L]>,
-    /// On which side of each corner the motions are taken to be.
+    /// The side of each corner on which the motions are taken to be.
     sides: Vec<[f64; L]>,
 }
 
@@ -297,7 +297,7 @@ impl Tape {
         changed
     }
 
-    /// The same operations for several motions, all of which begin as this one.
+    /// Returns a tape of the same operations for several motions, all of which start as this one.
     pub fn side_by_side<const L: usize>(&self) -> Tape<L> {
         Tape {
             program: self.program.clone(),
@@ -330,9 +330,9 @@ impl<const L: usize> Tape<L> {
         }
     }
 
-    /// Hands the series of one lane at these places, and those of the corners, to a tape of its
+    /// Copies the series of one lane at these indices, and those of the corners, to a tape of its
     /// own with the same operations.
-    pub fn unload(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
+    pub fn copy_lane_to(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
         let length = self.program.length;
         for place in places.chain(self.program.corners.iter().copied()) {
             let own = &mut own.series[place * length..][..length];
@@ -350,18 +350,18 @@ impl<const L: usize> Tape<L> {
     /// Computes the coefficients of everything from the values of the variables; those of the first
     /// variables grow by the rates at these places.
     pub fn expand(&mut self, rates: &[usize]) {
-        Arch::new().dispatch(Expansion { tape: self, rates });
+        Arch::new().dispatch(TapeExpansion { tape: self, rates });
     }
 }
 
 /// All orders of a tape; always compiled into its caller, so that it gets the widest registers
 /// there are.
-struct Expansion<'a, const L: usize> {
+struct TapeExpansion<'a, const L: usize> {
     tape: &'a mut Tape<L>,
     rates: &'a [usize],
 }
 
-impl<const L: usize> WithSimd for Expansion<'_, L> {
+impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
     type Output = ();
 
     #[inline(always)]
@@ -380,7 +380,7 @@ impl<const L: usize> WithSimd for Expansion<'_, L> {
             inverse = 1.0 / (order + 1) as f64;
             for (variable, rate) in self.rates.iter().enumerate() {
                 let rate = series[rate * length + order];
-                series[variable * length + order + 1] = each(|lane| inverse * rate[lane]);
+                series[variable * length + order + 1] = per_lane(|lane| inverse * rate[lane]);
                 if let Some(slope) = program.slopes[variable] {
                     series[slope * length + order + 1] = rate;
                 }
@@ -390,7 +390,7 @@ impl<const L: usize> WithSimd for Expansion<'_, L> {
 }
 
 #[inline(always)]
-fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+fn per_lane<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
     let mut result = [0.0; L];
     for (lane, entry) in result.iter_mut().enumerate() {
         *entry = value(lane);
@@ -425,15 +425,15 @@ fn compute<const L: usize>(
         Operation::Divide(a, b, degree) => {
             let known = products(row(*b), row(place), 1..n.min(*degree) + 1, n);
             let (a, b) = (at(*a, n), at(*b, 0));
-            each(|lane| (a[lane] - known[lane]) / b[lane])
+            per_lane(|lane| (a[lane] - known[lane]) / b[lane])
         }
         Operation::Slope(a) => {
             let a = at(*a, n);
-            each(|lane| n as f64 * a[lane])
+            per_lane(|lane| n as f64 * a[lane])
         }
         Operation::Power { base, exponent, first } if n == 0 => {
             let base = at(*base, 0);
-            each(|lane| first(base[lane], *exponent))
+            per_lane(|lane| first(base[lane], *exponent))
         }
         Operation::Power { base, exponent, .. } => {
             let (base, own) = (row(*base), row(place));
@@ -448,36 +448,40 @@ fn compute<const L: usize>(
                     }
                 }
             }
-            // What is zero altogether, as behind a closed corner, has zero for its roots.
-            each(|lane| match vanishes[lane] {
+            // A series that vanishes identically, as behind a closed corner, has zero for its
+            // roots.
+            per_lane(|lane| match vanishes[lane] {
                 true => 0.0,
                 false => sum[lane] / (n as f64 * base[0][lane]),
             })
         }
         Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
             let of = at(*of, 0);
-            each(|lane| first(of[lane]))
+            per_lane(|lane| first(of[lane]))
         }
         Operation::Integral { slope, degree, rate, .. } => {
             let sum = products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n);
-            each(|lane| inverse * sum[lane])
+            per_lane(|lane| inverse * sum[lane])
         }
         Operation::Quotient { slope, own, over, sign, .. } => {
             let known = products(row(*own), row(*over), 1..n, n);
             let (slope, over) = (at(*slope, n), at(*over, 0));
-            each(|lane| (sign * slope[lane] - known[lane]) * inverse / over[lane])
+            per_lane(|lane| (sign * slope[lane] - known[lane]) * inverse / over[lane])
         }
         Operation::Waves { of, slope, degree, sign, first } => {
             let [one, other] = match n {
                 0 => {
                     let of = at(*of, 0);
-                    first.map(|first| each(|lane| first(of[lane])))
+                    first.map(|first| per_lane(|lane| first(of[lane])))
                 }
                 _ => {
                     let orders = 1..n.min(*degree) + 1;
                     let others = [row(place + 1), row(place)];
                     let [one, other] = products_with(row(*slope), others, orders, n);
-                    [each(|lane| inverse * one[lane]), each(|lane| sign * inverse * other[lane])]
+                    [
+                        per_lane(|lane| inverse * one[lane]),
+                        per_lane(|lane| sign * inverse * other[lane]),
+                    ]
                 }
             };
             series[(place + 1) * length + n] = other;
@@ -487,7 +491,7 @@ fn compute<const L: usize>(
             let (argument, side) = (at(program.corners[*corner], 0), sides[*corner]);
             let [positive, negative] =
                 [positive, negative].map(|chosen| chosen.map_or([0.0; L], |chosen| at(chosen, n)));
-            each(|lane| match argument[lane].is_finite() {
+            per_lane(|lane| match argument[lane].is_finite() {
                 true if side[lane] > 0.0 => positive[lane],
                 true => negative[lane],
                 // Without a value it has no side.
@@ -525,7 +529,7 @@ fn products<const L: usize>(
             even[lane] += a[lane] * b[lane];
         }
     }
-    each(|lane| even[lane] + odd[lane])
+    per_lane(|lane| even[lane] + odd[lane])
 }
 
 /// As [`products`], of one series with two others.
@@ -558,5 +562,5 @@ fn products_with<const L: usize>(
             even[1][lane] += a[lane] * c[lane];
         }
     }
-    [each(|lane| even[0][lane] + odd[0][lane]), each(|lane| even[1][lane] + odd[1][lane])]
+    [per_lane(|lane| even[0][lane] + odd[0][lane]), per_lane(|lane| even[1][lane] + odd[1][lane])]
 }

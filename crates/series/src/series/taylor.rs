@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 /// The highest degree that is expanded.
 pub const HIGHEST_DEGREE: u32 = 4000;
 
-/// Why there is no expansion.
+/// The reason why there is no expansion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaylorError {
@@ -101,13 +101,13 @@ fn known_to(
     expression: &Expr,
     point: &[(Symbol, Rational)],
     count: usize,
-) -> Result<Series, TaylorError> {
+) -> Result<TruncatedSeries, TaylorError> {
     /// More than the poles of a force have; quotients within quotients lose some at each level.
     const ATTEMPTS: usize = 6;
     let mut length = count.max(2);
     for _ in 0..ATTEMPTS {
-        let expansion = Expansion { point, length, too_short: Cell::new(false) };
-        match expansion.of(expression) {
+        let expansion = TaylorExpansion { point, length, too_short: Cell::new(false) };
+        match expansion.expand(expression) {
             Ok(found) if found.pole > 0 && found.known > 0 => {
                 return Err(expansion.not_analytic(&pole_of(expression, point)));
             }
@@ -120,7 +120,7 @@ fn known_to(
             Err(_) => length += 4,
         }
     }
-    let expansion = Expansion { point, length, too_short: Cell::new(false) };
+    let expansion = TaylorExpansion { point, length, too_short: Cell::new(false) };
     Err(expansion.not_analytic(expression))
 }
 
@@ -131,7 +131,7 @@ fn pole_of(expression: &Expr, point: &[(Symbol, Rational)]) -> Expr {
         if first.is_none()
             && matches!(expr.node(), Node::Power(..))
             && let Ok(found) =
-                (Expansion { point, length: 8, too_short: Cell::new(false) }).of(expr)
+                (TaylorExpansion { point, length: 8, too_short: Cell::new(false) }).expand(expr)
             && found.pole > 0
         {
             first = Some(expr.clone());
@@ -168,27 +168,26 @@ fn special_coefficient(function: Function, k: usize) -> Expr {
 }
 
 /// A truncated power series in `s`; as many entries as the expansion is long.
-type Series = Vec<Expr>;
+type TruncatedSeries = Vec<Expr>;
 
 /// `s^-pole (c_0 + c_1 s + ...)`; where there is a pole, `c_0` is not zero.
 #[derive(Clone)]
 struct Laurent {
     pole: usize,
-    /// How many of the coefficients are right: those behind them are zeros in place of what is not
-    /// known.
+    /// Number of known coefficients: those behind them are zeros in place of unknown ones.
     known: usize,
-    coefficients: Series,
+    coefficients: TruncatedSeries,
 }
 
-struct Expansion<'a> {
+struct TaylorExpansion<'a> {
     point: &'a [(Symbol, Rational)],
     length: usize,
     /// Whether a quotient was refused because nothing of its denominator is seen at this length.
     too_short: Cell<bool>,
 }
 
-impl Expansion<'_> {
-    fn of(&self, expression: &Expr) -> Result<Laurent, TaylorError> {
+impl TaylorExpansion<'_> {
+    fn expand(&self, expression: &Expr) -> Result<Laurent, TaylorError> {
         expression.fold(|node, children: &[Laurent]| self.node(node, children))
     }
 
@@ -199,7 +198,7 @@ impl Expansion<'_> {
             |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
         let is_power =
             |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
-        // What vanishes so far may be no constant at a greater length.
+        // A base that vanishes to this length may not be a constant at a greater length.
         let may_vanish = is_power(expression)
             && children.first().is_some_and(|base| base.coefficients[0].is_zero());
         if known == self.length
@@ -240,7 +239,7 @@ impl Expansion<'_> {
             return Err(self.not_analytic(term));
         }
         let series = |child: &Laurent| child.coefficients.clone();
-        let children: Vec<Series> = children.iter().map(series).collect();
+        let children: Vec<TruncatedSeries> = children.iter().map(series).collect();
         let coefficients = match (expression.node(), children.as_slice()) {
             (Node::Symbol(symbol), _) => self.variable(*symbol, expression),
             (Node::Power(..), [base, exponents]) => {
@@ -254,7 +253,7 @@ impl Expansion<'_> {
         Ok(self.regular(coefficients, known))
     }
 
-    fn regular(&self, coefficients: Series, known: usize) -> Laurent {
+    fn regular(&self, coefficients: TruncatedSeries, known: usize) -> Laurent {
         Laurent { pole: 0, known, coefficients }
     }
 
@@ -293,13 +292,13 @@ impl Expansion<'_> {
         series
     }
 
-    /// As [`Expansion::power`], of a series without a pole that does not vanish.
+    /// As [`TaylorExpansion::power`], of a series without a pole that does not vanish.
     fn regular_power(
         &self,
-        base: &Series,
+        base: &TruncatedSeries,
         exponent: &Rational,
         term: &Expr,
-    ) -> Result<Series, TaylorError> {
+    ) -> Result<TruncatedSeries, TaylorError> {
         let found = self.power(&self.regular(base.clone(), self.length), exponent, term)?;
         match found.pole {
             0 => Ok(found.coefficients),
@@ -311,13 +310,13 @@ impl Expansion<'_> {
         self.point.iter().any(|(variable, _)| expression.contains(*variable))
     }
 
-    fn constant(&self, value: Expr) -> Series {
+    fn constant(&self, value: Expr) -> TruncatedSeries {
         let mut series = vec![Expr::zero(); self.length];
         series[0] = value;
         series
     }
 
-    fn variable(&self, symbol: Symbol, itself: &Expr) -> Series {
+    fn variable(&self, symbol: Symbol, itself: &Expr) -> TruncatedSeries {
         match self.point.iter().find(|(variable, _)| *variable == symbol) {
             None => self.constant(itself.clone()),
             Some((_, centre)) => {
@@ -332,11 +331,19 @@ impl Expansion<'_> {
         }
     }
 
-    fn product(&self, left: &Series, right: &Series) -> Result<Series, TaylorError> {
+    fn product(
+        &self,
+        left: &TruncatedSeries,
+        right: &TruncatedSeries,
+    ) -> Result<TruncatedSeries, TaylorError> {
         (0..self.length).map(|k| convolution(left, right, k, |_| Rational::one())).collect()
     }
 
-    fn times(&self, series: &Series, factor: &Expr) -> Result<Series, TaylorError> {
+    fn times(
+        &self,
+        series: &TruncatedSeries,
+        factor: &Expr,
+    ) -> Result<TruncatedSeries, TaylorError> {
         self.product(series, &self.constant(factor.clone()))
     }
 
@@ -344,9 +351,9 @@ impl Expansion<'_> {
     fn integral(
         &self,
         start: Expr,
-        derivative: &Series,
-        of: &Series,
-    ) -> Result<Series, TaylorError> {
+        derivative: &TruncatedSeries,
+        of: &TruncatedSeries,
+    ) -> Result<TruncatedSeries, TaylorError> {
         let mut series = vec![start];
         for k in 1..self.length {
             let sum = convolution(&of[1..=k].to_vec(), &derivative[..k].to_vec(), k - 1, |j| {
@@ -428,7 +435,7 @@ impl Expansion<'_> {
         Ok(Laurent { pole, known, coefficients: result })
     }
 
-    fn exponential(&self, of: &Series) -> Result<Series, TaylorError> {
+    fn exponential(&self, of: &TruncatedSeries) -> Result<TruncatedSeries, TaylorError> {
         let mut series = vec![Expr::function(Function::Exp, vec![of[0].clone()])?];
         for k in 1..self.length {
             let sum = convolution(&of[1..=k].to_vec(), &series, k - 1, |j| integer(j + 1))?;
@@ -437,7 +444,7 @@ impl Expansion<'_> {
         Ok(series)
     }
 
-    fn logarithm(&self, of: &Series, term: &Expr) -> Result<Series, TaylorError> {
+    fn logarithm(&self, of: &TruncatedSeries, term: &Expr) -> Result<TruncatedSeries, TaylorError> {
         if of[0].is_zero() || sign_of(&of[0]) == Some(std::cmp::Ordering::Less) {
             return Err(self.not_analytic(term));
         }
@@ -449,9 +456,9 @@ impl Expansion<'_> {
     /// Sine and cosine (`sign = -1`) or their hyperbolic sisters (`sign = 1`).
     fn sine_and_cosine(
         &self,
-        of: &Series,
+        of: &TruncatedSeries,
         hyperbolic: bool,
-    ) -> Result<(Series, Series), TaylorError> {
+    ) -> Result<(TruncatedSeries, TruncatedSeries), TaylorError> {
         let (sine, cosine, sign) = if hyperbolic {
             (Function::Sinh, Function::Cosh, 1)
         } else {
@@ -475,9 +482,14 @@ impl Expansion<'_> {
 
     /// `w' = (1 + w^2) u'`, the tangent, or `w' = (1 - w^2) u'`, the hyperbolic one: in powers of
     /// its own first value.
-    fn tangent(&self, start: Expr, of: &Series, sign: i64) -> Result<Series, TaylorError> {
+    fn tangent(
+        &self,
+        start: Expr,
+        of: &TruncatedSeries,
+        sign: i64,
+    ) -> Result<TruncatedSeries, TaylorError> {
         let mut series = vec![start];
-        let mut slopes: Series = Vec::new();
+        let mut slopes: TruncatedSeries = Vec::new();
         for k in 1..self.length {
             let square = convolution(&series, &series, k - 1, |_| integer_sign(sign))?;
             slopes.push(if k == 1 { Expr::one() + square } else { square });
@@ -490,9 +502,9 @@ impl Expansion<'_> {
     fn function(
         &self,
         function: Function,
-        arguments: &[Series],
+        arguments: &[TruncatedSeries],
         term: &Expr,
-    ) -> Result<Series, TaylorError> {
+    ) -> Result<TruncatedSeries, TaylorError> {
         let of = arguments.first().ok_or_else(|| self.not_analytic(term))?;
         let start = || Expr::function(function, vec![of[0].clone()]);
         match function {
@@ -571,9 +583,9 @@ impl Expansion<'_> {
     /// `sum_k coefficient(k) u^k` of a series without constant term, by Horner's rule.
     fn composed(
         &self,
-        of: &Series,
+        of: &TruncatedSeries,
         coefficient: &dyn Fn(usize) -> Expr,
-    ) -> Result<Series, TaylorError> {
+    ) -> Result<TruncatedSeries, TaylorError> {
         let mut sum = self.constant(coefficient(self.length - 1));
         for k in (0..self.length - 1).rev() {
             sum = self.product(&sum, of)?;
@@ -595,8 +607,8 @@ impl Expansion<'_> {
 
 /// `sum_j weight(j) left_j right_(k-j)`, expanded so that like terms meet and zeros are seen.
 fn convolution(
-    left: &Series,
-    right: &Series,
+    left: &TruncatedSeries,
+    right: &TruncatedSeries,
     k: usize,
     weight: impl Fn(usize) -> Rational,
 ) -> Result<Expr, TaylorError> {
@@ -612,7 +624,7 @@ fn convolution(
     Ok(Expr::sum(terms).expand()?)
 }
 
-/// The sign of a constant; `None` where it depends on symbols or is too small to tell.
+/// The sign of a constant; `None` if it depends on symbols or is too small to tell.
 fn sign_of(constant: &Expr) -> Option<std::cmp::Ordering> {
     if let Some(number) = constant.as_number() {
         return Some(number.cmp(&Rational::zero()));

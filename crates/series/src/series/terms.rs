@@ -7,14 +7,14 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
 use crate::symbol::Symbol;
 
-/// How a format writes a harmonic.
+/// The notation of harmonics in a format.
 pub struct Notation {
     /// `cos(3*theta)` from `"cos"`, 3 and the name of the phase; never asked for the zeroth
     /// harmonic.
     pub wave: fn(&str, usize, Symbol) -> String,
-    /// What stands between coefficient and harmonic.
+    /// The text between coefficient and harmonic.
     pub times: &'static str,
-    /// What stands around a coefficient that is a sum.
+    /// The brackets around a coefficient that is a sum.
     pub brackets: [&'static str; 2],
 }
 

@@ -23,10 +23,10 @@ use pulp::NullaryFnOnce;
 use crate::exact::residue::sums::multiply;
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 
-/// Below, the sums are as fast as another halving.
+/// Number of points below which the sums are as fast as another halving.
 const LEAF: usize = 12;
 
-/// How many points there are, and how they are come by.
+/// Number and symmetry of the points, and the transformation to them.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     /// Odd harmonics alone, at points on a quarter of the period; otherwise all, on half of it.
@@ -36,7 +36,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// For `count` harmonics: the odd ones `1, 3, ...` or all of `0, 1, 2, ...`.
+    /// The points for `count` harmonics: the odd ones `1, 3, ...` or all of `0, 1, 2, ...`.
     pub fn new(count: usize, half_wave: bool) -> Self {
         let mut halvings = 0;
         while count >> (halvings + 1) >= LEAF {
@@ -79,7 +79,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// What the derivative consists of.
+    /// The kind of series of the derivative.
     pub fn other(self) -> Self {
         match self {
             Self::Cosine => Self::Sine,
@@ -103,7 +103,7 @@ pub struct Waves {
 }
 
 impl Waves {
-    /// `None` where a prime has no such roots of unity.
+    /// `None` if a prime has no such roots of unity.
     #[inline(always)]
     pub fn new<A: Arithmetic>(residues: &Residues<A>, grid: Grid) -> Option<Self> {
         let (size, circle) = (grid.size(), grid.circle());
@@ -172,7 +172,7 @@ impl Waves {
         coefficients: &[Lanes],
         values: &mut [Lanes],
     ) {
-        let work = Values(self, residues, wave, coefficients, values);
+        let work = EvaluateWaves(self, residues, wave, coefficients, values);
         residues.arithmetic.vectorize(work);
     }
 
@@ -186,12 +186,12 @@ impl Waves {
         values: &mut [Lanes],
         out: &mut [Lanes],
     ) {
-        let work = Coefficients(self, residues, wave, values, out);
+        let work = RecoverCoefficients(self, residues, wave, values, out);
         residues.arithmetic.vectorize(work);
     }
 
-    /// What is divided by, point by point, so that cosines of multiples of `phi` remain.
-    fn over(&self, wave: Wave) -> Option<&[Lanes]> {
+    /// The divisors, point by point, that leave cosines of multiples of `phi`.
+    fn divisors(&self, wave: Wave) -> Option<&[Lanes]> {
         match (self.grid.half_wave, wave) {
             (_, Wave::Sine) => Some(&self.over_sine),
             (true, Wave::Cosine) => Some(&self.over_cosine),
@@ -228,9 +228,9 @@ fn cosine_sums<A: Arithmetic>(
     (residues.reduce(of_left_sum), residues.reduce(of_right_sum))
 }
 
-struct Values<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
+struct EvaluateWaves<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
 
-impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -312,16 +312,22 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
                 }
             }
         }
-        if let Some(over) = waves.over(wave) {
+        if let Some(over) = waves.divisors(wave) {
             multiply(residues, values, over);
         }
         waves.scratch = scratch;
     }
 }
 
-struct Coefficients<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a mut [Lanes], &'a mut [Lanes]);
+struct RecoverCoefficients<'a, A>(
+    &'a mut Waves,
+    &'a Residues<A>,
+    Wave,
+    &'a mut [Lanes],
+    &'a mut [Lanes],
+);
 
-impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for RecoverCoefficients<'_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -330,7 +336,7 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
         let Grid { half_wave, halvings, leaf } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
-        if let Some(over) = waves.over(wave) {
+        if let Some(over) = waves.divisors(wave) {
             multiply(residues, values, over);
         }
         for halving in 0..halvings {
@@ -420,13 +426,13 @@ mod tests {
     impl Work for Products {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let grid = Grid::new(3 * self.count, self.half_wave);
             let moduli: Vec<Modulus> = primes_below(A::BITS, grid.circle() as u64)
                 .take(WIDTH)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = &Residues { arithmetic, moduli: Moduli::of(&moduli) };
+            let residues = &Residues { arithmetic, moduli: Moduli::from_primes(&moduli) };
             let mut waves = Waves::new(residues, grid).expect("roots of unity");
             let values = |waves: &mut Waves, wave, coefficients: &[Lanes]| {
                 let mut values = vec![Lanes::default(); grid.size()];
@@ -484,7 +490,7 @@ mod tests {
     fn products_of_values_are_values_of_products() {
         for count in [2, 3, 8, 15, 40] {
             for half_wave in [true, false] {
-                Products { count, half_wave }.by(Portable);
+                Products { count, half_wave }.run(Portable);
                 by_widest(Products { count, half_wave });
             }
         }

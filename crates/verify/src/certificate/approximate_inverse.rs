@@ -19,15 +19,15 @@ pub(super) const SHORT: Balls = Balls { bits: 80 };
 pub(super) struct Inverse {
     /// Its entries in full, row by row.
     pub(super) entries: Vec<Vec<Ball>>,
-    /// The same in [`SHORT`].
+    /// The entries rounded to the precision of [`SHORT`].
     pub(super) short: Vec<Vec<Ball>>,
     /// The weight of the first row.
     pub(super) sigma: Bound,
 }
 
 impl Inverse {
-    /// Of entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
-    pub(super) fn of(entries: &[Vec<Integer>], bits: usize, sigma: i32) -> Self {
+    /// Takes entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
+    pub(super) fn from_entries(entries: &[Vec<Integer>], bits: usize, sigma: i32) -> Self {
         let rows = |balls: Balls| {
             let row =
                 |row: &Vec<Integer>| row.iter().map(|entry| balls.dyadic(entry, bits)).collect();
@@ -48,8 +48,8 @@ impl Inverse {
         self.norm(&column, WORKING)
     }
 
-    /// How far the inverse makes of a column of the derivative something else than one at this
-    /// place.
+    /// Norm of `A c - e_place` for a column `c` of the derivative, A this inverse and `e_place` the
+    /// unit vector (zero for `None`): how far A maps the column away from the unit column.
     pub(super) fn distance_from_unit(&self, column: &[Ball], place: Option<usize>) -> Bound {
         let mut image = image(&self.short, column, SHORT);
         if let Some(place) = place {

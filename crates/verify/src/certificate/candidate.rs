@@ -32,11 +32,11 @@ use crate::verify::{self, VerificationError};
 
 /// Binary digits behind the point of the harmonics: thirty-three decimal ones.
 pub(super) const BITS: usize = 112;
-/// Those of the inverse, which need not be exact.
+/// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
-/// Why there is no certificate. This is no evidence against a formula, but for a motion that the
-/// judge does not find either.
+/// The reason why there is no certificate. This is no evidence against a formula, but for a motion
+/// that the judge does not find either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotCertified {
@@ -50,7 +50,7 @@ pub enum NotCertified {
         "`{term}` is not linear in the velocity: certificates of limit cycles are of x'' + g(x)*x' + h(x) = 0"
     )]
     NotLienard {
-        /// What is not.
+        /// The term that is not linear in the velocity.
         term: String,
         /// The equation of the velocity, where that has this form.
         of_velocity: Option<String>,
@@ -60,13 +60,12 @@ pub enum NotCertified {
         "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
     )]
     NotDriven(String),
-    /// A drive whose frequency is no fraction.
+    /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
     )]
     DrivingFrequency(String),
-    /// No steady motion by the formula, or no true one that it leads to, or one without an
-    /// amplitude of its own.
+    /// The formula has no steady motion with an amplitude of its own and a true motion near it.
     #[error(
         "at these values no steady motion of the formula has an amplitude and a true motion near"
     )]
@@ -84,7 +83,7 @@ pub enum NotCertified {
         "the formula is one in the amplitude of the first harmonic, a: a certificate needs to know where exactly the motion starts"
     )]
     Convention,
-    /// A start that is no fraction.
+    /// A start that is not a fraction.
     #[error(
         "x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts"
     )]
@@ -104,29 +103,29 @@ pub enum NotCertified {
     /// A force that could not be taken apart, or had no value.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
-    /// Likewise.
+    /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// A law that is no expression in the amplitude.
+    /// A law that is not an expression in the amplitude.
     #[error(
         "`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone"
     )]
     Law(String),
-    /// No block proves it, for a reason that no block has a part in.
+    /// The proof fails for a reason that does not depend on the block.
     #[error("not certified: {0}")]
     NoSeries(NotProved),
-    /// No block proves it.
+    /// The proof fails for every block.
     #[error("not certified: {reason}, with {harmonics} harmonics in the block")]
     NotProved {
         /// The inequality that does not hold.
         reason: NotProved,
-        /// Of the last block.
+        /// Number of harmonics of the last block.
         harmonics: usize,
     },
 }
 
 impl NotCertified {
-    /// What to do about it.
+    /// Returns advice on what to do about the refusal, in a sentence; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         let help = match self {
             Self::NotConservative(_) => {
@@ -218,7 +217,7 @@ fn certified_motion(
     with_formula: bool,
 ) -> Result<(Certificate, Certified), NotCertified> {
     let _letters = oscillator.letters().in_force();
-    let question = Question::of(oscillator, solution, at)?;
+    let question = ProofTarget::new(oscillator, solution, at)?;
     let judged = match with_formula {
         true => Some(judged(solution, at, BITS)?),
         false => None,
@@ -263,15 +262,19 @@ pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     sizes.take_while(|size| *size < HIGHEST_HARMONIC).take(8)
 }
 
-/// What is to be proved.
-struct Question {
+/// The motion to be proved: `x'' + force = 0` from rest at `start`.
+struct ProofTarget {
     force: Expr,
     start: Rational,
     odd: bool,
 }
 
-impl Question {
-    fn of(oscillator: &Oscillator, solution: &Solution, at: &Values) -> Result<Self, NotCertified> {
+impl ProofTarget {
+    fn new(
+        oscillator: &Oscillator,
+        solution: &Solution,
+        at: &Values,
+    ) -> Result<Self, NotCertified> {
         let parts = oscillator.parts()?;
         for part in [parts.damping, parts.inertia, parts.forcing] {
             if !part.is_zero() {
@@ -346,11 +349,11 @@ pub(super) fn judged(
     let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
     let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
     let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
-    let mut formula = unclaimed([&cosines, &sines[..length]], bits);
+    let mut formula = without_claims([&cosines, &sines[..length]], bits);
     (formula.law, formula.values) = law::of_frequency(solution, at);
     formula.frequency = units(motion.frequency(), bits);
-    // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost
-    // digits.
+    // If the law can be evaluated exactly from its text, that value is the frequency of the
+    // formula; the double of it may have lost digits.
     match law::frequency(&formula) {
         Some(exact) if is_near(&exact, motion.frequency()) => {
             formula.frequency = Balls { bits }.converted(&exact, WORKING).middle;
@@ -369,7 +372,7 @@ pub(super) fn is_near(exact: &Ball, double: f64) -> bool {
 
 /// A formula of which nothing is claimed yet, its cosine and sine coefficients in units; without a
 /// law, and without a frequency.
-pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
+pub(super) fn without_claims([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
     let in_units = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
     let nothing = || [Rational::zero(), Rational::zero()];
     JudgedFormula {
@@ -386,11 +389,11 @@ pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFor
     }
 }
 
-/// What the numbers of Runge-Kutta have no digits for.
+/// Relative size below which the numbers of a Runge-Kutta orbit are integration error.
 pub(super) const NOISE: f64 = 1e-11;
 
 /// `1/omega^2` and the cosine coefficients of one period.
-fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
+fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Vec<f64>) {
     let count = samples.len() - 1;
     let period = samples[count].0;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
@@ -430,7 +433,7 @@ pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Cert
     let Some((formula, errors)) = formula.zip(certified.formula.as_ref()) else {
         return;
     };
-    let both = |range: formula::Range| {
+    let both = |range: formula::SizeBounds| {
         let ([lower, _], [_, upper]) = (claimed(range.lower), claimed(range.upper));
         [lower, upper]
     };
@@ -493,7 +496,7 @@ pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), N
     })
 }
 
-/// So near that the digits of the numbers end.
+/// A bound of some units in the last place of numbers with this many bits.
 pub(super) fn few_units(bits: usize) -> Bound {
     Bound::power_of_two(-(bits as i32)) * Bound::exactly(64.0)
 }

@@ -15,7 +15,7 @@ use crate::exact::bound::Bound;
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// What of a force cannot be evaluated.
+/// A part of a force that cannot be evaluated over cosine series.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NoValue(
     /// The part of the expression.

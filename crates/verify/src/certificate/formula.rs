@@ -1,4 +1,4 @@
-//! What a proved motion says about a formula: how far it is off, from both sides.
+//! Bounds from both sides of the error of a formula, from the proved motion.
 //!
 //! ```text
 //! x~(t) = X~(omega~ t),   D(theta) = Xbar(theta) - X~(theta), a series of degree K;   theta_j = pi j/M
@@ -33,47 +33,47 @@ use crate::values::Values;
 pub struct Enclosure {
     /// The middle.
     pub middle: Rational,
-    /// How far the number may be from it.
+    /// Bound of the distance of the number from it.
     pub radius: Bound,
 }
 
 impl Enclosure {
-    pub(super) fn of(ball: &Ball) -> Self {
+    pub(super) fn from_ball(ball: &Ball) -> Self {
         Self { middle: WORKING.middle(ball), radius: ball.radius }
     }
 
     /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
-    /// that is known where it is no number.
-    pub fn relative_error(&self, number: f64) -> Range {
+    /// that is known where it is not a number.
+    pub fn relative_error(&self, number: f64) -> SizeBounds {
         let Some(exact) = from_f64(number) else {
-            return Range { lower: 0.0, upper: f64::INFINITY };
+            return SizeBounds { lower: 0.0, upper: f64::INFINITY };
         };
         let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
         let apart = Bound::of_fraction(&(exact - &self.middle));
         let (closest, farthest) =
             ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
-        Range {
+        SizeBounds {
             lower: (closest / (truth + radius).value()).next_down().max(0.0),
             upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
         }
     }
 }
 
-/// No more than a size whose bound this is, rounded up from the nearest double.
+/// A lower bound of a size whose bound was rounded up from the nearest double.
 const fn below(bound: Bound) -> f64 {
     bound.value().next_down().next_down()
 }
 
 /// The ends between which a size is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Range {
-    /// No less.
+pub struct SizeBounds {
+    /// The lower bound.
     pub lower: f64,
-    /// No more.
+    /// The upper bound.
     pub upper: f64,
 }
 
-/// How the amplitude and the frequency are written in a law, beside the letters of the equation.
+/// The letters of amplitude and frequency in a law, beside the parameters of the equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LettersOfLaw {
     /// The amplitude at the start, `A` where the equation has no such name.
@@ -121,32 +121,32 @@ pub struct JudgedFormula {
     pub coefficients: Vec<Integer>,
     /// Its sine coefficients by harmonic, likewise; none of a motion that begins at rest.
     pub sines: Vec<Integer>,
-    /// What is claimed of `max |X - X~|`.
+    /// Claimed lower and upper bound of `max |X - X~|`.
     pub deviation: [Rational; 2],
-    /// What is claimed of `|omega - omega~|`.
+    /// Claimed bounds of `|omega - omega~|`.
     pub frequency_error: [Rational; 2],
-    /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a
-    /// unit of time.
+    /// Claimed bounds of `max |X~'| |omega - omega~|`, the largest rate at which the two motions
+    /// drift apart.
     pub drift: [Rational; 2],
-    /// Of a driven motion, what is claimed of `|a - a~|`; zeros of others.
+    /// Claimed bounds of `|a - a~|` for a driven motion; zeros for others.
     pub amplitude_error: [Rational; 2],
 }
 
-/// How far a formula is off.
+/// Errors of a formula, each between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Errors {
     /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the
     /// [copies](Certified::copies) of X.
-    pub deviation: Range,
+    pub deviation: SizeBounds,
     /// `|omega - omega~|`.
-    pub frequency: Range,
+    pub frequency: SizeBounds,
     /// `|omega~/omega - 1|`; of a driven motion, whose frequency is known, `|a~/a - 1|`.
-    pub relative: Range,
+    pub relative: SizeBounds,
     /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
-    pub drift: Range,
-    /// Of a driven motion `|a - a~|`, the amplitudes of its own harmonic.
-    pub amplitude: Option<Range>,
+    pub drift: SizeBounds,
+    /// `|a - a~|` for a driven motion, the amplitudes of its own harmonic.
+    pub amplitude: Option<SizeBounds>,
 }
 
 impl JudgedFormula {
@@ -203,7 +203,7 @@ pub(super) struct Truth<'a> {
     pub(super) radius: Bound,
 }
 
-/// What follows from a proof.
+/// Returns the frequency, the motion and the errors of the formula that follow from a proof.
 ///
 /// # Errors
 /// A frequency without a value.
@@ -226,18 +226,19 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
     };
     Ok(Certified {
         proof,
-        frequency: Enclosure::of(&frequency),
+        frequency: Enclosure::from_ball(&frequency),
         exponent: None,
         amplitude: None,
         copies: 1,
-        law_is_held: formula.is_some_and(|formula| law::hold(formula, bits) == Ok(true)),
+        law_is_held: formula
+            .is_some_and(|formula| law::law_matches_frequency(formula, bits) == Ok(true)),
         formula: formula.map(errors),
     })
 }
 
 impl Truth<'_> {
     /// `max |X - X~|` of the nearest copy.
-    fn deviation(&self, own_motion: &FourierSeries) -> Range {
+    fn deviation(&self, own_motion: &FourierSeries) -> SizeBounds {
         let apart = |copy: &FourierSeries| {
             let difference = copy.difference(own_motion);
             (below_mean(&difference), difference)
@@ -254,38 +255,39 @@ impl Truth<'_> {
             lower = lower.min(below);
             upper = if above < upper { above } else { upper };
         }
-        Range {
+        SizeBounds {
             lower: (lower - self.radius.value()).next_down().max(0.0),
             upper: (upper + self.radius).value(),
         }
     }
 
-    /// How far a formula of this motion is off, whose frequency is that of the drive; the
-    /// amplitudes are that of the formula and the true one.
+    /// Errors of a formula of a driven motion, whose frequency is that of the drive. The last
+    /// argument has the amplitude by the formula and the true one.
     pub(super) fn errors_of_driven(
         &self,
         own_motion: &FourierSeries,
         [own, truth]: [&Ball; 2],
     ) -> Errors {
-        let (amplitude, relative) = apart(own, truth);
+        let (amplitude, relative) = absolute_and_relative_error(own, truth);
         Errors {
             deviation: self.deviation(own_motion),
-            frequency: Range::default(),
+            frequency: SizeBounds::default(),
             relative,
-            drift: Range::default(),
+            drift: SizeBounds::default(),
             amplitude: Some(amplitude),
         }
     }
 
-    /// How far a formula of this frequency and motion is off.
+    /// Errors of a formula with this frequency and this motion.
     pub(super) fn errors(&self, own_frequency: &Ball, own_motion: &FourierSeries) -> Errors {
-        let (frequency_error, relative) = apart(own_frequency, self.frequency);
+        let (frequency_error, relative) =
+            absolute_and_relative_error(own_frequency, self.frequency);
         let (flattest, steepest) = largest(&own_motion.derivative());
         Errors {
             deviation: self.deviation(own_motion),
             relative,
             amplitude: None,
-            drift: Range {
+            drift: SizeBounds {
                 lower: (flattest * frequency_error.lower).next_down().max(0.0),
                 upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
             },
@@ -294,15 +296,15 @@ impl Truth<'_> {
     }
 }
 
-/// How far a number is from the true one, and that over the true one.
-fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
+/// Absolute and relative error of a number, each between two bounds.
+fn absolute_and_relative_error(own: &Ball, truth: &Ball) -> (SizeBounds, SizeBounds) {
     let off = WORKING.difference(own, truth);
-    let error = Range {
+    let error = SizeBounds {
         lower: WORKING.distance_from_zero(&off).max(0.0),
         upper: WORKING.magnitude(&off).value(),
     };
     let smallest = WORKING.distance_from_zero(truth);
-    let relative = Range {
+    let relative = SizeBounds {
         lower: (error.lower / WORKING.magnitude(truth).value()).next_down().max(0.0),
         upper: match smallest > 0.0 {
             true => Bound::exactly(error.upper).over(smallest).value(),

@@ -27,30 +27,32 @@ use crate::numeric::harmonics::Transform;
 /// The digits with which functions are computed. Those of an approximate motion are fewer.
 pub(super) const WORKING: Balls = Balls { bits: 224 };
 
-/// What is negligible in a series unless its digits say otherwise, and at most.
+/// Binary exponent below which a coefficient is negligible if its digits are not known, and the
+/// largest such exponent.
 const NEGLIGIBLE: i32 = 120;
 
-/// No series has more harmonics; what is beyond is a part of its tail.
+/// The largest number of harmonics of a series; those beyond are a part of its tail.
 const LONGEST: usize = 1600;
 
-/// How often an argument is halved; one of a larger norm has no value here.
+/// The largest number of halvings of an argument; the function of a series of larger norm is
+/// refused.
 const MOST_HALVINGS: u32 = 6;
 
 /// Steps of Newton's iteration, each of which doubles the digits: from those of a double to more
 /// than are kept.
 const STEPS: usize = 3;
 
-/// No Taylor series has more terms.
+/// The largest number of terms of a Taylor series.
 const MOST_TERMS: u32 = 28;
 
 /// One of the functions that a series consists of, by its harmonic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wave {
+pub(super) enum BasisFunction {
     Cosine(usize),
     Sine(usize),
 }
 
-impl Wave {
+impl BasisFunction {
     /// Its harmonic.
     pub(super) const fn harmonic(self) -> usize {
         match self {
@@ -78,7 +80,7 @@ pub(super) fn sum_of_angles(one: &[Ball; 2], other: &[Ball; 2]) -> [Ball; 2] {
 pub(super) struct FourierSeries {
     /// The coefficients of the cosines, that of the constant first.
     pub(super) cosines: Vec<Ball>,
-    /// Those of the sines by their harmonic, that of the constant zero; none of an even function.
+    /// Sine coefficients by harmonic, the entry of the constant zero; empty for an even function.
     pub(super) sines: Vec<Ball>,
     /// The norm of what is not in them.
     pub(super) tail: Bound,
@@ -92,12 +94,12 @@ impl FourierSeries {
         Self::exactly(vec![value], vec![])
     }
 
-    /// Of these cosines and sines and nothing else.
+    /// The function with these cosines and sines and without a tail.
     pub(super) fn exactly(cosines: Vec<Ball>, sines: Vec<Ball>) -> Self {
         Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
 
-    /// The same, of which so many binary digits count.
+    /// This function, of whose coefficients only this many bits are significant.
     pub(super) fn of_digits(mut self, bits: usize) -> Self {
         const MORE: i32 = 16;
         let bits = i32::try_from(bits).unwrap_or(NEGLIGIBLE);
@@ -133,7 +135,7 @@ impl FourierSeries {
         all.map(|ball| WORKING.magnitude(ball)).sum()
     }
 
-    /// How many harmonics it has, the constant among them.
+    /// Number of harmonics, the constant included.
     pub(super) fn length(&self) -> usize {
         self.cosines.len().max(self.sines.len())
     }
@@ -154,15 +156,15 @@ impl FourierSeries {
     }
 
     /// The coefficient of a wave.
-    pub(super) fn coefficient(&self, wave: Wave) -> Ball {
+    pub(super) fn coefficient(&self, wave: BasisFunction) -> Ball {
         match wave {
-            Wave::Cosine(harmonic) => self.cosine(harmonic),
-            Wave::Sine(harmonic) => self.sine(harmonic),
+            BasisFunction::Cosine(harmonic) => self.cosine(harmonic),
+            BasisFunction::Sine(harmonic) => self.sine(harmonic),
         }
     }
 
-    /// The same function at an angle that is larger by one whose cosine and sine are given.
-    pub(super) fn turned(&self, by: &[Ball; 2]) -> Self {
+    /// The function `theta -> f(theta + a)`, with the cosine and the sine of `a` given.
+    pub(super) fn phase_shifted(&self, by: &[Ball; 2]) -> Self {
         let (mut cosines, mut sines) = (vec![], vec![]);
         let mut angle = [WORKING.integer(1), Ball::zero()];
         for k in 0..self.length() {
@@ -192,7 +194,7 @@ impl FourierSeries {
         }
     }
 
-    /// The same with all functions within a distance of it.
+    /// The set of all functions within a distance of those in this one.
     pub(super) fn widened(mut self, distance: Bound) -> Self {
         self.tail += distance;
         self
@@ -221,7 +223,7 @@ impl FourierSeries {
         self
     }
 
-    /// The same, its harmonics at the end that are smaller than `2^-digits` moved into the tail.
+    /// This function with its trailing harmonics smaller than `2^-digits` moved into the tail.
     pub(super) fn shortened(mut self, digits: i32) -> Self {
         self.negligible = self.negligible.min(digits);
         self.trimmed()
@@ -241,7 +243,7 @@ impl FourierSeries {
         }
     }
 
-    /// The same with every coefficient and the tail mapped.
+    /// Applies one map to every coefficient and another to the tail.
     fn mapped(&self, coefficient: impl Fn(&Ball) -> Ball, tail: Bound) -> Self {
         Self {
             cosines: self.cosines.iter().map(&coefficient).collect(),
@@ -338,16 +340,16 @@ impl FourierSeries {
 
     /// Itself divided by a power of two, so that its norm is at most a half, and how often it was
     /// halved.
-    fn halved(&self) -> Option<(Self, u32)> {
+    fn scaled_to_half_norm(&self) -> Option<(Self, u32)> {
         let norm = self.norm();
         let halvings = (0..=MOST_HALVINGS)
             .find(|&halvings| norm <= Bound::power_of_two(halvings as i32 - 1))?;
         Some((self.divided(1 << halvings), halvings))
     }
 
-    /// Sine and cosine; `None` of what is too large.
+    /// Sine and cosine; `None` for what is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
-        let (argument, halvings) = self.halved()?;
+        let (argument, halvings) = self.scaled_to_half_norm()?;
         let square = argument.squared();
         let terms = self.terms();
         let (mut sine, mut cosine) = (Self::integer(1), Self::integer(1));
@@ -366,9 +368,9 @@ impl FourierSeries {
         Some((sine, cosine))
     }
 
-    /// The exponential function; `None` of what is too large.
+    /// The exponential function; `None` for what is too large.
     pub(super) fn exponential(&self) -> Option<Self> {
-        let (argument, halvings) = self.halved()?;
+        let (argument, halvings) = self.scaled_to_half_norm()?;
         let terms = self.terms();
         let mut sum = Self::integer(1);
         for k in (1..=terms).rev() {
@@ -381,7 +383,7 @@ impl FourierSeries {
         Some(sum)
     }
 
-    /// `self^(-1/degree)`, positive; `None` where that is not proved to exist.
+    /// `self^(-1/degree)`, positive; `None` if that is not proved to exist.
     ///
     /// With any `g` that is positive at the angle 0 and `w = 1 - u g^n`, `d = ||w|| < 1`:
     /// `u^(-1/n) = g (1 - w)^(-1/n)`, which is within `||g|| d^2/(1 - d)` of `g (1 + w/n)`, for no
@@ -409,7 +411,7 @@ impl FourierSeries {
         Self::integer(1).difference(&self.product(&root.power(degree)))
     }
 
-    /// `1/self`; `None` where that is not proved to exist.
+    /// `1/self`; `None` if that is not proved to exist.
     pub(super) fn inverse(&self) -> Option<Self> {
         match self.start()? < 0.0 {
             true => Some(self.negated().inverse_root(1)?.negated()),
@@ -417,7 +419,7 @@ impl FourierSeries {
         }
     }
 
-    /// The natural logarithm; `None` where that is not proved to exist.
+    /// The natural logarithm; `None` if that is not proved to exist.
     ///
     /// With any `g` and `w = u exp(-g)`, `d = ||w - 1|| < 1`: `log u = g + log w`, and `log w` is
     /// within `d^2/(2 (1 - d))` of `w - 1`.
@@ -439,7 +441,7 @@ impl FourierSeries {
         (left > 0.0).then(|| guess.sum(&rest).widened((distance * distance).over(left)))
     }
 
-    /// The arctangent; `None` where that is not proved.
+    /// The arctangent; `None` if that is not proved.
     ///
     /// With any `g` and `w = (u cos g - sin g)/(cos g + u sin g)`, which is `tan(atan u - g)`, and
     /// `||w|| = d < 1/32`: the continuous function `atan u - g` stays within `d` of one multiple of
@@ -469,8 +471,8 @@ impl FourierSeries {
         Some(above.product(&cosine.sum(&self.product(&sine)).inverse()?))
     }
 
-    /// A double between zero and its value at the angle 0, of the same sign; `None` where zero may
-    /// be that value.
+    /// A double between zero and its value at the angle 0, of the same sign; `None` if zero may be
+    /// that value.
     fn start(&self) -> Option<f64> {
         let value = self.at_zero();
         let distance = WORKING.distance_from_zero(&value);
@@ -486,8 +488,8 @@ impl FourierSeries {
         self.trimmed()
     }
 
-    /// About `function` of it, from samples; nothing is proved of it. `None` where a sample has no
-    /// value.
+    /// Approximates `function` of this series from samples, without a proof. `None` if a sample has
+    /// no value.
     fn sampled(&self, function: impl Fn(f64) -> f64) -> Option<Self> {
         const DIGITS: f64 = 1e-15;
         let waves = (0..self.length())
@@ -507,8 +509,8 @@ impl FourierSeries {
         let all = harmonics.cosines.iter().chain(&harmonics.sines);
         let largest = all.fold(0.0_f64, |most, value| most.max(value.abs()));
         let balls = |mut coefficients: Vec<f64>| {
-            // What an even or odd function has not must be missing: half of all products are those
-            // with zero.
+            // Coefficients that the parity of the function excludes must be exactly zero: half of
+            // all products are skipped for it.
             for coefficient in &mut coefficients {
                 if coefficient.abs() < DIGITS * largest {
                     *coefficient = 0.0;
@@ -553,13 +555,13 @@ fn add_products(
     }
 }
 
-/// What of a guess need not become smaller: its square is negligible.
+/// The residual at which an initial guess is good enough: its square is negligible.
 fn enough(negligible: i32) -> Bound {
     Bound::power_of_two(-negligible / 2)
 }
 
-/// What is left of a Taylor series of sine, cosine or exponential function from a power on, of an
-/// argument of a norm of at most 1/2: `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
+/// Bound of the remainder of the Taylor series of sine, cosine or exponential from the power n on,
+/// for an argument of norm at most 1/2: `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
 fn remainder(from: u32) -> Bound {
     (1..=from).fold(Bound::exactly(2.0), |bound, k| bound / (2 * k))
 }

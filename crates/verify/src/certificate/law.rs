@@ -13,7 +13,7 @@ use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::expr::{Expr, parse_expression};
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::solution::{Definition, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
@@ -31,10 +31,10 @@ pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values)
     // Rounded coefficients are printed with six digits: here all of them are needed.
     let exactly = match solution.law.in_one_line() {
         _ if !solution.numerical || solution.slow().is_some() => None,
-        Shown::Squared(law) => Some(("^2", Expr::from(law))),
-        Shown::Frequency(law) => Some(("", Expr::from(law))),
-        Shown::Closed(form) if form.squared => Some(("^2", form.value.clone())),
-        Shown::Closed(form) => Some(("", form.value.clone())),
+        DisplayedLaw::Squared(law) => Some(("^2", Expr::from(law))),
+        DisplayedLaw::Frequency(law) => Some(("", Expr::from(law))),
+        DisplayedLaw::Closed(form) if form.squared => Some(("^2", form.value.clone())),
+        DisplayedLaw::Closed(form) => Some(("", form.value.clone())),
         _ => None,
     };
     let law = match exactly {
@@ -114,8 +114,8 @@ fn equations_of(law: &str) -> Vec<&str> {
     parts
 }
 
-/// The left side of a law, and its right side with the definitions and the values put in; `None` of
-/// words.
+/// The left side of a law, and its right side with the definitions and the values put in; `None`
+/// for words.
 pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
     let (name, value) = read(law)?;
     let values: BTreeMap<Symbol, Expr> =
@@ -156,7 +156,10 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
 ///
 /// # Errors
 /// A law that gives another one.
-pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'static str> {
+pub(super) fn law_matches_frequency(
+    formula: &JudgedFormula,
+    bits: usize,
+) -> Result<bool, &'static str> {
     let exact = frequency(formula).filter(|_| bits >= FEWEST_BITS);
     let Some(exact) = exact else { return Ok(false) };
     match is_rounded(&exact, &formula.frequency_ball(bits), bits) {

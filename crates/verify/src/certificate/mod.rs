@@ -14,9 +14,9 @@
 //! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
 //! in `damped/`.
 //!
-//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what
-//! is proved rests on `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs`
-//! and balls. A certificate that fails says nothing about the formula.
+//! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
+//! iteration): the proof rests on `theorem.rs` and on what computes for it, `force.rs`,
+//! `fourier_series.rs` and balls. A certificate that fails says nothing about the formula.
 
 mod approximate_inverse;
 mod candidate;
@@ -36,10 +36,10 @@ pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
     DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
 };
-pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, Range};
+pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
-pub use validity::{Beyond, Validity, validity};
+pub use validity::{RangeEnd, Validity, validity};
 
 use crate::decimal::{rounded_down, rounded_up};
 use crate::exact::ball::{Ball, Balls};
@@ -71,16 +71,16 @@ pub struct Certificate {
     pub odd: bool,
     /// `mu` and the coefficients are integers times `2^-bits`.
     pub bits: usize,
-    /// About `1/omega^2`.
+    /// Approximate `1/omega^2`.
     pub mu: Integer,
-    /// About the cosine coefficients of the motion, `c_0` first.
+    /// Approximate cosine coefficients of the motion, `c_0` first.
     pub coefficients: Vec<Integer>,
     /// The last harmonic of the block, odd where `odd`.
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the
-    /// first row is that of `mu`, the first column that of the condition `x(0) = A`.
+    /// Approximate inverse of the derivative on `mu` and the harmonics of the block, row by row;
+    /// the first row belongs to `mu`, the first column to the condition `x(0) = A`.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `mu` in the norm is `2^sigma`.
     pub sigma: i32,
@@ -90,7 +90,7 @@ pub struct Certificate {
     pub formula: Option<JudgedFormula>,
 }
 
-/// What has been proved.
+/// The proved motion and its errors.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Certified {
@@ -98,11 +98,11 @@ pub struct Certified {
     pub proof: Proof,
     /// `omega`.
     pub frequency: Enclosure,
-    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions
-    /// approach it, where it is negative, or leave it; `None` of a motion whose energy is
-    /// conserved.
+    /// Characteristic exponent of a limit cycle: neighbouring motions approach it exponentially at
+    /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
+    /// energy is conserved.
     pub exponent: Option<Enclosure>,
-    /// Of a driven motion the amplitude of its own harmonic.
+    /// Amplitude of the own harmonic of a driven motion.
     pub amplitude: Option<Enclosure>,
     /// The number of motions that the symmetries of the equation make of the proved one, itself
     /// among them: with a drive that of another whole number of its periods later, of an equation
@@ -111,11 +111,11 @@ pub struct Certified {
     /// Set if the law of the formula was read as text and gives the numbers that are judged: the
     /// frequency, of a driven motion all.
     pub law_is_held: bool,
-    /// Of the formula, where one is judged.
+    /// Errors of the formula; `None` if none is judged.
     pub formula: Option<Errors>,
 }
 
-/// Why a certificate is none.
+/// The reason why a certificate is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
@@ -128,17 +128,17 @@ pub enum CheckError {
     /// The motion is proved, and something of it is claimed to be smaller than what is proved.
     #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", rounded_up(*proved, 6))]
     ClaimedLess {
-        /// Of which number.
+        /// The name of the number.
         what: &'static str,
-        /// What is proved.
+        /// The proved upper bound.
         proved: f64,
     },
-    /// Likewise larger.
+    /// The motion is proved, and a number of it is claimed to be larger than the proved value.
     #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", rounded_down(*proved, 6))]
     ClaimedMore {
-        /// Of which number.
+        /// The name of the number.
         what: &'static str,
-        /// What is proved.
+        /// The proved lower bound.
         proved: f64,
     },
 }
@@ -173,7 +173,7 @@ pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
 }
 
 impl Certificate {
-    /// Leaves so many digits of the motion.
+    /// Leaves this many digits of the motion.
     fn shorten(&mut self, bits: usize) {
         let short = |units: &Integer| Balls { bits }.dyadic(units, self.bits).middle;
         self.coefficients = self.coefficients.iter().map(short).collect();
@@ -206,7 +206,7 @@ impl Certificate {
         FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
     }
 
-    /// Not above `mu`.
+    /// A lower bound of `mu`.
     fn size_of_mu(&self) -> f64 {
         match self.mu.is_positive() {
             true => WORKING.distance_from_zero(&self.mu_ball()),
@@ -214,7 +214,7 @@ impl Certificate {
         }
     }
 
-    /// Not above `|c_1|`.
+    /// A lower bound of `|c_1|`.
     fn size_of_first_harmonic(&self) -> f64 {
         WORKING.distance_from_zero(&self.motion().cosine(1))
     }
@@ -225,7 +225,7 @@ impl Certificate {
             && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
     }
 
-    /// What does not fit together.
+    /// Checks that sizes and numbers fit together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
         let fits = Sizes {
             bits: [self.bits, self.inverse_bits],
@@ -263,7 +263,7 @@ impl Certificate {
             return Err("a formula that begins elsewhere than the motion");
         }
         self.amplitude_of_law(formula)?;
-        law::hold(formula, self.bits).map(|_| ())
+        law::law_matches_frequency(formula, self.bits).map(|_| ())
     }
 
     /// Checks that the amplitude among the values of the law is that of the motion, about a place
@@ -276,7 +276,7 @@ impl Certificate {
         };
         let belongs = amplitude.as_number().is_some_and(|amplitude| {
             let place = &self.start - amplitude;
-            // An equilibrium that is no fraction is known to seventeen digits.
+            // An equilibrium that is not a fraction is known to seventeen digits.
             let near = amplitude.abs()
                 / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
             let force = |place: Rational| {
@@ -308,9 +308,9 @@ const ROUNDING_OF_EQUILIBRIUM: usize = 30;
 /// they are doubles, of series that may cancel.
 const ROUNDING_OF_START: i32 = 20;
 
-/// What of a certificate may be too large, or may not fit together.
+/// The parts of a certificate whose sizes are checked before anything is computed with them.
 struct Sizes<'a> {
-    /// Those of the numbers, and of the inverse.
+    /// Bits of the numbers, and of the approximate inverse.
     bits: [usize; 2],
     sigma: i32,
     highest: usize,

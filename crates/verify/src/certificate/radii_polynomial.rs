@@ -22,21 +22,21 @@ use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::expr::ExprError;
 
-/// What has been proved: there is exactly one motion near the approximate one.
+/// The result of a proof: there is exactly one motion within the radius of the approximate one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Proof {
     /// `r`: `sigma |1/omega^2 - mu| + sum |difference of the harmonics|` is at most this.
     pub radius: Bound,
-    /// How far the approximation is from fulfilling the equation, Y0.
+    /// Y0, the norm of the residual of the approximation after the approximate inverse.
     pub defect: Bound,
-    /// How far the approximate inverse is from being one, Z1.
+    /// Z1, the norm of the identity minus the approximate inverse times the derivative.
     pub contraction: Bound,
     /// The Lipschitz constant Z2.
     pub curvature: Bound,
 }
 
-/// Which inequality does not hold. This says nothing about the motion: another block, or more
+/// The inequality that does not hold. This says nothing about the motion: a larger block, or more
 /// digits, may prove it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -95,9 +95,9 @@ impl From<ExprError> for NotProved {
 
 /// A step of Newton's iteration with the approximate inverse, `B F`.
 pub(super) struct Correction<Place> {
-    /// Of the number, and of the harmonics of the block.
+    /// Corrections of the number, and of the harmonics of the block.
     pub(super) block: Vec<Ball>,
-    /// Of those beyond it, each with its place.
+    /// Corrections of the harmonics beyond it, with their indices.
     pub(super) beyond: Vec<(Place, Ball)>,
 }
 

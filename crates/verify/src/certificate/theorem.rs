@@ -38,7 +38,7 @@ const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 /// # Errors
 /// [`NotProved`].
 pub(super) fn prove(certificate: &Certificate) -> Result<Proof, NotProved> {
-    Theorem::of(certificate)?.proof(Bound::ZERO)
+    Theorem::new(certificate)?.proof(Bound::ZERO)
 }
 
 /// The motions of all starts that are near that of a certificate.
@@ -66,7 +66,7 @@ pub(super) fn prove_around(
     certificate: &Certificate,
     spread: Bound,
 ) -> Result<Neighbours, NotProved> {
-    let theorem = Theorem::of(certificate)?;
+    let theorem = Theorem::new(certificate)?;
     let [of_middle, of_all] = [theorem.proof(Bound::ZERO)?, theorem.proof(spread)?];
     let sigma = theorem.system.inverse.sigma.value();
     let widened =
@@ -110,7 +110,7 @@ impl Direction {
 
 /// The bounds of a certificate that its proofs are made of.
 struct Theorem<'a> {
-    system: System<'a>,
+    system: BoundData<'a>,
     /// f' and f''.
     derivatives: [Expr; 2],
     slope: Slope,
@@ -119,14 +119,14 @@ struct Theorem<'a> {
 }
 
 impl<'a> Theorem<'a> {
-    fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
+    fn new(certificate: &'a Certificate) -> Result<Self, NotProved> {
         if certificate.odd && !certificate.is_odd()? {
             return Err(NotProved::NotOdd);
         }
-        let system = System::of(certificate)?;
+        let system = BoundData::new(certificate)?;
         let first = certificate.force.differentiate(coordinate())?;
         let second = first.differentiate(coordinate())?;
-        let slope = Slope::of(along(&first, &system.motion)?);
+        let slope = Slope::new(along(&first, &system.motion)?);
         Ok(Self {
             defect: system.defect(),
             contraction: system.contraction(&slope)?,
@@ -149,13 +149,13 @@ impl<'a> Theorem<'a> {
     }
 }
 
-/// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to
-/// the solution; nothing is proved of it.
+/// The Newton correction: subtracted from `mu` and the harmonics of a certificate, it brings them
+/// nearer to the solution. It proves nothing.
 ///
 /// # Errors
 /// As [`prove`].
 pub(super) fn correction(certificate: &Certificate) -> Result<Correction<usize>, NotProved> {
-    Ok(System::of(certificate)?.correction())
+    Ok(BoundData::new(certificate)?.correction())
 }
 
 /// `f'(c)`, by which the derivative multiplies.
@@ -166,7 +166,7 @@ struct Slope {
 }
 
 impl Slope {
-    fn of(series: FourierSeries) -> Self {
+    fn new(series: FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
             if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) }
         };
@@ -174,7 +174,7 @@ impl Slope {
     }
 
     /// `M_kj`: the coefficient of `cos k theta` in `f'(c) cos j theta`.
-    fn at(&self, k: usize, j: usize) -> Ball {
+    fn coefficient(&self, k: usize, j: usize) -> Ball {
         let half = |m: usize| self.halves.get(m).cloned().unwrap_or_else(Ball::zero);
         match (k, j) {
             (_, 0) => self.series.cosine(k),
@@ -184,8 +184,8 @@ impl Slope {
     }
 }
 
-/// What the bounds are made of.
-struct System<'a> {
+/// The quantities from which the bounds Y0, Z1 and Z2 are computed.
+struct BoundData<'a> {
     certificate: &'a Certificate,
     inverse: Inverse,
     motion: FourierSeries,
@@ -200,12 +200,15 @@ struct System<'a> {
     size: Bound,
 }
 
-impl<'a> System<'a> {
-    fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
+impl<'a> BoundData<'a> {
+    fn new(certificate: &'a Certificate) -> Result<Self, NotProved> {
         let motion = certificate.motion();
         let force = along(&certificate.force, &motion)?;
-        let inverse =
-            Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
+        let inverse = Inverse::from_entries(
+            &certificate.inverse,
+            certificate.inverse_bits,
+            certificate.sigma,
+        );
         let block = certificate.block();
         let start = inverse.norm_of_column(0);
         let columns = (1..=block.len()).map(|column| inverse.norm_of_column(column));
@@ -234,7 +237,7 @@ impl<'a> System<'a> {
         (from..=to).step_by(step)
     }
 
-    /// Those beyond the block, up to one.
+    /// The harmonics beyond the block, up to this one.
     fn beyond(&self, to: usize) -> impl Iterator<Item = usize> + use<> {
         self.harmonics(self.certificate.highest + 1, to)
     }
@@ -332,7 +335,8 @@ impl<'a> System<'a> {
         for (index, &j) in self.block.iter().enumerate() {
             largest = largest.max(self.column(slope, j, Some(index + 1)));
         }
-        // Where the coefficients of f' reach into the block, and beyond.
+        // Columns with entries in the block, where the coefficients of f' couple them to it, then
+        // beyond.
         for j in self.beyond(highest + last) {
             largest = largest.max(self.column(slope, j, None));
         }
@@ -373,7 +377,7 @@ impl<'a> System<'a> {
     /// The column of a harmonic, in the block at this place or beyond it.
     fn column(&self, slope: &Slope, j: usize, place: Option<usize>) -> Bound {
         let last = slope.series.cosines.len();
-        let part = |k: usize| WORKING.product(&self.mu, &slope.at(k, j));
+        let part = |k: usize| WORKING.product(&self.mu, &slope.coefficient(k, j));
         let (mut start, mut tail) = (Ball::zero(), Bound::ZERO);
         let from = (self.certificate.highest + 1).max((j + 1).saturating_sub(last));
         for k in self.harmonics(from, j + last) {

@@ -33,34 +33,34 @@ use crate::oscillator::Oscillator;
 use crate::solution::Solution;
 use crate::values::Values;
 
-/// How far a formula is proved to hold.
+/// The range of amplitudes in which a formula is proved to be within its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Validity {
-    /// From this amplitude on.
+    /// The lower end.
     pub from: Rational,
-    /// Up to this one.
+    /// The upper end.
     pub to: Rational,
     /// `|omega~/omega - 1|` is at most this for every amplitude between them.
     pub within: f64,
     /// The intervals, each proved.
     pub intervals: usize,
-    /// What is beyond.
-    pub beyond: Beyond,
+    /// The reason why the range ends.
+    pub beyond: RangeEnd,
 }
 
-/// Why a range ends where it does.
+/// The reason why a range ends where it does.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Beyond {
-    /// It was not asked for more.
+pub enum RangeEnd {
+    /// The requested end was reached.
     Asked,
-    /// At this amplitude the formula is off by more, proved.
+    /// The error of the formula is proved to be larger at this amplitude.
     Further(Rational),
     /// The formula is not proved to be within there, and not proved to be beyond either.
     Open(Rational),
     /// There is no proof of the motion there.
     Unproved(Rational, NotCertified),
-    /// It was to stop.
+    /// The computation was interrupted.
     Stopped,
 }
 
@@ -75,11 +75,11 @@ const BITS: usize = 48;
 /// shorter intervals alone.
 const HEAVIEST: i32 = 4;
 
-/// How far a formula is proved to be within a tolerance, for the amplitudes from `from` to `to`,
-/// both positive.
+/// Computes the range of amplitudes from `from` to `to`, both positive, in which a formula is
+/// proved to be within a tolerance.
 ///
 /// # Errors
-/// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
+/// No proof at the first amplitude, or a law without a closed form in the amplitude.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -101,7 +101,7 @@ pub fn validity(
     tolerance: f64,
     supervision: Supervision,
 ) -> Result<Validity, NotCertified> {
-    let mut family = Family::of(oscillator, solution, at, from)?;
+    let mut family = Family::new(oscillator, solution, at, from)?;
     let tolerance = not_above_typed(tolerance);
     let finer = (1..=4).take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1))).count();
     let finest = PLACES << finer;
@@ -120,10 +120,10 @@ pub fn validity(
     supervision.progress.begin(finest as usize);
     let beyond = loop {
         if position == finest {
-            break Beyond::Asked;
+            break RangeEnd::Asked;
         }
         if supervision.interrupt.is_requested() {
-            break Beyond::Stopped;
+            break RangeEnd::Stopped;
         }
         let next = (position + width).min(finest);
         match family.largest_error(&place(position), &place(next)) {
@@ -157,7 +157,7 @@ struct Family<'a> {
     at: Values,
     /// The last motion that was looked for, from where the next one is.
     certificate: Certificate,
-    /// Where it swings about.
+    /// The equilibrium about which the motion oscillates.
     equilibrium: Rational,
     /// omega~^2 as an expression in the amplitude, which has the letter of the coordinate here.
     squared: Expr,
@@ -166,7 +166,7 @@ struct Family<'a> {
 }
 
 impl<'a> Family<'a> {
-    fn of(
+    fn new(
         oscillator: &'a Oscillator,
         solution: &'a Solution,
         at: &Values,
@@ -174,7 +174,8 @@ impl<'a> Family<'a> {
     ) -> Result<Self, NotCertified> {
         let amplitude = solution.amplitude.symbol();
         let (_, at) = at.split(&[amplitude]);
-        let (mut certificate, _) = certify(oscillator, solution, &with(&at, solution, from))?;
+        let (mut certificate, _) =
+            certify(oscillator, solution, &with_amplitude(&at, solution, from))?;
         certificate.formula = None;
         certificate.shorten(BITS);
         let law = solution.law.closed_form().map(|form| (form.value.clone(), form.squared));
@@ -199,12 +200,12 @@ impl<'a> Family<'a> {
         })
     }
 
-    /// No amplitude between these has a larger relative error.
+    /// An upper bound of the relative error for all amplitudes between these.
     fn largest_error(&mut self, from: &Rational, to: &Rational) -> Result<f64, NotProved> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
         let spread = Bound::of_fraction(&half);
-        // Where this fails, the last motion that was proved is still the nearest one.
+        // If a later step fails, the last motion that was proved is still the nearest one.
         let mut certificate = self.certificate.clone();
         certificate.start = &self.equilibrium + &middle;
         refine(&mut certificate, spread * spread * Bound::power_of_two(-4))?;
@@ -227,17 +228,20 @@ impl<'a> Family<'a> {
 
     /// The first of these amplitudes at which the formula is proved to be off by more, or what is
     /// known of the very first.
-    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
+    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> RangeEnd {
         let is_further = |amplitude: &Rational| {
-            let (_, certified) =
-                certify(self.oscillator, self.solution, &with(&self.at, self.solution, amplitude))?;
+            let (_, certified) = certify(
+                self.oscillator,
+                self.solution,
+                &with_amplitude(&self.at, self.solution, amplitude),
+            )?;
             Ok(certified.formula.is_some_and(|errors| errors.relative.lower > tolerance))
         };
         let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
         match (further, is_further(&amplitudes[0])) {
-            (Some(further), _) => Beyond::Further(further.clone()),
-            (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),
-            (None, Err(reason)) => Beyond::Unproved(amplitudes[0].clone(), reason),
+            (Some(further), _) => RangeEnd::Further(further.clone()),
+            (None, Ok(_)) => RangeEnd::Open(amplitudes[0].clone()),
+            (None, Err(reason)) => RangeEnd::Unproved(amplitudes[0].clone(), reason),
         }
     }
 }
@@ -258,7 +262,7 @@ fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, No
 }
 
 /// The values with this amplitude.
-fn with(at: &Values, solution: &Solution, amplitude: &Rational) -> Values {
+fn with_amplitude(at: &Values, solution: &Solution, amplitude: &Rational) -> Values {
     let mut values = at.clone();
     // A number is a value.
     let _ = values.insert(solution.amplitude.symbol(), Expr::number(amplitude.clone()));

@@ -37,23 +37,23 @@ pub struct TransitionCurve {
     pub tongue: usize,
     /// The curve, or the middle of the two.
     pub middle: Polynomial,
-    /// What stands under the root; none where the curve is a power series.
+    /// The radicand; `None` if the curve is a power series.
     pub under_root: Option<Polynomial>,
     /// Whether it is the upper one of its pair where what is small is positive: the one to which
     /// the root is added.
     pub upper: bool,
-    /// What the motion on the curve is made of.
+    /// The harmonics of the periodic motion on the curve.
     pub motion: WavesOfMotion,
 }
 
-/// What a motion on a curve is made of.
+/// The kind of Fourier series of the motion on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavesOfMotion {
-    /// Of cosines alone.
+    /// Cosines alone.
     Cosines,
-    /// Of sines alone.
+    /// Sines alone.
     Sines,
-    /// Of both.
+    /// Cosines and sines.
     Both,
 }
 
@@ -66,7 +66,7 @@ pub(super) fn of_tongue(
     let matrix = effective_matrix(hill, tongue, order);
     let [[cosine, upper_right], [lower_left, _]] = &matrix;
     if tongue == 0 {
-        let middle = Powers { hill, order }.solved(cosine, tongue);
+        let middle = TruncatedPowers { hill, order }.solved(cosine, tongue);
         let mut curve = of_waves("a", tongue, middle);
         if !is_even(hill) {
             curve.motion = WavesOfMotion::Both;
@@ -110,19 +110,19 @@ fn separate(
     order: u32,
     matrix: &[[Polynomial; 2]; 2],
 ) -> Vec<TransitionCurve> {
-    let power = Powers { hill, order };
+    let power = TruncatedPowers { hill, order };
     let [[cosine, _], [_, sine]] = matrix;
     let mut pair = vec![
         of_waves("a", tongue, power.solved(cosine, tongue)),
         of_waves("b", tongue, power.solved(sine, tongue)),
     ];
-    // Which is the upper one may show beyond the order only.
+    // The order of the two curves may show only beyond the truncation order.
     let further = match pair[0].middle == pair[1].middle {
         false => None,
         true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
     };
     let [[cosine, _], [_, sine]] = further.as_ref().unwrap_or(matrix);
-    if power.is_above(cosine, sine) != power.falls() {
+    if power.is_above(cosine, sine) != power.decreases_with_eigenvalue() {
         pair.swap(0, 1);
     }
     pair[1].upper = true;
@@ -137,10 +137,10 @@ fn separate(
 
 /// Both curves where H mixes cosines and sines: the mean of its diagonal, and a root beside it.
 fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
-    // What opens the tongue enters Q squared: with the power 2 n.
+    // The terms that open the tongue enter the radicand Q squared, with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
-    let power = Powers { hill, order: beyond };
+    let power = TruncatedPowers { hill, order: beyond };
     let (middle, root) = middle_and_square(&power, tongue, &further);
     let middle = power.cut(&middle, order.into());
     let shown = i64::from(order.max(beyond - 1)) + 1;
@@ -168,7 +168,7 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
 /// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown
 /// that is solved for.
 fn middle_and_square(
-    power: &Powers,
+    power: &TruncatedPowers,
     tongue: usize,
     matrix: &[[Polynomial; 2]; 2],
 ) -> (Polynomial, Polynomial) {
@@ -288,12 +288,12 @@ impl Combined for Polynomial {
 
 /// Power series in what is small, cut after an order.
 #[derive(Clone, Copy)]
-struct Powers<'a> {
+struct TruncatedPowers<'a> {
     hill: &'a Hill,
     order: u32,
 }
 
-impl Powers<'_> {
+impl TruncatedPowers<'_> {
     fn degree(&self, monomial: &Monomial) -> i64 {
         self.hill.small.iter().map(|name| i64::from(monomial.exponent(*name))).sum()
     }
@@ -326,7 +326,7 @@ impl Powers<'_> {
     }
 
     /// Whether what a curve gives falls where the eigenvalue grows.
-    fn falls(&self) -> bool {
+    fn decreases_with_eigenvalue(&self) -> bool {
         match self.hill.unknown {
             Unknown::Stiffness { .. } => {
                 let factor = self.hill.factor.single_term();
@@ -358,7 +358,7 @@ impl Powers<'_> {
                 let rest = self.kept(eigenvalue, |degree| degree > 0);
                 // Each round is right to one order more, and keeps no other.
                 for order in 1..=self.order {
-                    let round = Powers { order, ..*self };
+                    let round = TruncatedPowers { order, ..*self };
                     let rest = round.with_square(&rest, name, &square);
                     square =
                         self.cut(&scale.product(&self.hill.constant.less(&rest)), order.into());
@@ -419,7 +419,7 @@ impl Powers<'_> {
         sum
     }
 
-    /// What is kept while a series is made: a little more than what is shown.
+    /// The truncation order while a series is computed: two more than the order shown.
     fn highest(&self) -> i64 {
         i64::from(self.order) + 2
     }
@@ -502,7 +502,7 @@ impl Powers<'_> {
             highest_harmonic: self.hill.highest_harmonic,
         };
         let highest = i64::from(self.order) + 2;
-        let power = Powers { hill: &extended, order: self.order };
+        let power = TruncatedPowers { hill: &extended, order: self.order };
         let square = first.sum_with(&Polynomial::symbol(v));
         let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
         let function = power

@@ -39,27 +39,28 @@ pub const HIGHEST_ORDER: u32 = 60;
 /// The most tongues that are derived, beside that of number 0.
 pub const MOST_TONGUES: usize = 20;
 
-/// What is wanted of an equation.
+/// Order, number of tongues and unknowns of a derivation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct HillOptions {
     /// Highest power of the small parameters, all together, that is kept.
     pub order: u32,
     /// The tongues 0, 1, ... up to this one.
     pub tongues: usize,
     /// The small parameters, where they are named.
     pub small: Vec<String>,
-    /// What the curves are solved for, where it is named: the mean stiffness or the frequency.
+    /// The letter for which the curves are solved, in the mean stiffness or the frequency; chosen
+    /// by the equation if `None`.
     pub solve_for: Option<String>,
 }
 
-impl Default for Options {
+impl Default for HillOptions {
     /// Order 6, the tongues 0 to 3.
     fn default() -> Self {
         Self { order: 6, tongues: 3, small: vec![], solve_for: None }
     }
 }
 
-/// What a curve gives.
+/// The quantity that a transition curve gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     /// A power of a letter that stands in one term of the mean stiffness and nowhere else.
@@ -100,16 +101,16 @@ impl Unknown {
 pub struct TransitionCurves {
     /// The equation, as it was understood.
     pub equation: Equation,
-    /// What the curves give.
+    /// The quantity that the curves give.
     pub unknown: Unknown,
-    /// What is small; the order counts their powers together.
+    /// The small parameters; the order counts their powers together.
     pub small: Vec<Symbol>,
     /// The highest power kept.
     pub order: u32,
     /// The letters of the equation.
     pub parameters: Vec<Symbol>,
     /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are
-    /// written; `None` where they are functions of the time of the equation.
+    /// written; `None` if they are functions of the time of the equation.
     pub time_scale: Option<Symbol>,
     /// The frequency of the coefficients.
     pub frequency: Frequency,
@@ -189,10 +190,10 @@ pub enum HillError {
         "`{0}` is no sum of waves cos(m*Omega*t), sin(m*Omega*t) of one period, with products of letters before them"
     )]
     NotPeriodic(String),
-    /// No coefficient varies.
+    /// All coefficients are constant.
     #[error("no coefficient depends on the time, so there are no transition curves")]
     Constant,
-    /// Nothing to solve for.
+    /// There is no letter to solve for.
     #[error("there is no letter to solve for: neither the mean stiffness nor the frequency is one")]
     NoUnknown,
     /// Several letters to solve for.
@@ -214,7 +215,7 @@ pub enum HillError {
     /// A coefficient that is a number.
     #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
     NumberIsSmall(String),
-    /// Which letters are small does not follow.
+    /// Several letters might be small, and none was named.
     #[error("which of {0} are small?")]
     SeveralSmall(String),
     /// A letter that is small by request and is none.
@@ -262,7 +263,7 @@ impl HillError {
         }
     }
 
-    /// What to try instead.
+    /// Returns advice on what to try instead, in a sentence; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         let words = match self {
             Self::NotLinear(_) => {
@@ -302,11 +303,11 @@ struct Hill {
     /// The term that stands before the unknown power in the mean stiffness; zero where the
     /// frequency is unknown.
     factor: Polynomial,
-    /// What of the mean stiffness is neither the unknown nor small.
+    /// The part of the mean stiffness that is neither the unknown nor small.
     constant: Polynomial,
     small: Vec<Symbol>,
     frequency: Frequency,
-    /// Of the coefficients, in halves of the frequency.
+    /// Highest harmonic of the coefficients, in halves of the frequency.
     highest_harmonic: usize,
     /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in what is small.
     graded: Vec<[FourierSeries<Polynomials>; 2]>,
@@ -322,17 +323,17 @@ struct Hill {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options { order: 2, tongues: 1, ..Options::default() })?;
+/// let curves = transition_curves(&mathieu, &HillOptions { order: 2, tongues: 1, ..HillOptions::default() })?;
 /// let formulas: Vec<String> = curves.curves.iter().map(|curve| format!("{}: {}", curve.name, curve.middle)).collect();
 /// assert_eq!(formulas, ["a0: -eps^2/8", "a1: 1 - eps/2 - eps^2/32", "b1: 1 + eps/2 - eps^2/32"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn transition_curves(
     oscillator: &Oscillator,
-    options: &Options,
+    options: &HillOptions,
 ) -> Result<TransitionCurves, HillError> {
     if options.order == 0 || options.order > HIGHEST_ORDER || options.tongues > MOST_TONGUES {
         return Err(HillError::Limits);
@@ -343,7 +344,7 @@ pub fn transition_curves(
         None => coefficients,
         Some(name) => in_scaled_time(&coefficients, name)?,
     };
-    let hill = Hill::of(oscillator, [&damping, &stiffness], time_scale, options)?;
+    let hill = Hill::new(oscillator, [&damping, &stiffness], time_scale, options)?;
     let mut curves = Vec::new();
     for tongue in 0..=options.tongues {
         // Without the time no motion of the period 0 has a frequency.
@@ -444,11 +445,11 @@ fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Ex
 }
 
 impl Hill {
-    fn of(
+    fn new(
         oscillator: &Oscillator,
         [damping, stiffness]: [&Expr; 2],
         time_scale: Option<Symbol>,
-        options: &Options,
+        options: &HillOptions,
     ) -> Result<Self, HillError> {
         let not_periodic = |part: Expr| {
             let meant = |typed: &Expr| typed.unique_nodes().any(|node| *node == part);
@@ -543,7 +544,8 @@ impl Hill {
     }
 }
 
-/// What the curves give: a letter that stands in the mean stiffness alone, or the frequency.
+/// Chooses the unknown of the curves: a letter that stands in the mean stiffness alone, or the
+/// frequency.
 fn unknown(
     mean: &Polynomial,
     coefficients: [&FourierSeries<Polynomials>; 2],
@@ -607,13 +609,13 @@ fn listed(names: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// What is small: what was named, or `eps` and every letter that alone stands before a wave or the
-/// velocity.
+/// The small parameters: those that were named, or else `eps` and every letter that stands alone
+/// before a harmonic or the velocity.
 fn small(
     oscillator: &Oscillator,
     [damping, stiffness]: [&FourierSeries<Polynomials>; 2],
     frequency: &Frequency,
-    options: &Options,
+    options: &HillOptions,
 ) -> Result<Vec<Symbol>, HillError> {
     if !options.small.is_empty() {
         let names = options.small.iter().map(|name| Symbol::new(name));

@@ -38,7 +38,7 @@ impl Frequency {
         Polynomial::term(self.unit.clone(), self.number.clone())
     }
 
-    /// How often `rate` holds it.
+    /// Returns n if `rate` is n times this frequency, n a whole number.
     fn multiple(&self, rate: &Rational) -> Option<usize> {
         let multiple = rate / &self.number;
         multiple.is_integer().then(|| multiple.to_integer().to_usize())?
@@ -59,7 +59,7 @@ fn common(a: &Rational, b: &Rational) -> Rational {
     Rational::new(numerator, a.denom() * b.denom())
 }
 
-/// The frequency of all waves in these expressions; nothing where no wave occurs.
+/// The frequency of all waves in these expressions; `None` if no wave occurs.
 ///
 /// # Errors
 /// A wave whose argument is no multiple of the time, or of another frequency than those before it.
@@ -97,7 +97,7 @@ fn waves(expression: &Expr) -> Vec<Expr> {
 /// The series in `phi = Omega*t/2`.
 ///
 /// # Errors
-/// The first term of the expression that is no sum of waves with polynomial coefficients.
+/// The first term of the expression that is not a sum of waves with polynomial coefficients.
 pub fn series(
     expression: &Expr,
     frequency: &Frequency,
@@ -159,7 +159,7 @@ fn series_of(
     (series.highest_harmonic() <= 2 * MOST_HARMONICS).then_some(series)
 }
 
-/// The same with the period as short as it is: of `cos(t)^2` it is pi.
+/// The coefficients with their shortest period: that of `cos(t)^2` is pi.
 pub(super) fn in_lowest_terms(
     frequency: Frequency,
     series: [FourierSeries<Polynomials>; 2],

@@ -20,23 +20,23 @@ use super::{HillError, TransitionCurve, TransitionCurves, Unknown, WavesOfMotion
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
-use crate::system::{Options, System};
+use crate::system::{System, SystemOptions};
 use crate::values::Values;
 
 /// Harmonics beyond those that the coefficients ask for.
 const SPARE_HARMONICS: usize = 16;
 
-/// How many times a wave of the motion is taken on by the highest harmonic of the coefficients.
+/// Highest harmonic of the motion, in multiples of the highest harmonic of the coefficients.
 const TIMES_TAKEN_ON: usize = 3;
 
 /// The most harmonics of the determinant.
 pub(super) const MOST_HARMONICS: usize = 200;
 
-/// What a value of the determinant is good to, over the square of the frequency.
+/// Rounding error of a value of the determinant, over the square of the frequency.
 const ROUNDING: f64 = 1e-12;
 
-/// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the
-/// size of its terms.
+/// Largest residual of the characteristic equation `1 -+ tr Phi + det Phi = 0` at a multiplier,
+/// over the size of its terms.
 const MULTIPLIER_TOLERANCE: f64 = 1e-6;
 
 /// The imaginary part up to which an eigenvalue counts as real, over the size of the matrix.
@@ -45,13 +45,13 @@ const REAL: f64 = 1e-10;
 /// A curve at given values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedCurve {
-    /// Which of the curves.
+    /// Index of the curve.
     pub curve: usize,
-    /// By the formula; none where it is not real.
+    /// The value by the formula; `None` if it is not real.
     pub value: Option<f64>,
-    /// In truth; none where the tongue does not reach so far.
+    /// In truth; `None` if the tongue does not reach so far.
     pub truth: Option<f64>,
-    /// `value/truth - 1`; none where one of them is none or the truth alone is zero.
+    /// `value/truth - 1`; `None` if one of them is none or the truth alone is zero.
     pub relative_error: Option<f64>,
     /// Whether the formula is right to the tolerance: both none is right.
     pub passes: bool,
@@ -60,11 +60,11 @@ pub struct JudgedCurve {
 /// Formula and truth of a curve against the size of what is small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Which of the curves.
+    /// Index of the curve.
     pub curve: usize,
     /// `(unknown, small parameter)` by the formula.
     pub formula: Vec<(f64, f64)>,
-    /// The same in truth.
+    /// `(unknown, small parameter)` of the true curve.
     pub truth: Vec<(f64, f64)>,
 }
 
@@ -76,10 +76,10 @@ pub struct Chart {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, judge, transition_curves};
+/// use lindstedt::hill::{HillOptions, judge, transition_curves};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let judged = judge(&curves, &"eps = 2/5".parse()?, 1e-3)?;
 /// // a_1 and b_1 of Mathieu's equation in the form of Abramowitz and Stegun, q = eps/2.
 /// assert!(judged.iter().all(|curve| curve.passes));
@@ -170,7 +170,7 @@ fn formula(
     letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
 }
 
-/// The letter whose power this is, positive where it has two signs; `None` where it is not real.
+/// The letter whose power this is, positive where it has two signs; `None` if it is not real.
 fn letter_of_power(value: f64, power: i32) -> Option<f64> {
     match power {
         1 => Some(value),
@@ -195,7 +195,8 @@ fn is_upper(
     }
 }
 
-/// Where the equation has the motion of the curve in truth; none where its tongue is closed there.
+/// The value of the unknown at which the equation truly has the periodic motion of the curve;
+/// `None` if its tongue is closed there.
 fn true_value(
     curves: &TransitionCurves,
     curve: &TransitionCurve,
@@ -224,9 +225,9 @@ fn true_value(
                     slope.evaluate(&with(reference)).map_err(|_| HillError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
-                let coefficients = Coefficients::of(curves, &with(reference))?;
+                let coefficients = SampledCoefficients::new(curves, &with(reference))?;
                 let mu = coefficients.eigenvalue(curve, above)?;
-                // What is nothing but rounding is zero.
+                // A value below the rounding error is zero.
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
                 let mu = mu.is_real.then_some(mu.value);
                 let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
@@ -248,7 +249,7 @@ fn true_value(
         return Ok(None);
     };
     let numbers = with(value);
-    let coefficients = Coefficients::of(curves, &numbers)?;
+    let coefficients = SampledCoefficients::new(curves, &numbers)?;
     match coefficients.defect(curves, curve, &numbers) {
         Some(defect) if defect <= MULTIPLIER_TOLERANCE => Ok(Some(value)),
         _ => Err(HillError::NotConfirmed(curve.name.clone())),
@@ -263,9 +264,11 @@ fn frequency_without_remainder(
 ) -> Result<Option<f64>, HillError> {
     let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
-    let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper);
-    // Where nothing varies mu is n^2 Omega^2/4 less the mean stiffness.
-    let unit = Coefficients::of(curves, &with(1.0))?;
+    let mu = |frequency: f64| {
+        SampledCoefficients::new(curves, &with(frequency))?.eigenvalue(curve, !upper)
+    };
+    // Without variation of the coefficients mu is n^2 Omega^2/4 less the mean stiffness.
+    let unit = SampledCoefficients::new(curves, &with(1.0))?;
     let count = curve.tongue as f64 * unit.frequency;
     let mean = unit.mean_stiffness();
     if !(mean > 0.0 && count > 0.0) {
@@ -298,8 +301,8 @@ struct Eigenvalue {
 }
 
 /// `c` and `k` at equally spaced phases, in numbers.
-struct Coefficients {
-    /// Of the coefficients.
+struct SampledCoefficients {
+    /// Frequency of the coefficients.
     frequency: f64,
     /// `(c, k)` over two periods.
     samples: Vec<[f64; 2]>,
@@ -423,8 +426,8 @@ impl Coefficients {
         let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
-            let path = system.solve(0.0, &start, period, &[], &Options::default()).ok()?;
-            path.at(period)
+            let path = system.solve(0.0, &start, period, &[], &SystemOptions::default()).ok()?;
+            path.states_at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);
         let trace = first.first()? + second.get(1)?;

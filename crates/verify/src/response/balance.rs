@@ -19,14 +19,14 @@ use crate::numeric::ode::root::find_root;
 
 /// The equations for so many harmonics.
 #[derive(Clone, Debug)]
-pub struct Balance<'a> {
+pub struct HarmonicBalance<'a> {
     /// The equation.
     pub driven: &'a Driven,
     /// The balance of its one coordinate.
     pub core: HarmonicBalance,
 }
 
-impl<'a> Balance<'a> {
+impl<'a> HarmonicBalance<'a> {
     /// The equations of `harmonics` harmonics, one at least.
     pub fn new(driven: &'a Driven, harmonics: usize) -> Self {
         let anchor = driven.self_excited.then_some(0);
@@ -48,7 +48,7 @@ impl<'a> Balance<'a> {
         self.core.motion(coefficients).swap_remove(0)
     }
 
-    /// The residual and its derivatives; nothing where the force has no finite value on the motion.
+    /// The residual and its derivatives; `None` if the force has no finite value on the motion.
     pub fn linearised(&self, coefficients: &DVector<f64>, parameter: f64) -> Option<Linearised> {
         let driven = self.driven;
         let omega = self.frequency(coefficients, parameter);
@@ -136,7 +136,7 @@ impl<'a> Balance<'a> {
         all
     }
 
-    /// Newton's method for the coefficients at a fixed parameter; nothing where it does not settle.
+    /// Newton's method for the coefficients at a fixed parameter; `None` if it does not settle.
     pub fn solve(&self, guess: &DVector<f64>, parameter: f64) -> Option<DVector<f64>> {
         self.core.solve(guess, |coefficients| self.linearised(coefficients, parameter))
     }

@@ -1,4 +1,4 @@
-//! Where a branch changes: folds, crossings, period doublings, and a second frequency coming in.
+//! Bifurcations along a branch: folds, branch points, period doublings and Neimark-Sacker points.
 //!
 //! ```text
 //! fold                     dp changes its sign along the branch; one multiplier is 1
@@ -14,12 +14,12 @@
 //! branch with what is known there. Out: the point between them, by the root of the quantity that
 //! changes its sign.
 
-use super::balance::Balance;
-use super::continuation::Node;
+use super::balance::HarmonicBalance;
+use super::continuation::BranchNode;
 use super::stability::Floquet;
-use crate::numeric::ode::root::{Until, find_root, try_bisect};
+use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
 
-/// What happens at a point of a branch.
+/// The kind of a bifurcation on a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -62,8 +62,9 @@ impl BifurcationKind {
     }
 }
 
-/// What changes its sign at a bifurcation of this kind; nothing where it cannot be told.
-fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<f64> {
+/// The test function of a kind of bifurcation, which changes its sign there; `None` if it has no
+/// value at this point.
+fn test(kind: BifurcationKind, node: &BranchNode, floquet: Option<Floquet>) -> Option<f64> {
     let (trace, determinant) = match floquet {
         Some(floquet) => (floquet.monodromy.trace(), floquet.monodromy.determinant()),
         None => (f64::NAN, f64::NAN),
@@ -83,11 +84,11 @@ fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<
 /// The bifurcations between two neighbouring points, each at its place on the branch. `between`
 /// finds the point at a part of the way, `floquet` the multipliers of a point.
 pub fn between(
-    balance: &Balance,
-    [from, to]: [(&Node, Option<Floquet>); 2],
-    between: &impl Fn(f64) -> Option<Node>,
-    floquet: &impl Fn(&Node) -> Option<Floquet>,
-) -> Vec<(BifurcationKind, Node)> {
+    balance: &HarmonicBalance,
+    [from, to]: [(&BranchNode, Option<Floquet>); 2],
+    between: &impl Fn(f64) -> Option<BranchNode>,
+    floquet: &impl Fn(&BranchNode) -> Option<Floquet>,
+) -> Vec<(BifurcationKind, BranchNode)> {
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
     /// A determinant that stays this close to 1 is that of a motion without damping.
     const CONSERVED: f64 = 1e-6;
@@ -130,10 +131,11 @@ pub fn between(
         };
         let part = match kind {
             // A sign alone has no root but by halving.
-            BranchPoint => Some(halved(value)),
+            BranchPoint => Some(bisect_sign_change(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
-        // Where branches cross Newton's method may not settle: beside it is near enough.
+        // At a branch point the Jacobian is singular and Newton's method may not converge; a point
+        // slightly beside it is near enough.
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
         let beside =
             |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
@@ -151,15 +153,15 @@ pub fn between(
     found
 }
 
-/// Where a sign changes between 0 and 1, to 1e-9.
-fn halved(mut value: impl FnMut(f64) -> f64) -> f64 {
+/// Bisects the sign change of a function between 0 and 1, to 1e-9.
+fn bisect_sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
     let before = value(0.0);
     let is_before = |part: f64| match value(part) {
         // The branch itself cannot be told from the other one here: close enough.
         there if there.is_nan() => Err(part),
         there => Ok(there * before > 0.0),
     };
-    match try_bisect(is_before, 0.0, 1.0, Until::Halvings(30)) {
+    match try_bisect(is_before, 0.0, 1.0, BisectionStop::Halvings(30)) {
         Ok([low, high]) => 0.5 * (low + high),
         Err(part) => part,
     }

@@ -6,21 +6,26 @@ use nalgebra::DVector;
 use super::balance::Balance;
 use super::continuation::{self, BranchEnd, Node, Path, Walk};
 use super::seeds::Seed;
-use super::{Asked, MOST_BRANCHES};
+use super::{MOST_BRANCHES, PreparedRequest};
 
-/// How a motion is known.
+/// The relation of a known motion to a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Known {
-    /// It lies on a branch.
+enum KnownMotion {
+    /// The motion lies on a branch.
     Itself,
     /// Its mirror image lies on this one.
     Mirrored(usize),
 }
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// The branches through these motions, each once.
-    pub(super) fn branches(&self, balance: &Balance, seeds: &[Seed], size: f64) -> Vec<Path> {
-        let mut paths: Vec<Path> = Vec::new();
+    pub(super) fn branches(
+        &self,
+        balance: &HarmonicBalance,
+        seeds: &[Seed],
+        size: f64,
+    ) -> Vec<BranchPath> {
+        let mut paths: Vec<BranchPath> = Vec::new();
         for seed in seeds {
             if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
                 break;
@@ -41,7 +46,7 @@ impl Asked<'_> {
             {
                 continue;
             }
-            if let Some(path) = walk.through(balance, &found, seed.parameter) {
+            if let Some(path) = walk.branch_through(balance, &found, seed.parameter) {
                 self.keep(balance, path, &mut paths);
             }
         }
@@ -51,9 +56,9 @@ impl Asked<'_> {
         paths
     }
 
-    /// Marks a branch whose mirror image nobody has come by: where the image of one of its motions
-    /// is a motion of the same equation and on no branch itself.
-    fn mark_mirrored(&self, balance: &Balance, paths: &mut [Path], index: usize) {
+    /// Marks a branch whose mirror image was not found: one for which the image of one of its
+    /// motions is a motion of the same equation and on no branch itself.
+    fn mark_mirrored(&self, balance: &HarmonicBalance, paths: &mut [BranchPath], index: usize) {
         const SAME: f64 = 1e-6;
         let nodes = &paths[index].nodes;
         let middle = &nodes[nodes.len() / 2];
@@ -71,20 +76,20 @@ impl Asked<'_> {
     /// Whether a motion is known; where it is a mirror image, its branch is marked.
     fn was_known(
         &self,
-        balance: &Balance,
-        paths: &mut [Path],
+        balance: &HarmonicBalance,
+        paths: &mut [BranchPath],
         coefficients: &DVector<f64>,
         parameter: f64,
     ) -> bool {
-        let known = self.known(balance, paths, coefficients, parameter);
-        if let Some(Known::Mirrored(index)) = known {
+        let known = self.known_motion(balance, paths, coefficients, parameter);
+        if let Some(KnownMotion::Mirrored(index)) = known {
             paths[index].mirrored = true;
         }
         known.is_some()
     }
 
     /// Keeps a branch that is none of those that are known, nor the mirror image of one.
-    fn keep(&self, balance: &Balance, mut path: Path, paths: &mut Vec<Path>) {
+    fn keep(&self, balance: &HarmonicBalance, mut path: BranchPath, paths: &mut Vec<BranchPath>) {
         if path.nodes.len() < 2 || self.is_centre(&path) {
             return;
         }
@@ -96,29 +101,36 @@ impl Asked<'_> {
             _ if path.ends[1] == BranchEnd::Crossing => vec![first],
             _ => vec![first, last],
         };
-        let known = |node: &Node| self.known(balance, paths, &node.coefficients, node.parameter);
+        let known = |node: &BranchNode| {
+            self.known_motion(balance, paths, &node.coefficients, node.parameter)
+        };
         match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
-            Some(Known::Itself) => {}
-            Some(Known::Mirrored(index)) => paths[index].mirrored = true,
+            Some(KnownMotion::Itself) => {}
+            Some(KnownMotion::Mirrored(index)) => paths[index].mirrored = true,
             None => paths.push(path),
         }
     }
 
     /// A branch that is born where another one is crossed comes back from there as its own image:
     /// that half is left out.
-    fn cut_at_crossing(&self, balance: &Balance, path: &mut Path) {
-        let turns = |pair: &[Node]| pair[0].orientation != pair[1].orientation;
+    fn cut_at_crossing(&self, balance: &HarmonicBalance, path: &mut BranchPath) {
+        let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
         let Some(index) = path.nodes.windows(2).position(turns) else {
             return;
         };
         let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
-        let half = Path { nodes: before.to_vec(), ends: path.ends, mirrored: false };
-        let image = |node: &Node| {
-            self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter)
+        let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
+        let image = |node: &BranchNode| {
+            self.known_motion(
+                balance,
+                std::slice::from_ref(&half),
+                &node.coefficients,
+                node.parameter,
+            )
         };
         // The middle of that half, which is surely no longer than the first.
         if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
-            path.mirrored = matches!(known, Known::Mirrored(_));
+            path.mirrored = matches!(known, KnownMotion::Mirrored(_));
             // The first point beyond stays, so that the crossing lies between two points.
             path.nodes.truncate(index + 2);
             path.ends[1] = BranchEnd::Crossing;
@@ -127,13 +139,13 @@ impl Asked<'_> {
 
     /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the
     /// drive later, or a mirror image.
-    fn known(
+    fn known_motion(
         &self,
-        balance: &Balance,
-        paths: &[Path],
+        balance: &HarmonicBalance,
+        paths: &[BranchPath],
         coefficients: &DVector<f64>,
         parameter: f64,
-    ) -> Option<Known> {
+    ) -> Option<KnownMotion> {
         /// The part of a motion by which a guess between two points may be off.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
@@ -156,7 +168,7 @@ impl Asked<'_> {
             };
             of.iter().any(near)
         };
-        let between = |pair: &[Node], of: &[DVector<f64>]| {
+        let between = |pair: &[BranchNode], of: &[DVector<f64>]| {
             let [one, other] = pair else { return false };
             let Some(part) = one.part_of_way(other, parameter) else {
                 return false;
@@ -167,12 +179,12 @@ impl Asked<'_> {
                 && solved().is_some_and(|found| is_one(&found, of, SAME, false))
         };
         let on = |of: &[DVector<f64>]| {
-            let holds = |path: &Path| path.nodes.windows(2).any(|pair| between(pair, of));
+            let holds = |path: &BranchPath| path.nodes.windows(2).any(|pair| between(pair, of));
             paths.iter().position(holds)
         };
         match on(&shifted) {
-            Some(_) => Some(Known::Itself),
-            None => on(&mirrored).map(Known::Mirrored),
+            Some(_) => Some(KnownMotion::Itself),
+            None => on(&mirrored).map(KnownMotion::Mirrored),
         }
     }
 
@@ -189,10 +201,10 @@ impl Asked<'_> {
     /// amplitude at this one value of the parameter.
     pub(super) fn follow_crossing(
         &self,
-        balance: &Balance,
-        walk: &Walk,
-        at: &Node,
-        paths: &mut Vec<Path>,
+        balance: &HarmonicBalance,
+        walk: &ContinuationSettings,
+        at: &BranchNode,
+        paths: &mut Vec<BranchPath>,
     ) -> bool {
         let mut is_centre = false;
         for node in walk.crossing(balance, at) {
@@ -200,7 +212,7 @@ impl Asked<'_> {
                 continue;
             }
             if let Some(path) =
-                walk.along(balance, &node.coefficients, node.parameter, &node.tangent)
+                walk.branch_along(balance, &node.coefficients, node.parameter, &node.tangent)
             {
                 is_centre |= self.is_centre(&path);
                 self.keep(balance, path, paths);
@@ -211,17 +223,17 @@ impl Asked<'_> {
 
     /// Whether these are motions at one value of the parameter, which need neither drive nor
     /// damping.
-    fn is_centre(&self, path: &Path) -> bool {
-        /// Of the range.
+    fn is_centre(&self, path: &BranchPath) -> bool {
+        /// Relative difference, over the range, below which two parameters are equal.
         const NOTHING: f64 = 1e-9;
         let [low, high] = self.question.range;
         let first = path.nodes.first().map_or(low, |node| node.parameter);
-        let moves = |node: &Node| (node.parameter - first).abs() > NOTHING * (high - low);
+        let moves = |node: &BranchNode| (node.parameter - first).abs() > NOTHING * (high - low);
         (self.driven.self_excited || self.driven.undamped) && !path.nodes.iter().any(moves)
     }
 }
 
 /// The size of the largest motion of a branch, of an ordinary one where it grows without bound.
-pub(super) fn largest(balance: &Balance, path: &Path) -> f64 {
+pub(super) fn largest(balance: &HarmonicBalance, path: &BranchPath) -> f64 {
     continuation::largest(balance, &path.nodes, path.ends)
 }

@@ -23,7 +23,7 @@ use crate::numeric::continuation::{bordered, follow, passes, tangent};
 
 /// A point of a branch.
 #[derive(Clone, Debug)]
-pub struct Node {
+pub struct BranchNode {
     /// The coefficients of the motion.
     pub coefficients: DVector<f64>,
     /// The parameter.
@@ -33,13 +33,13 @@ pub struct Node {
     /// The sign of the determinant of the bordered equations: it changes where branches cross, and
     /// not at a fold.
     pub orientation: f64,
-    /// A motion that is known by shooting, not by the balance: it sticks, or has.
+    /// The true motion, if the point came from shooting because the motion sticks, or has stuck.
     pub truth: Option<TrueMotion>,
 }
 
-impl Node {
-    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does
-    /// not.
+impl BranchNode {
+    /// Fraction, from zero to one, of the way to the next node at which the parameter has this
+    /// value; `None` if it lies outside.
     pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
         let way = next.parameter - self.parameter;
         let part = if way == 0.0 { 0.0 } else { (parameter - self.parameter) / way };
@@ -60,48 +60,49 @@ impl Node {
     }
 }
 
-/// Why a branch ends.
+/// The reason why a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchEnd {
-    /// At an end of the range.
+    /// The end of the range.
     Range,
-    /// Where another branch crosses: beyond there are its own motions, begun later or mirrored.
+    /// A branch point: beyond it lie the motions of the other branch itself, with another phase or
+    /// mirrored.
     Crossing,
-    /// Where it began.
+    /// The branch has come back to its start.
     Closed,
     /// The amplitude grows without bound.
     Unbounded,
-    /// No step, however small, leads on.
+    /// No step leads on, however small.
     Lost,
     /// After as many points as are allowed.
     Points,
     /// The harmonics that are kept do not suffice for the motions beyond.
     Harmonics,
-    /// It rests all the time: dry friction bears what drives it.
+    /// The motion rests all the time: dry friction bears the drive.
     Held,
     /// Its amplitude has come to zero: a self-excited motion is born from rest there.
     Rest,
     /// Its period grows without bound: a self-excited motion comes near a place of rest that it
     /// cannot pass.
     Slow,
-    /// Somebody asked for it.
+    /// The computation was interrupted.
     Interrupted,
 }
 
 /// The points of a branch in order, and why it ends at either end.
 #[derive(Clone, Debug)]
-pub struct Path {
+pub struct BranchPath {
     /// The points.
-    pub nodes: Vec<Node>,
-    /// Why it ends before the first point, and behind the last.
+    pub nodes: Vec<BranchNode>,
+    /// The reason why it ends before the first point, and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is another branch.
     pub mirrored: bool,
 }
 
-/// How a branch is followed.
+/// Range, step size and limits of the continuation of a branch.
 #[derive(Clone, Copy, Debug)]
-pub struct Walk {
+pub struct ContinuationSettings {
     /// The range of the parameter.
     pub range: [f64; 2],
     /// The longest step, in parts of the range and of the size of the motion.
@@ -114,22 +115,22 @@ pub struct Walk {
     pub size: f64,
     /// The size of ordinary motions: far beyond it they are unbounded.
     pub ordinary: f64,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
-/// What a step is measured in.
+/// Weights of the norm in which step lengths are measured.
 #[derive(Clone, Copy, Debug)]
 struct Weights {
     coefficients: f64,
     parameter: f64,
-    /// Of the frequency and its place, where it is an unknown.
+    /// The index and the weight of the frequency, if it is an unknown.
     frequency: Option<(usize, f64)>,
 }
 
 impl Weights {
-    /// Of an unknown, of which there are `size`, or behind them of the parameter.
-    fn of(&self, index: usize, size: usize) -> f64 {
+    /// The weight of an unknown, of which there are `size`, or of the parameter behind them.
+    fn weight(&self, index: usize, size: usize) -> f64 {
         match self.frequency {
             Some((place, weight)) if place == index => weight,
             _ if index < size => self.coefficients,
@@ -139,7 +140,9 @@ impl Weights {
 
     fn dot(&self, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
         let size = one.len() - 1;
-        (0..one.len()).map(|index| self.of(index, size).powi(2) * one[index] * other[index]).sum()
+        (0..one.len())
+            .map(|index| self.weight(index, size).powi(2) * one[index] * other[index])
+            .sum()
     }
 
     fn norm(&self, vector: &DVector<f64>) -> f64 {
@@ -147,16 +150,16 @@ impl Weights {
     }
 
     fn scaled(&self, vector: &DVector<f64>) -> DVector<f64> {
-        vector.map_with_location(|index, _, part| self.of(index, vector.len() - 1) * part)
+        vector.map_with_location(|index, _, part| self.weight(index, vector.len() - 1) * part)
     }
 
     /// A point with its tangent, which goes on in this direction.
     fn node(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         point: DVector<f64>,
         direction: &DVector<f64>,
-    ) -> Option<Node> {
+    ) -> Option<BranchNode> {
         let jacobian = linearised(balance, &point)?.jacobian;
         self.node_of(&bordered(&jacobian, &self.row(direction)).lu(), point)
     }
@@ -164,11 +167,11 @@ impl Weights {
     /// A point with its tangent, from the factors of the bordered equations there. Their
     /// determinant has the same sign whatever direction stands in the last row, as long as the
     /// tangent goes the same way.
-    fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<Node> {
+    fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<BranchNode> {
         let tangent = tangent(factors)?;
         let length = self.norm(&tangent);
         let size = point.len() - 1;
-        (length > 0.0 && length.is_finite()).then(|| Node {
+        (length > 0.0 && length.is_finite()).then(|| BranchNode {
             coefficients: point.rows(0, size).into_owned(),
             parameter: point[size],
             tangent: tangent / length,
@@ -180,7 +183,7 @@ impl Weights {
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
-        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
+        DVector::from_fn(size + 1, |index, _| self.weight(index, size).powi(2) * direction[index])
     }
 }
 
@@ -191,15 +194,15 @@ fn linearised(balance: &Balance, point: &DVector<f64>) -> Option<Linearised> {
 }
 
 /// Coefficients and parameter as one vector.
-fn joined(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
+fn stacked(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
     coefficients.clone().push(parameter)
 }
 
 /// The size of the largest motion of these, that of one in the middle where they grow without
 /// bound: what is measured in an enormous size passes over a resonance as if it were nothing.
 pub(super) fn largest<const ENDS: usize>(
-    balance: &Balance,
-    nodes: &[Node],
+    balance: &HarmonicBalance,
+    nodes: &[BranchNode],
     ends: [BranchEnd; ENDS],
 ) -> f64 {
     let mut sizes: Vec<f64> =
@@ -212,8 +215,8 @@ pub(super) fn largest<const ENDS: usize>(
     sizes.get(place).copied().unwrap_or(0.0)
 }
 
-impl Walk {
-    fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
+impl ContinuationSettings {
+    fn weights(&self, balance: &HarmonicBalance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
         let own = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
@@ -232,11 +235,11 @@ impl Walk {
     /// `direction`, and the number of iterations.
     fn corrected(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         guess: &DVector<f64>,
         direction: &DVector<f64>,
         weights: Weights,
-    ) -> Option<(Node, usize)> {
+    ) -> Option<(BranchNode, usize)> {
         const MOST: usize = 12;
         let row = weights.row(direction);
         let mut point = guess.clone();
@@ -258,10 +261,16 @@ impl Walk {
     }
 
     /// A point between two of a branch, at this part of the way.
-    pub fn between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
+    pub fn between(
+        &self,
+        balance: &HarmonicBalance,
+        from: &BranchNode,
+        to: &BranchNode,
+        part: f64,
+    ) -> Option<BranchNode> {
         let weights = self.weights(balance, &from.coefficients);
         let (start, end) =
-            (joined(&from.coefficients, from.parameter), joined(&to.coefficients, to.parameter));
+            (stacked(&from.coefficients, from.parameter), stacked(&to.coefficients, to.parameter));
         let way = &end - &start;
         let length = weights.norm(&way);
         if length == 0.0 {
@@ -272,9 +281,9 @@ impl Walk {
     }
 
     /// The whole branch through a motion at a parameter.
-    pub fn through(
+    pub fn branch_through(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
     ) -> Option<Path> {
@@ -284,23 +293,23 @@ impl Walk {
     }
 
     /// The whole branch through a motion, its first direction given.
-    pub fn along(
+    pub fn branch_along(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
         direction: &DVector<f64>,
-    ) -> Option<Path> {
+    ) -> Option<BranchPath> {
         let weights = self.weights(balance, coefficients);
         let direction = direction / weights.norm(direction);
-        let start = weights.node(balance, joined(coefficients, parameter), &direction)?;
+        let start = weights.node(balance, stacked(coefficients, parameter), &direction)?;
         let mut backward = start.clone();
         backward.tangent *= -1.0;
         // The last row of the bordered equations has turned round.
         backward.orientation *= -1.0;
         let (mut nodes, end) = self.follow(balance, start);
         if end == BranchEnd::Closed {
-            return Some(Path { nodes, ends: [end, end], mirrored: false });
+            return Some(BranchPath { nodes, ends: [end, end], mirrored: false });
         }
         let largest = largest(balance, &nodes, [end]).max(self.size);
         let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
@@ -309,25 +318,27 @@ impl Walk {
             node.orientation *= -1.0;
             node
         });
-        let mut all: Vec<Node> = turned.collect();
+        let mut all: Vec<BranchNode> = turned.collect();
         all.reverse();
         all.append(&mut nodes);
-        Some(Path { nodes: all, ends: [first_end, end], mirrored: false })
+        Some(BranchPath { nodes: all, ends: [first_end, end], mirrored: false })
     }
 
     /// The motions by which a branch that ends with the range comes back to it, where it is
     /// followed beyond as far as `wide`: a resonance whose peak lies outside has two of its
     /// branches inside, and one of them may be hard to come by otherwise.
-    pub(super) fn returns(
+    pub(super) fn reentries(
         &self,
-        balance: &Balance,
-        path: &Path,
+        balance: &HarmonicBalance,
+        path: &BranchPath,
         wide: [f64; 2],
     ) -> Vec<(DVector<f64>, f64)> {
         /// Points beyond the range.
         const MOST: usize = 200;
-        let outward =
-            |(node, turn): (&Node, f64)| Node { tangent: &node.tangent * turn, ..node.clone() };
+        let outward = |(node, turn): (&BranchNode, f64)| BranchNode {
+            tangent: &node.tangent * turn,
+            ..node.clone()
+        };
         let ends = [
             path.nodes.first().map(|node| (node, -1.0)),
             path.nodes.last().map(|node| (node, 1.0)),
@@ -335,7 +346,7 @@ impl Walk {
         let ends = ends.into_iter().zip(path.ends).filter(|(_, end)| *end == BranchEnd::Range);
         let walk = Self { range: wide, most: MOST, ..*self };
         let [low, high] = self.range;
-        let back = |pair: &[Node]| {
+        let back = |pair: &[BranchNode]| {
             let [from, to] = pair else { return None };
             let inside = to.parameter.clamp(low, high);
             let part = from.part_of_way(to, inside)?;
@@ -353,8 +364,13 @@ impl Walk {
     }
 
     /// Whether the last harmonics that are kept are as large as if there were as many again.
-    pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
-        /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
+    pub(super) fn is_cut_off(
+        &self,
+        balance: &HarmonicBalance,
+        coefficients: &DVector<f64>,
+    ) -> bool {
+        /// Largest part of the last quarter of the harmonics in the size of the motion: for a
+        /// resolved motion it is negligible.
         const LARGEST: f64 = 0.1;
         self.resolved
             && balance.core.last_harmonics(coefficients)
@@ -362,7 +378,7 @@ impl Walk {
     }
 
     /// The points from one on in the direction of its tangent.
-    fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
+    fn follow(&self, balance: &HarmonicBalance, start: BranchNode) -> (Vec<BranchNode>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
         /// Short enough to tell where the harmonics cease to suffice, or where an end of the range
@@ -373,8 +389,8 @@ impl Walk {
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
         const ENORMOUS: f64 = 1e4;
-        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can
-        /// say.
+        /// Ratio to the highest frequency of a branch below which a motion is too slow for a sum of
+        /// harmonics.
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.core.extent(&start.coefficients).max(self.ordinary);
@@ -384,7 +400,7 @@ impl Walk {
             None => Ended(None, BranchEnd::Lost),
         };
         let mut fastest = 0.0_f64;
-        let step = |nodes: &[Node], length: &mut f64| {
+        let step = |nodes: &[BranchNode], length: &mut f64| {
             let length = *length;
             if self.interrupt.is_requested() {
                 return Ended(None, BranchEnd::Interrupted);
@@ -395,21 +411,21 @@ impl Walk {
             let here = &nodes[nodes.len() - 1];
             let weights = self.weights(balance, &here.coefficients);
             let tangent = &here.tangent / weights.norm(&here.tangent);
-            let start = joined(&here.coefficients, here.parameter);
+            let start = stacked(&here.coefficients, here.parameter);
             let guess = &start + &tangent * length;
             let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
                 let next = &node.tangent / weights.norm(&node.tangent);
-                let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
+                let moved = weights.norm(&(stacked(&node.coefficients, node.parameter) - &start));
                 weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * length
             });
             let Some((node, iterations)) = found else {
                 return match 0.5 * length < SHORTEST {
-                    // Where the damping has a corner at rest the branch has one there as well.
+                    // If the damping has a corner at rest, the branch has one there as well.
                     true => at_rest(here, here.parameter),
                     false => TooLong,
                 };
             };
-            // What it ends for unless a shorter step does better.
+            // Ends the branch for this reason unless a shorter step may do better.
             let ends = |end: BranchEnd| match 0.5 * length < SHORT {
                 true => Ended(None, end),
                 false => TooLong,
@@ -418,8 +434,8 @@ impl Walk {
                 return ends(BranchEnd::Harmonics);
             }
             if node.parameter < low || node.parameter > high {
-                // Where the end of the range is a resonance of a harmonic there is no motion, or
-                // more than one: near it is near enough.
+                // If the end of the range is a resonance of a harmonic, it has no motion, or more
+                // than one: a point near it will do.
                 return match self.at_bound(balance, here, &node) {
                     Some(last) => Ended(Some(last), BranchEnd::Range),
                     None => ends(BranchEnd::Range),
@@ -455,15 +471,22 @@ impl Walk {
 
     /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited
     /// motion is born.
-    pub(super) fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
-        /// Of the largest motion, and of the range: what is beside.
+    pub(super) fn rest_beside(
+        &self,
+        balance: &HarmonicBalance,
+        here: &BranchNode,
+        near: f64,
+    ) -> Option<BranchNode> {
+        /// Distance, in parts of the largest motion and of the range, within which a motion is
+        /// near.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
         if !balance.driven.self_excited || balance.core.extent(&here.coefficients) > small {
             return None;
         }
         let [low, high] = self.range;
-        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
+        let born =
+            hopf::hopf_point_near(balance.driven, here.coefficients[0], near, [small, high - low])?;
         let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
             || (born.position - here.coefficients[0]).abs() > small;
         if far || !(low..=high).contains(&born.parameter) {
@@ -476,14 +499,26 @@ impl Walk {
     }
 
     /// Whether the way from one point to the next passes the first one in its direction.
-    fn has_closed(&self, first: &Node, here: &Node, next: &Node, weights: Weights) -> bool {
-        let scaled = |node: &Node| weights.scaled(&joined(&node.coefficients, node.parameter));
+    fn has_closed(
+        &self,
+        first: &BranchNode,
+        here: &BranchNode,
+        next: &BranchNode,
+        weights: Weights,
+    ) -> bool {
+        let scaled =
+            |node: &BranchNode| weights.scaled(&stacked(&node.coefficients, node.parameter));
         let [target, from, to] = [first, here, next].map(scaled);
         weights.scaled(&first.tangent).dot(&(&to - &from)) > 0.0 && passes(&target, &from, &to)
     }
 
     /// The point at the end of the range between a point inside and one outside.
-    fn at_bound(&self, balance: &Balance, inside: &Node, outside: &Node) -> Option<Node> {
+    fn at_bound(
+        &self,
+        balance: &HarmonicBalance,
+        inside: &BranchNode,
+        outside: &BranchNode,
+    ) -> Option<BranchNode> {
         let [low, high] = self.range;
         let bound = if outside.parameter < low { low } else { high };
         let way = outside.parameter - inside.parameter;
@@ -494,16 +529,16 @@ impl Walk {
         let guess = &inside.coefficients + (&outside.coefficients - &inside.coefficients) * part;
         let coefficients = balance.solve(&guess, bound)?;
         let weights = self.weights(balance, &inside.coefficients);
-        let jump = weights.norm(&joined(&(&coefficients - &guess), 0.0));
+        let jump = weights.norm(&stacked(&(&coefficients - &guess), 0.0));
         if jump > self.longest {
             return None;
         }
-        weights.node(balance, joined(&coefficients, bound), &inside.tangent)
+        weights.node(balance, stacked(&coefficients, bound), &inside.tangent)
     }
 
     /// Motions beside a crossing of branches, one on either side: the direction in which the
     /// equations have a second solution, and the motions a little way along it.
-    pub fn crossing(&self, balance: &Balance, at: &Node) -> Vec<Node> {
+    pub fn crossing(&self, balance: &HarmonicBalance, at: &BranchNode) -> Vec<BranchNode> {
         const APART: f64 = 0.02;
         let size = balance.core.size();
         let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {
@@ -511,12 +546,13 @@ impl Walk {
         };
         let weights = self.weights(balance, &at.coefficients);
         // In weighted variables, so that right angles are those of the steps.
-        let matrix = linear.jacobian.map_with_location(|_, j, slope| slope / weights.of(j, size));
+        let matrix =
+            linear.jacobian.map_with_location(|_, j, slope| slope / weights.weight(j, size));
         let square = matrix.transpose() * &matrix;
         let eigen = square.symmetric_eigen();
         let mut order: Vec<usize> = (0..=size).collect();
         order.sort_by(|one, other| eigen.eigenvalues[*one].total_cmp(&eigen.eigenvalues[*other]));
-        let scale = |index: usize| weights.of(index, size);
+        let scale = |index: usize| weights.weight(index, size);
         let tangent = DVector::from_fn(size + 1, |index, _| at.tangent[index] * scale(index));
         let tangent = &tangent / tangent.norm();
         let candidates = order.iter().take(2).map(|index| {
@@ -530,7 +566,7 @@ impl Walk {
         };
         let second = &second / second.norm();
         let direction = DVector::from_fn(size + 1, |index, _| second[index] / scale(index));
-        let start = joined(&at.coefficients, at.parameter);
+        let start = stacked(&at.coefficients, at.parameter);
         let found = [1.0, -1.0].map(|sign| {
             let direction = &direction * sign;
             let guess = &start + &direction * APART;

@@ -15,7 +15,9 @@
 use nalgebra::{Matrix2, Matrix3};
 
 use super::driven::Driven;
-use super::stability::{self, Budget, FAR, Floquet, SAMPLES, TOLERANCE, TrueMotion, options};
+use super::stability::{
+    self, FAR, Floquet, SAMPLES, SimulationBudget, TOLERANCE, TrueMotion, options,
+};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting};
@@ -32,7 +34,7 @@ pub struct Guess {
 }
 
 /// The motion over a time with its variations and the integral of -f_v; backward in time where
-/// `backward` says so. Nothing where it cannot be followed.
+/// `backward` says so. `None` if it cannot be followed.
 fn followed(
     driven: &Driven,
     guess: &Guess,
@@ -60,8 +62,8 @@ fn followed(
     path.is_complete().then_some(path)
 }
 
-/// The periodic motion beside this one, and its frequency; nothing where shooting does not settle,
-/// or goes far away.
+/// The periodic motion beside this one, and its frequency; `None` if shooting does not settle, or
+/// goes far away.
 pub fn true_cycle(
     driven: &Driven,
     guess: &Guess,
@@ -91,7 +93,7 @@ pub fn true_cycle(
         known: &[],
     };
     let PeriodicOrbit { start, period, path, .. } =
-        shooting.orbit(follow, stability::settled(1e-10))?;
+        shooting.orbit(follow, stability::convergence_test(1e-10))?;
     let positions: Vec<f64> =
         path.samples(SAMPLES + 1).take(SAMPLES).map(|point| point.y[0]).collect();
     let determinant = path.end().y[6].exp();
@@ -101,15 +103,15 @@ pub fn true_cycle(
     Some(TrueMotion::new(start, frequency, floquet, &positions, 0.0))
 }
 
-/// Where a simulation has come to that was let go here and followed for so many periods of about
-/// this frequency: its frequency by its own return, and its positions over that period at equal
-/// steps. Nothing where it does not come back, escapes, or the budget is spent.
-pub fn settled(
+/// Simulates the motion from a start for a number of periods of about the guessed frequency.
+/// Returns its frequency by its own return and its positions over that period at equal steps;
+/// `None` if it does not return, escapes, or the budget is spent.
+pub fn settle_cycle(
     driven: &Driven,
     guess: &Guess,
     parameter: f64,
     periods: usize,
-    budget: &mut Budget,
+    budget: &mut SimulationBudget,
 ) -> Option<(f64, Vec<f64>)> {
     const CLOSELY: f64 = 1e-11;
     /// A period and what the first guess of it may be off.

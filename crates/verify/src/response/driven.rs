@@ -8,7 +8,7 @@
 //! periods of the drive, n, a period of the motion takes. Out: f and its derivatives by x, x' and p
 //! at a fixed phase as straight lists of operations. Time may stand inside `sin`, `cos` and `tan`
 //! alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
-//! Where it does not occur at all, omega is an unknown of every motion.
+//! If it does not occur at all, omega is an unknown of every motion.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
@@ -60,9 +60,10 @@ struct Jump {
     level: [CompiledFunction; 2],
 }
 
-/// The same in symbols.
+/// The line `normal . (x, v) = level`, or with n_x = 1 if n_v is zero, in exact numbers and
+/// symbols.
 #[derive(Clone, Debug, PartialEq)]
-struct Line {
+struct SwitchingLine {
     normal: [Rational; 2],
     level: Expr,
 }
@@ -103,7 +104,7 @@ fn on_side(
 /// Whether an argument of a step is zero on this line, and then whether it grows across it.
 fn grows_across(
     argument: &Expr,
-    line: &Line,
+    line: &SwitchingLine,
     oscillator: &Oscillator,
 ) -> Result<Option<bool>, ResponseError> {
     let found = line_of(argument, oscillator)?.filter(|(own, _)| own == line);
@@ -115,7 +116,7 @@ fn grows_across(
 /// they are written.
 fn jumps_across(
     force: &Expr,
-    line: &Line,
+    line: &SwitchingLine,
     oscillator: &Oscillator,
     parameter: Symbol,
 ) -> Result<bool, ResponseError> {
@@ -173,12 +174,12 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
     told
 }
 
-/// The line on which the argument of a jump is zero, and whether it grows across it; nothing where
-/// that is no line of places and velocities, the same at every time.
+/// The line on which the argument of a jump is zero, and whether it grows across it; `None` if that
+/// is no line of places and velocities, the same at every time.
 fn line_of(
     argument: &Expr,
     oscillator: &Oscillator,
-) -> Result<Option<(Line, bool)>, ResponseError> {
+) -> Result<Option<(SwitchingLine, bool)>, ResponseError> {
     let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
     let factor = |name: Symbol| -> Result<Option<Rational>, ResponseError> {
         Ok(argument.differentiate(name)?.expand()?.as_number().cloned())
@@ -197,7 +198,7 @@ fn line_of(
     }
     let grows = over.is_positive();
     let normal = [&by_position / &over, &by_velocity / &over];
-    Ok(Some((Line { normal, level }, grows)))
+    Ok(Some((SwitchingLine { normal, level }, grows)))
 }
 
 /// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it
@@ -207,9 +208,9 @@ fn with_sides(
     oscillator: &Oscillator,
     parameter: Symbol,
     side: impl Fn(usize) -> Symbol,
-) -> Result<(Expr, Vec<Line>), ResponseError> {
+) -> Result<(Expr, Vec<SwitchingLine>), ResponseError> {
     let mut force = oscillator.force.expand()?;
-    let mut lines: Vec<Line> = Vec::new();
+    let mut lines: Vec<SwitchingLine> = Vec::new();
     for term in force.terms() {
         for argument in term.unique_nodes().filter_map(|part| argument_of_step(part, oscillator)) {
             match line_of(argument, oscillator)? {
@@ -239,12 +240,12 @@ fn with_sides(
 }
 
 impl Driven {
-    /// Of an oscillator without other parameters than the one that varies; self-excited where time
-    /// does not occur.
+    /// Prepares an oscillator without other parameters than the one that varies; it is self-excited
+    /// if time does not occur.
     ///
     /// # Errors
-    /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative
-    /// that cannot be written.
+    /// A drive that is not periodic; several frequencies that are not multiples of one; a
+    /// derivative that cannot be written.
     pub fn new(
         oscillator: &Oscillator,
         parameter: Symbol,
@@ -262,7 +263,7 @@ impl Driven {
         Self::of_frequency(oscillator, frequency, parameter, periods)
     }
 
-    /// Of an oscillator whose motions have this frequency, driven or free.
+    /// Prepares an oscillator whose motions have this frequency, driven or free.
     pub(super) fn of_frequency(
         oscillator: &Oscillator,
         frequency: Expr,
@@ -294,7 +295,7 @@ impl Driven {
             force: compiled(&force)?,
             jumps: lines
                 .into_iter()
-                .map(|Line { normal, level }| {
+                .map(|SwitchingLine { normal, level }| {
                     Ok::<Jump, ResponseError>(Jump {
                         normal: normal.map(|factor| to_f64(&factor)),
                         level: [
@@ -360,12 +361,12 @@ impl Driven {
         }
     }
 
-    /// Of a jump n_x and n_v: it is where `n_x x + n_v x' = c`.
+    /// The normal `(n_x, n_v)` of a jump, which lies on `n_x x + n_v x' = c`.
     pub fn normal(&self, index: usize) -> [f64; 2] {
         self.jumps[index].normal
     }
 
-    /// Of a jump `n_x x + n_v x' - c`.
+    /// The value of `n_x x + n_v x' - c` for a jump.
     pub fn height(&self, index: usize, [x, v]: [f64; 2], parameter: f64) -> f64 {
         let Jump { normal, level } = &self.jumps[index];
         // The velocity zero is met exactly.
@@ -395,12 +396,12 @@ impl Driven {
 
     /// f as it is on these sides of its jumps, 1 above and -1 below.
     pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
-        with(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
+        with_arguments(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
     }
 
     /// Its derivatives on these sides.
     pub fn slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 3] {
-        with(at, sides, self.jumps.len(), |arguments| {
+        with_arguments(at, sides, self.jumps.len(), |arguments| {
             self.slopes.each_ref().map(|slope| slope.call(arguments))
         })
     }
@@ -417,8 +418,8 @@ impl Driven {
     }
 }
 
-/// What a function gives for a place and the sides of so many jumps.
-fn with<T>(
+/// Calls a function with the arguments of the force and the sides of a number of jumps behind them.
+fn with_arguments<T>(
     [x, v, phase, p]: &[f64; 4],
     sides: &[f64],
     jumps: usize,
@@ -536,7 +537,7 @@ mod tests {
         }
     }
 
-    /// By the value of the factor on the line, in whatever form.
+    /// A step counts by the value of its factor on the line, in whatever form.
     #[test]
     fn a_step_is_a_jump_where_its_factor_is_not_zero() {
         for (force, jumps) in [

@@ -7,7 +7,7 @@ use crate::expr::{EvaluationError, ExprError};
 use crate::oscillator::OscillatorError;
 use crate::symbol::Symbol;
 
-/// Why there is no response.
+/// The reason why there is no response.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ResponseError {
@@ -47,7 +47,7 @@ pub enum ResponseError {
         value: f64,
         /// The parameter.
         parameter: Symbol,
-        /// Where.
+        /// The value of the parameter.
         at: f64,
     },
     /// The parameter to vary is none of the equation.
@@ -55,7 +55,7 @@ pub enum ResponseError {
     NoParameter {
         /// The name.
         name: Symbol,
-        /// Those that there are.
+        /// The parameters that there are.
         known: Vec<Symbol>,
     },
     /// The parameter that varies has a value.
@@ -73,7 +73,7 @@ pub enum ResponseError {
     /// A count beyond what can be kept.
     #[error("{what} must lie between 1 and {most}, not {given}")]
     Count {
-        /// What is counted.
+        /// The quantity that is counted.
         what: &'static str,
         /// The value given.
         given: usize,
@@ -88,7 +88,7 @@ pub enum ResponseError {
         /// Its range.
         range: [f64; 2],
     },
-    /// No periodic motion was found to begin with.
+    /// No periodic motion was found as an initial guess.
     #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
     NoMotion {
         /// The parameter.
@@ -98,7 +98,7 @@ pub enum ResponseError {
         /// Whether nothing damps the motion.
         undamped: bool,
     },
-    /// Somebody asked it to end before there was anything.
+    /// The search was interrupted before there was a branch.
     #[error(
         "interrupted, by hand or a timeout, before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
         .tried.starts,
@@ -108,8 +108,8 @@ pub enum ResponseError {
     Interrupted {
         /// The parameter.
         parameter: Symbol,
-        /// What was done until then.
-        tried: Tried,
+        /// The progress of the search until then.
+        tried: SeedSearch,
     },
     /// The equation has no such values.
     #[error(transparent)]
@@ -124,7 +124,7 @@ pub enum ResponseError {
 
 /// The search for motions to begin with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tried {
+pub struct SeedSearch {
     /// Values of the parameter.
     pub values: usize,
     /// Starts of simulations at them.

@@ -1,4 +1,4 @@
-//! Where a self-excited motion is born from rest: a Hopf point.
+//! Hopf points: the parameter at which a self-excited motion is born from rest.
 //!
 //! ```text
 //! f(x, 0; p) = 0,   f_v(x, 0; p) = 0,   omega^2 = f_x(x, 0; p) > 0
@@ -16,7 +16,7 @@ use crate::numeric::ode::newton::{Progress, newton};
 
 /// A place of rest that small motions neither leave nor approach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Birth {
+pub struct HopfPoint {
     /// The place of rest.
     pub position: f64,
     /// The parameter.
@@ -25,14 +25,14 @@ pub struct Birth {
     pub frequency: f64,
 }
 
-/// The Hopf point near a place and a parameter, measured in these lengths; nothing where Newton's
+/// The Hopf point near a place and a parameter, measured in these lengths; `None` if Newton's
 /// method does not settle.
-pub fn near(
+pub fn hopf_point_near(
     driven: &Driven,
     position: f64,
     parameter: f64,
     [size, range]: [f64; 2],
-) -> Option<Birth> {
+) -> Option<HopfPoint> {
     const MOST: usize = 30;
     const SETTLED: f64 = 1e-12;
     /// The finite differences of the damping, of the lengths.
@@ -58,7 +58,7 @@ pub fn near(
     };
     let place = newton(Vector2::new(position, parameter), MOST, equations, judged)?;
     let stiffness = driven.slopes(&at(place))[0];
-    (stiffness > 0.0).then_some(Birth {
+    (stiffness > 0.0).then_some(HopfPoint {
         position: place[0],
         parameter: place[1],
         frequency: stiffness.sqrt(),

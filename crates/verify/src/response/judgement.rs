@@ -3,22 +3,27 @@
 
 use nalgebra::Matrix2;
 
-use super::balance::Balance;
-use super::continuation::Node;
+use super::balance::HarmonicBalance;
+use super::continuation::BranchNode;
 use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
     Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along,
     periodic_motion, settle,
 };
-use super::{Asked, Branch, Point, Simulated};
+use super::{Branch, PreparedRequest, Simulated, SteadyMotion};
 use crate::trajectory;
 
 /// The multipliers at a point of a branch, and the true motion beside it.
-pub(super) type Judged = (Option<Floquet>, Option<TrueMotion>);
+pub(super) type PointJudgement = (Option<Floquet>, Option<TrueMotion>);
 
-impl Asked<'_> {
-    /// The same, or nothing once somebody has asked for an end.
-    pub(super) fn judged_in_time(&self, balance: &Balance, node: &Node) -> Judged {
+impl PreparedRequest<'_> {
+    /// The multipliers and the true motion of [`Self::judged`]; both `None` once an interrupt was
+    /// requested.
+    pub(super) fn judged_in_time(
+        &self,
+        balance: &HarmonicBalance,
+        node: &BranchNode,
+    ) -> PointJudgement {
         match self.question.interrupt.is_requested() {
             true => (None, None),
             false => self.judged(balance, node),
@@ -26,7 +31,7 @@ impl Asked<'_> {
     }
 
     /// The multipliers at a point of a branch, and the true motion beside it.
-    pub(super) fn judged(&self, balance: &Balance, node: &Node) -> Judged {
+    pub(super) fn judged(&self, balance: &HarmonicBalance, node: &BranchNode) -> PointJudgement {
         /// Parts of its size by which the true motion may differ: beyond it is another one.
         const OTHER: f64 = 0.3;
         if node.truth.is_some() {
@@ -51,14 +56,15 @@ impl Asked<'_> {
             }
             let frequency = self.driven.frequency_at(node.parameter);
             multipliers_along(&self.driven, node.parameter, frequency, |phase| {
-                balance.at(&node.coefficients, node.parameter, phase)
+                balance.phase_point_at(&node.coefficients, node.parameter, phase)
             })
         };
         (floquet.or_else(along), truth)
     }
 
-    /// The same of a motion without drive: the true one may begin at another phase.
-    fn judged_cycle(&self, balance: &Balance, node: &Node) -> Judged {
+    /// The multipliers and the true motion of a point without drive; the true motion may have
+    /// another phase.
+    fn judged_cycle(&self, balance: &HarmonicBalance, node: &BranchNode) -> PointJudgement {
         const OTHER: f64 = 0.3;
         let (u, parameter) = (&node.coefficients, node.parameter);
         let frequency = balance.frequency(u, parameter);
@@ -104,14 +110,14 @@ impl Asked<'_> {
 
     pub(super) fn point(
         &self,
-        balance: &Balance,
-        node: &Node,
-        (floquet, truth): Judged,
+        balance: &HarmonicBalance,
+        node: &BranchNode,
+        (floquet, truth): PointJudgement,
         size: f64,
-    ) -> Point {
+    ) -> SteadyMotion {
         let u = &node.coefficients;
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
-        /// Of the motion: less is rounding.
+        /// Relative size below which a harmonic is rounding.
         const NOTHING: f64 = 1e-12;
         let [cosine, sine] = balance.core.harmonic(u, 0, 1);
         let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
@@ -131,7 +137,7 @@ impl Asked<'_> {
         });
         // On the circle itself only rounding tells.
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
-        Point {
+        SteadyMotion {
             parameter: node.parameter,
             harmonics: balance.core.waves(u, 0).collect(),
             frequency,
@@ -152,7 +158,8 @@ impl Asked<'_> {
         /// Points of a stable part of a branch, and of all of them.
         const EACH: usize = 6;
         const MOST: usize = 30;
-        /// Of the size of the motion: the second where the first leads to another motion.
+        /// Disturbances in parts of the size of the motion: the second is for a first one that
+        /// leads to another motion.
         const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
         const OTHER: f64 = 0.05;
         const PERIODS: f64 = 1500.0;
@@ -199,7 +206,7 @@ impl Asked<'_> {
                         if self.driven.self_excited {
                             let guess =
                                 Guess { start, frequency: point.frequency, size: point.peak };
-                            let found = cycle::settled(
+                            let found = cycle::settle_cycle(
                                 &self.driven,
                                 &guess,
                                 point.parameter,
@@ -217,7 +224,8 @@ impl Asked<'_> {
                         )?;
                         Some(simulated(point, &settled.positions, point.frequency, size))
                     };
-                    // Where the first leads to another motion the second, much smaller, decides.
+                    // If the first disturbance leads to another motion, the second, much smaller
+                    // one decides.
                     let first = run(DISTURBANCES[0]);
                     let near = match first {
                         Some(first) if first.error <= OTHER => Some(first),
@@ -231,17 +239,17 @@ impl Asked<'_> {
     }
 }
 
-impl Asked<'_> {
-    /// Frequency and positions of the last of so many periods from a start, by the simulation that
-    /// takes every jump at its event and knows nothing of the map by which the points were found;
-    /// nothing where it does not come so far.
+impl PreparedRequest<'_> {
+    /// Frequency and positions of the last of this many periods from a start, by the simulation
+    /// that takes every jump at its event and knows nothing of the map by which the points were
+    /// found; `None` if it does not come so far.
     fn simulated_by_series(
         &self,
         start: [f64; 2],
-        point: &Point,
+        point: &SteadyMotion,
         periods: usize,
     ) -> Option<(f64, Vec<f64>)> {
-        let mut course = trajectory::Course::of_equation(&self.oscillator);
+        let mut course = trajectory::TrajectoryRequest::of_equation(&self.oscillator);
         let period = std::f64::consts::TAU / point.frequency;
         course.energy = None;
         course.start = start.to_vec();
@@ -251,7 +259,8 @@ impl Asked<'_> {
         course.duration = period * (periods + 2) as f64;
         if self.driven.self_excited {
             // From one least displacement to the next.
-            course.section = Some(trajectory::Section::Rising(self.oscillator.velocity().into()));
+            course.section =
+                Some(trajectory::PoincareSection::Rising(self.oscillator.velocity().into()));
         }
         let motion = course.follow().ok().filter(|motion| motion.is_complete())?;
         let (from, to) = match (self.driven.self_excited, motion.crossings()) {
@@ -260,12 +269,12 @@ impl Asked<'_> {
             (true, _) => return None,
         };
         let time = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-        let positions = (0..SAMPLES).filter_map(|sample| Some(motion.at(time(sample))?[0]));
+        let positions = (0..SAMPLES).filter_map(|sample| Some(motion.states_at(time(sample))?[0]));
         Some((std::f64::consts::TAU / (to - from), positions.collect()))
     }
 }
 
-fn simulated(point: &Point, positions: &[f64], frequency: f64, size: f64) -> Simulated {
+fn simulated(point: &SteadyMotion, positions: &[f64], frequency: f64, size: f64) -> Simulated {
     let [cosine, sine] = first_harmonic(positions);
     let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(positions));
     let of_size = relative_error([point.amplitude, point.peak], [amplitude, peak], size);

@@ -16,17 +16,17 @@
 
 use super::driven::Driven;
 use crate::numeric::ode::{
-    Action, Event, Options, Point, StopReason, Trajectory, integrate_first_order,
+    Action, Event, IntegrationOptions, Point, StopReason, Trajectory, integrate_first_order,
 };
 
 /// Position, velocity and the two columns of M at a time.
-type Values = [f64; 6];
+type VariationalState = [f64; 6];
 
 /// A motion with its variations.
 #[derive(Clone, Debug)]
-pub struct Course {
-    legs: Vec<Trajectory<Point<Values>>>,
-    /// How long it sticks.
+pub struct VariationalMotion {
+    legs: Vec<Trajectory<Point<VariationalState>>>,
+    /// Duration of all sticking phases, in the unit of time.
     stuck: f64,
     /// Whether it has ended where it turns back.
     turned: bool,
@@ -34,16 +34,16 @@ pub struct Course {
     pub end: [f64; 6],
 }
 
-/// How far a motion is followed.
+/// The condition at which the integration stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Until {
-    /// For so long.
+pub enum StopCondition {
+    /// After this time.
     Time(f64),
-    /// To where its velocity falls through zero, a largest displacement, or for so long.
+    /// At the zero of the velocity at a largest displacement, or after this time.
     Turn(f64),
 }
 
-impl Until {
+impl StopCondition {
     fn time(self) -> f64 {
         match self {
             Self::Time(time) | Self::Turn(time) => time,
@@ -51,7 +51,7 @@ impl Until {
     }
 }
 
-impl Course {
+impl VariationalMotion {
     /// Positions at equal steps of the duration, its end left out.
     pub fn positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = self.span();
@@ -72,7 +72,7 @@ impl Course {
         (from, to)
     }
 
-    /// How long it takes.
+    /// Duration, in the unit of time.
     pub fn duration(&self) -> f64 {
         let (from, to) = self.span();
         to - from
@@ -91,7 +91,7 @@ impl Course {
         self.turned
     }
 
-    /// How far it gets from where it begins.
+    /// The largest distance from the initial position.
     pub fn extent(&self) -> f64 {
         let positions = self.positions(super::stability::SAMPLES);
         let from = positions.first().copied().unwrap_or(0.0);
@@ -104,17 +104,17 @@ impl Course {
     }
 }
 
-/// The motion from a start at phase zero; nothing where it cannot be followed.
+/// The motion from a start at phase zero; `None` if it cannot be followed.
 pub fn follow(
     driven: &Driven,
     start: [f64; 2],
     parameter: f64,
-    until: Until,
-    options: &Options,
-) -> Option<Course> {
+    until: StopCondition,
+    options: &IntegrationOptions,
+) -> Option<VariationalMotion> {
     /// Legs of a period: beyond them it does not come to an end.
     const MOST: usize = 400;
-    let mut run = Run::new(driven, start, parameter);
+    let mut run = NonsmoothRun::new(driven, start, parameter);
     let mut legs = Vec::new();
     let mut stuck = 0.0;
     for _ in 0..MOST {
@@ -130,30 +130,30 @@ pub fn follow(
         }
         legs.push(path);
         let turned = match reason {
-            StopReason::Event { event, .. } => run.met(event, until),
+            StopReason::Event { event, .. } => run.pass_event(event, until),
             _ => false,
         };
         if turned || run.t >= until.time() {
-            return Some(Course { legs, stuck, turned, end: run.y });
+            return Some(VariationalMotion { legs, stuck, turned, end: run.y });
         }
     }
     None
 }
 
 /// A motion on its way.
-struct Run<'a> {
+struct NonsmoothRun<'a> {
     driven: &'a Driven,
     parameter: f64,
     omega: f64,
     t: f64,
-    y: Values,
+    y: VariationalState,
     /// The side of each jump, 1 or -1.
     sides: Vec<f64>,
     /// The jump on which it sticks.
     sliding: Option<usize>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> NonsmoothRun<'a> {
     fn new(driven: &'a Driven, start: [f64; 2], parameter: f64) -> Self {
         let y = [start[0], start[1], 1.0, 0.0, 0.0, 1.0];
         let heights = |index: usize| driven.height(index, start, parameter);
@@ -198,11 +198,11 @@ impl<'a> Run<'a> {
     }
 
     /// The events at which it leaves its side of a jump, those but one.
-    fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<Values>>> {
+    fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<VariationalState>>> {
         let (driven, parameter) = (self.driven, self.parameter);
         let crossing = |(index, side): (usize, &f64)| {
             let side = if Some(index) == but { 0.0 } else { *side };
-            let height = move |point: &Point<Values>| {
+            let height = move |point: &Point<VariationalState>| {
                 side * driven.height(index, [point.y[0], point.y[1]], parameter)
             };
             Event::new(height, Action::Stop).falling()
@@ -211,14 +211,18 @@ impl<'a> Run<'a> {
     }
 
     /// The event at which it turns back, behind all others but before them at the same time.
-    fn turn(until: Until) -> Option<Event<'a, Point<Values>>> {
-        let falls = |point: &Point<Values>| point.y[1];
-        matches!(until, Until::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
+    fn turn(until: StopCondition) -> Option<Event<'a, Point<VariationalState>>> {
+        let falls = |point: &Point<VariationalState>| point.y[1];
+        matches!(until, StopCondition::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
     }
 
     /// A leg between the jumps.
-    fn leg(&self, until: Until, options: &Options) -> Option<Trajectory<Point<Values>>> {
-        let rates = |t: f64, y: &Values, rates: &mut Values| {
+    fn leg(
+        &self,
+        until: StopCondition,
+        options: &IntegrationOptions,
+    ) -> Option<Trajectory<Point<VariationalState>>> {
+        let rates = |t: f64, y: &VariationalState, rates: &mut VariationalState| {
             let at = [y[0], y[1], self.omega * t, self.parameter];
             let [by_position, by_velocity, _] = self.driven.slopes_on(&at, &self.sides);
             *rates = [
@@ -240,11 +244,11 @@ impl<'a> Run<'a> {
     fn sliding_leg(
         &self,
         surface: usize,
-        until: Until,
-        options: &Options,
-    ) -> Option<Trajectory<Point<Values>>> {
+        until: StopCondition,
+        options: &IntegrationOptions,
+    ) -> Option<Trajectory<Point<VariationalState>>> {
         let [by_position, _] = self.driven.normal(surface);
-        let rates = |_: f64, y: &Values, rates: &mut Values| {
+        let rates = |_: f64, y: &VariationalState, rates: &mut VariationalState| {
             *rates =
                 [y[1], -by_position * y[1], y[3], -by_position * y[3], y[5], -by_position * y[5]];
         };
@@ -252,7 +256,7 @@ impl<'a> Run<'a> {
             let mut sides = self.sides.clone();
             sides[surface] = side;
             let (driven, omega, parameter) = (self.driven, self.omega, self.parameter);
-            let pushed = move |point: &Point<Values>| {
+            let pushed = move |point: &Point<VariationalState>| {
                 let [x, v, ..] = point.y;
                 side * (by_position * v
                     - driven.force_on(&[x, v, omega * point.t, parameter], &sides))
@@ -263,7 +267,7 @@ impl<'a> Run<'a> {
         let events: Vec<_> =
             turn.into_iter().chain(self.crossings(Some(surface))).chain(leaves).collect();
         // Nothing but the drive changes: a step sees all of it.
-        let options = Options {
+        let options = IntegrationOptions {
             maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
             ..*options
         };
@@ -272,15 +276,15 @@ impl<'a> Run<'a> {
         path.is_complete().then_some(path)
     }
 
-    /// Goes on behind an event; whether the motion has turned back there.
-    fn met(&mut self, event: usize, until: Until) -> bool {
+    /// Continues after an event; returns whether the motion has turned back there.
+    fn pass_event(&mut self, event: usize, until: StopCondition) -> bool {
         let index = match (until, event) {
-            (Until::Turn(_), 0) => {
+            (StopCondition::Turn(_), 0) => {
                 self.y[1] = 0.0;
                 return true;
             }
-            (Until::Turn(_), _) => event - 1,
-            (Until::Time(_), _) => event,
+            (StopCondition::Turn(_), _) => event - 1,
+            (StopCondition::Time(_), _) => event,
         };
         if let Some(side) = index.checked_sub(self.sides.len()) {
             // Pulled off the jump on which it stuck.
@@ -297,7 +301,7 @@ impl<'a> Run<'a> {
         if side * behind < 0.0 {
             let after = self.acceleration(index, -side);
             self.jump(index, before, after);
-            self.stay();
+            self.check_sticking();
         } else if self.driven.normal(index)[1] != 0.0 {
             self.stick(index);
         } else {
@@ -307,7 +311,7 @@ impl<'a> Run<'a> {
         false
     }
 
-    /// Puts it exactly on a jump.
+    /// Projects the state onto a jump.
     fn put_on(&mut self, index: usize) {
         let height = self.driven.height(index, [self.y[0], self.y[1]], self.parameter);
         match self.driven.normal(index) {
@@ -330,7 +334,7 @@ impl<'a> Run<'a> {
         let speed = by_position * self.y[1] + by_velocity * before;
         for column in [2, 4] {
             let height = by_position * self.y[column] + by_velocity * self.y[column + 1];
-            // What is zero stays so, however slowly it comes.
+            // A variation that is zero stays zero, also if the speed across the jump vanishes.
             if height != 0.0 {
                 self.y[column + 1] += (behind - before) * height / speed;
             }
@@ -348,7 +352,7 @@ impl<'a> Run<'a> {
     }
 
     /// Whether what stuck on a jump does so still behind another one.
-    fn stay(&mut self) {
+    fn check_sticking(&mut self) {
         let Some(surface) = self.sliding else { return };
         if let Some(side) =
             [1.0, -1.0].into_iter().find(|side| side * self.rise(surface, *side) > 0.0)

@@ -5,11 +5,11 @@
 //! x'' + f(x, x', t; p) = 0,  f periodic in t:    X(theta) = a_0 + sum a_k cos(k theta) + b_k sin(k theta),  theta = omega t
 //! ```
 //!
-//! In: a [`Question`]: an oscillator with numbers for all parameters but one, and the range in
-//! which that one varies. Out: a [`Response`]: branches found by harmonic balance and followed by
-//! pseudo-arclength; the multipliers of the true motion beside each of their points; folds,
-//! crossings, period doublings, second frequencies; backbones; and how far all of that is from
-//! motions that Runge-Kutta finds. Units are those of the equation.
+//! In: a [`ResponseRequest`]: an oscillator with numbers for all parameters but one, and the range
+//! in which that one varies. Out: a [`ResponseDiagram`]: branches found by harmonic balance and
+//! followed by pseudo-arclength; the multipliers of the true motion beside each of their points;
+//! folds, crossings, period doublings, second frequencies; backbones; and how far all of that is
+//! from motions that Runge-Kutta finds. Units are those of the equation.
 //!
 //! - [`driven`]: the equation in the phase of the motion.
 //! - [`balance`]: its equations for Fourier coefficients.
@@ -59,24 +59,24 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
 
-pub use error::{ResponseError, Tried};
+pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;
 
 use backbone::{BackbonePoint, backbones};
-use balance::Balance;
+use balance::HarmonicBalance;
 use bifurcation::BifurcationKind;
 use branches::largest;
-use continuation::{BranchEnd, Node, Path, Walk};
+use continuation::{BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use driven::Driven;
-use judgement::Judged;
-use ripple::Found;
+use judgement::PointJudgement;
+use ripple::LocatedBifurcation;
 use seeds::{Seed, size_of};
 use slow::SlowResponse;
-use stability::Budget;
+use stability::SimulationBudget;
 
-/// What is asked.
+/// A response to be computed: equation, parameter, range and accuracy.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct ResponseRequest {
     /// The equation.
     pub oscillator: Oscillator,
     /// Exact values of all parameters but the one that varies.
@@ -85,23 +85,23 @@ pub struct Question {
     pub parameter: Symbol,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How many harmonics are kept; without it as many as bring the error below a tenth of the
-    /// tolerance, 64 at most.
+    /// Number of harmonics; if `None`, as many as bring the error below a tenth of the tolerance,
+    /// 64 at most.
     pub harmonics: Option<usize>,
-    /// How many periods of the drive a period of the motion takes.
+    /// Number of drive periods in one period of the motion.
     pub periods: usize,
     /// The relative error up to which it passes.
     pub tolerance: f64,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
-    /// Who sees how far it has come: of the search for motions to begin with, then of the points
-    /// that are judged, each time anew.
+    /// The observer of the progress: of the search for initial motions, then of the points that are
+    /// judged, each time anew.
     pub progress: Progress,
 }
 
 /// A steady state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SteadyMotion {
     /// The parameter that varies.
     pub parameter: f64,
     /// Coefficients of cos(k theta) and sin(k theta), from k = 0, the mean.
@@ -117,7 +117,7 @@ pub struct Point {
     /// Position and velocity at t = 0: those of the true motion where it was found.
     pub start: [f64; 2],
     /// Whether small disturbances die out, by the multipliers; without damping, whether they do not
-    /// grow. Nothing where they could not be found.
+    /// grow. `None` if they could not be found.
     pub stable: Option<bool>,
     /// The multipliers, the larger first; of a self-excited motion the one that decides, then the
     /// one along the motion, which is 1.
@@ -125,8 +125,8 @@ pub struct Point {
     /// The part of a period in which it sticks, held by dry friction.
     pub stuck: f64,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over
-    /// the true peak, or that of the frequency, over the true one, if that is larger; nothing where
-    /// it found none near.
+    /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if it
+    /// found none near.
     pub error: Option<f64>,
 }
 
@@ -134,8 +134,8 @@ pub struct Point {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// Its points in order.
-    pub points: Vec<Point>,
-    /// Why it ends before the first one and behind the last.
+    pub points: Vec<SteadyMotion>,
+    /// The reason why it ends before the first one and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is a branch as well, which is
     /// not listed.
@@ -171,7 +171,7 @@ pub struct Bifurcation {
 impl Bifurcation {
     /// Whether this is the same place, met from another branch or by the other half of one.
     fn is_near(&self, other: &Self, [low, high]: [f64; 2], size: f64) -> bool {
-        // Where branches cross, each finds the place as well as it can.
+        // At a branch point each branch locates the bifurcation with less accuracy.
         let near = if self.kind == BifurcationKind::BranchPoint { 2e-4 } else { 1e-5 };
         self.kind == other.kind
             && (self.parameter - other.parameter).abs() <= near * (high - low)
@@ -216,11 +216,11 @@ impl Elsewhere {
     }
 }
 
-/// What was found.
+/// The steady states over the range of the parameter: branches, bifurcations and simulations.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
-    /// What was asked.
-    pub question: Question,
+pub struct ResponseDiagram {
+    /// The request that this answers.
+    pub question: ResponseRequest,
     /// The frequency of the drive; where there is none a name for that of the motion, of which each
     /// point has the number.
     pub frequency: Expr,
@@ -233,7 +233,7 @@ pub struct Response {
     /// Whether all branches are those of the map of a period, because harmonic balance does not
     /// take the jumps.
     pub by_map: bool,
-    /// How many harmonics were kept.
+    /// Number of harmonics kept.
     pub harmonics: usize,
     /// The branches, in the order in which they were found.
     pub branches: Vec<Branch>,
@@ -241,8 +241,8 @@ pub struct Response {
     pub bifurcations: Vec<Bifurcation>,
     /// Folds of the balance that are none of the true motion, left out of these.
     pub ripple: Option<Ripple>,
-    /// The free motion without damping, about each place of rest; empty where the frequency does
-    /// not vary.
+    /// The free motion without damping, about each place of rest; empty if the frequency does not
+    /// vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
     pub simulated: Vec<Simulated>,
@@ -287,19 +287,19 @@ const MOST_BRANCHES: usize = 12;
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
 /// // Duffing's equation, hardening: a jump down on the way up.
-/// let question = Question::new("x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0", "Omega", [0.5, 2.5], "F = 3/10")?;
+/// let question = ResponseRequest::new("x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0", "Omega", [0.5, 2.5], "F = 3/10")?;
 /// let response = respond(&question)?;
 /// let fold = &response.bifurcations[0];
 /// assert_eq!((fold.kind.name(), response.branches.len()), ("fold", 1));
 /// assert!((fold.parameter - 1.7797).abs() < 1e-3, "{}", fold.parameter);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn respond(question: &Question) -> Result<Response, ResponseError> {
+pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
     const FIRST: usize = 8;
-    let asked = Asked::new(question)?;
+    let asked = PreparedRequest::new(question)?;
     // Of the map of a period harmonics are only read off: as many as there may be.
     let automatic = match asked.driven.is_balanced() {
         true => FIRST,
@@ -309,7 +309,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     let (seeds, elsewhere) = asked.seeds(first)?;
     let mut harmonics = first;
     let mut before = (f64::INFINITY, usize::MAX);
-    let mut fewer: Option<Response> = None;
+    let mut fewer: Option<ResponseDiagram> = None;
     loop {
         let attempt = asked.attempt(harmonics, &seeds);
         let may_have_more = question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
@@ -320,11 +320,12 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             harmonics *= 2;
             continue;
         }
-        // What was stopped on the way to more harmonics has the answer by fewer of them.
+        // If the computation is interrupted on the way to more harmonics, the result with fewer of
+        // them is the answer.
         let mut response = match (attempt, fewer.take()) {
             (Ok(response), None) => response,
             (Ok(response), Some(_)) if response.complete => response,
-            (_, Some(response)) => Response { complete: false, ..response },
+            (_, Some(response)) => ResponseDiagram { complete: false, ..response },
             (Err(error), None) => return Err(error),
         };
         let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
@@ -335,10 +336,11 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             && judged
             && followed
             && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
-        // What more harmonics do not better is not theirs, such as a jump of the force.
+        // An error that more harmonics do not reduce has another cause, such as a jump of the
+        // force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
         let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
-        // What has no branch yet has no error either.
+        // Without a branch there is no error either.
         before = if followed { now } else { (f64::INFINITY, usize::MAX) };
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
@@ -355,13 +357,13 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     }
 }
 
-impl Response {
+impl ResponseDiagram {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
     }
 
-    /// The same with the largest error of its points and simulations, and the verdict on it.
+    /// This response with the largest error of its points and simulations, and the verdict on it.
     fn with_verdict(mut self) -> Self {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
         let errors = points().filter_map(|point| point.error);
@@ -374,13 +376,13 @@ impl Response {
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
         let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
-        self.verdict = Verdict::of(small && 20 * unjudged <= all && !missed);
+        self.verdict = Verdict::from_passed(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self
     }
 }
 
-impl Question {
+impl ResponseRequest {
     /// A question with automatic harmonics, a tolerance of 1 %, and motions of the period of the
     /// drive.
     ///
@@ -407,18 +409,18 @@ impl Question {
 }
 
 /// A question with its equation ready for numbers.
-struct Asked<'a> {
-    question: &'a Question,
+struct PreparedRequest<'a> {
+    question: &'a ResponseRequest,
     /// The equation with all values but one.
     oscillator: Oscillator,
     driven: Driven,
-    /// How the search for motions to begin with gets on.
-    tried: Cell<Tried>,
+    /// Progress of the search for initial motions.
+    tried: Cell<SeedSearch>,
 }
 
-impl<'a> Asked<'a> {
-    fn new(question: &'a Question) -> Result<Self, ResponseError> {
-        let Question { oscillator, parameter, .. } = question;
+impl<'a> PreparedRequest<'a> {
+    fn new(question: &'a ResponseRequest) -> Result<Self, ResponseError> {
+        let ResponseRequest { oscillator, parameter, .. } = question;
         let known = &oscillator.parameters;
         let self_excited = !oscillator.force.contains(Symbol::new("t"));
         if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
@@ -481,13 +483,13 @@ impl<'a> Asked<'a> {
         Ok(self)
     }
 
-    /// What the simulations of one purpose may take together.
-    fn budget(&self) -> Budget {
-        Budget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
+    /// The evaluations that the simulations of one purpose may take together.
+    fn budget(&self) -> SimulationBudget {
+        SimulationBudget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
 
-    fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
-        Walk {
+    fn walk(&self, seeds: &[Seed], size: f64) -> ContinuationSettings {
+        ContinuationSettings {
             // Corners and slow motions have long series of harmonics, and ends of their own.
             resolved: self.question.harmonics.is_none()
                 && self.driven.smooth
@@ -501,10 +503,10 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Everything with so many harmonics.
-    fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<Response, ResponseError> {
+    /// Everything with this many harmonics.
+    fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
-        let balance = Balance::new(&self.driven, harmonics);
+        let balance = HarmonicBalance::new(&self.driven, harmonics);
         let mut paths = match self.driven.is_balanced() {
             true => self.branches(&balance, seeds, size_of(seeds)),
             false => vec![],
@@ -513,7 +515,7 @@ impl<'a> Asked<'a> {
         let size = largest_motion.fold(size_of(seeds), f64::max);
         self.follow_sticking(&balance, seeds, &mut paths, size);
         let (all_judged, changes, ripple) = self.judged_paths(&balance, seeds, &mut paths);
-        // What is small is small beside the largest motion of all.
+        // Sizes are compared with the largest motion of all branches.
         let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
         let bifurcations = self.bifurcations(&balance, changes, size);
         let branches: Vec<Branch> = paths
@@ -532,7 +534,7 @@ impl<'a> Asked<'a> {
             .collect();
         if branches.is_empty() {
             return Err(match question.interrupt.is_requested() || self.driven.undamped {
-                true => self.nothing(),
+                true => self.no_motion_error(),
                 false => ResponseError::NotFollowed {
                     parameter: question.parameter,
                     range: question.range,
@@ -544,7 +546,7 @@ impl<'a> Asked<'a> {
         let points = || branches.iter().flat_map(|branch| &branch.points);
         let complete = !question.interrupt.is_requested();
         let amplitude = points().map(|point| point.amplitude).fold(0.0, f64::max);
-        let response = Response {
+        let response = ResponseDiagram {
             question: question.clone(),
             frequency: self.driven.frequency.clone(),
             self_excited: self.driven.self_excited,
@@ -573,9 +575,12 @@ impl<'a> Asked<'a> {
         Ok(response.with_verdict())
     }
 
-    /// The same without what waves cannot say: ends of branches on which no true motion was found,
-    /// because the period grows without bound or the waves are too few.
-    fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
+    /// This response without the ends of branches at which no true motion was found, because the
+    /// period grows without bound or there are too few harmonics.
+    fn without_tails(
+        &self,
+        mut response: ResponseDiagram,
+    ) -> Result<ResponseDiagram, ResponseError> {
         /// Points without a true motion in a row that are no accident.
         const FEW: usize = 3;
         let tolerance = response.question.tolerance;
@@ -612,7 +617,7 @@ impl<'a> Asked<'a> {
             let frequencies = points.iter().map(|point| point.frequency);
             slowest.push(frequencies.fold(f64::INFINITY, f64::min));
         }
-        // What changes beyond the end of a branch is not known to.
+        // Bifurcations beyond the new end of a branch are not reliable.
         let slowest_of = |branch: usize| slowest.get(branch).copied().unwrap_or(f64::INFINITY);
         let bifurcations = response.bifurcations.iter();
         let kept = bifurcations.filter(|found| found.frequency >= slowest_of(found.branch));
@@ -622,7 +627,7 @@ impl<'a> Asked<'a> {
             kept.map(|found| Bifurcation { branch: number(found.branch), ..*found }).collect();
         response.branches.retain(|branch| !branch.points.is_empty());
         match response.branches.is_empty() {
-            true => Err(self.nothing()),
+            true => Err(self.no_motion_error()),
             false => Ok(response.with_verdict()),
         }
     }
@@ -631,16 +636,16 @@ impl<'a> Asked<'a> {
     /// followed and added.
     fn judged_paths(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         seeds: &[Seed],
-        paths: &mut Vec<Path>,
-    ) -> (Vec<Vec<Judged>>, Vec<Change>, Option<Ripple>) {
+        paths: &mut Vec<BranchPath>,
+    ) -> (Vec<Vec<PointJudgement>>, Vec<Change>, Option<Ripple>) {
         let size = paths.iter().map(|path| largest(balance, path));
         let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
         // Of a motion that is none the multipliers say nothing.
-        let of_true_motion = |judged: Judged| judged.1.map(|truth| truth.floquet);
-        let floquet = |node: &Node| of_true_motion(self.judged(balance, node));
-        let mut all_judged: Vec<Vec<Judged>> = Vec::new();
+        let of_true_motion = |judged: PointJudgement| judged.1.map(|truth| truth.floquet);
+        let floquet = |node: &BranchNode| of_true_motion(self.judged(balance, node));
+        let mut all_judged: Vec<Vec<PointJudgement>> = Vec::new();
         let mut changes = Vec::new();
         let mut ripple = None;
         while let Some(path) = paths.get(all_judged.len()).cloned() {
@@ -648,13 +653,13 @@ impl<'a> Asked<'a> {
             let points: usize = paths.iter().map(|path| path.nodes.len()).sum();
             let before: usize = all_judged.iter().map(Vec::len).sum();
             self.question.progress.begin(points - before);
-            let judged: Vec<Judged> = path
+            let judged: Vec<PointJudgement> = path
                 .nodes
                 .iter()
                 .inspect(|_| self.question.progress.advance())
                 .map(|node| self.judged_in_time(balance, node))
                 .collect();
-            let mut own: Vec<Found> = Vec::new();
+            let mut own: Vec<LocatedBifurcation> = Vec::new();
             for (index, (pair, known)) in path.nodes.windows(2).zip(judged.windows(2)).enumerate() {
                 let ([from, to], [before, after]) = (pair, known) else {
                     continue;
@@ -678,7 +683,7 @@ impl<'a> Asked<'a> {
                 }
             }
             let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
-            ripple = Ripple::with(ripple, &left_out);
+            ripple = Ripple::merged_with(ripple, &left_out);
             changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
             let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
@@ -691,7 +696,12 @@ impl<'a> Asked<'a> {
     }
 
     /// The places where branches change, each once.
-    fn bifurcations(&self, balance: &Balance, changes: Vec<Change>, size: f64) -> Vec<Bifurcation> {
+    fn bifurcations(
+        &self,
+        balance: &HarmonicBalance,
+        changes: Vec<Change>,
+        size: f64,
+    ) -> Vec<Bifurcation> {
         let mut found: Vec<Bifurcation> = Vec::new();
         for (kind, branch, node) in changes {
             let point = self.point(balance, &node, (None, None), size);
@@ -713,16 +723,16 @@ impl<'a> Asked<'a> {
     /// Counts what the search for motions to begin with has done.
     fn count(&self, [values, starts]: [usize; 2], motions: usize) {
         let before = self.tried.get();
-        self.tried.set(Tried {
+        self.tried.set(SeedSearch {
             values: before.values + values,
             starts: before.starts + starts,
             motions,
         });
     }
 
-    /// Why there is nothing.
-    fn nothing(&self) -> ResponseError {
-        let Question { parameter, range, .. } = *self.question;
+    /// The error of a search without a motion.
+    fn no_motion_error(&self) -> ResponseError {
+        let ResponseRequest { parameter, range, .. } = *self.question;
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {
             (true, _) => ResponseError::Interrupted { parameter, tried: self.tried.get() },
             (false, true) => ResponseError::NoCycle { parameter, range },
@@ -734,4 +744,4 @@ impl<'a> Asked<'a> {
 }
 
 /// A place where a branch, counted from 0, changes.
-type Change = (BifurcationKind, usize, Node);
+type Change = (BifurcationKind, usize, BranchNode);

@@ -4,17 +4,17 @@
 //! det(1 - M) changes its sign where a multiplier of the true motion passes 1: at its folds, and where branches cross
 //! ```
 //!
-//! Where a motion has sharp turns the branch of its balance waves about that of the true motion,
-//! and near the top of a resonance, where the parameter hardly changes, each wave turns it back.
-//! In: the points of a branch with the true motions beside them, and the places where it turns.
-//! Out: the places where the true motion does not.
+//! If a motion has sharp turns, the branch of its balance oscillates about that of the true motion,
+//! and near the top of a resonance, where the parameter hardly changes, each oscillation makes a
+//! spurious fold. In: the points of a branch with the true motions beside them, and its folds. Out:
+//! the folds that the true motion does not have.
 
 use super::bifurcation::BifurcationKind;
-use super::continuation::Node;
-use super::judgement::Judged;
+use super::continuation::BranchNode;
+use super::judgement::PointJudgement;
 
 /// A place where a branch changes, between the point of this index and the next one.
-pub(super) type Found = (usize, BifurcationKind, Node);
+pub(super) type LocatedBifurcation = (usize, BifurcationKind, BranchNode);
 
 /// Folds of the balance alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +28,8 @@ pub struct Ripple {
 }
 
 impl Ripple {
-    /// Of these places, with what there is already.
-    pub(super) fn with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
+    /// Adds the folds at these parameters to those that there are already.
+    pub(super) fn merged_with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
         parameters.iter().fold(ripple, |ripple, parameter| {
             Some(match ripple {
                 None => Self { folds: 1, range: [*parameter; 2] },
@@ -43,8 +43,8 @@ impl Ripple {
 
 /// The sign of det(1 - M) of the true motions beside these points, that of most of them; zero where
 /// there is none.
-fn side(judged: &[Judged]) -> f64 {
-    let sign = |(_, truth): &Judged| {
+fn side(judged: &[PointJudgement]) -> f64 {
+    let sign = |(_, truth): &PointJudgement| {
         truth.map_or(0.0, |truth| {
             let away = nalgebra::Matrix2::identity() - truth.floquet.monodromy;
             let determinant: f64 = match truth.floquet.self_excited {
@@ -61,15 +61,15 @@ fn side(judged: &[Judged]) -> f64 {
 /// The places where a branch changes without the folds that only its balance has, and the
 /// parameters of these.
 pub(super) fn without_ripple(
-    found: Vec<Found>,
-    nodes: &[Node],
-    judged: &[Judged],
-) -> (Vec<Found>, Vec<f64>) {
+    found: Vec<LocatedBifurcation>,
+    nodes: &[BranchNode],
+    judged: &[PointJudgement],
+) -> (Vec<LocatedBifurcation>, Vec<f64>) {
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
     let mut from = 0;
     let mut rest = found.into_iter().peekable();
     while rest.peek().is_some() {
-        // Where branches cross the sign changes too.
+        // The sign changes at branch points, too.
         let mut folds = Vec::new();
         let mut to = nodes.len();
         for place in rest.by_ref() {
@@ -101,16 +101,16 @@ pub(super) fn without_ripple(
 }
 
 /// The folds of the true motion in place of these of a balance, on a part of a branch without
-/// crossings; nothing where these are they, or where the true motions do not tell. On either side
-/// of a fold of the true motion det(1 - M) has one sign each: where the balance turns more often
-/// than the sign, its folds are as many as the sign changes, each where the branch comes farthest
-/// in between.
+/// crossings; `None` if these are they, or if the true motions do not tell. On either side of a
+/// fold of the true motion det(1 - M) has one sign each: where the balance turns more often than
+/// the sign, its folds are as many as the sign changes, each where the branch comes farthest in
+/// between.
 fn of_true_motion(
-    folds: &[Found],
-    nodes: &[Node],
-    judged: &[Judged],
+    folds: &[LocatedBifurcation],
+    nodes: &[BranchNode],
+    judged: &[PointJudgement],
     [from, to]: [usize; 2],
-) -> Option<Vec<Found>> {
+) -> Option<Vec<LocatedBifurcation>> {
     // Before the first fold, between one and the next, behind the last.
     let begins = std::iter::once(from).chain(folds.iter().map(|fold| fold.0 + 1));
     let ends = folds.iter().map(|fold| fold.0 + 1).chain([to]);
@@ -141,7 +141,7 @@ fn of_true_motion(
             .filter_map(|index| Some((index, BifurcationKind::Fold, nodes.get(index)?)));
         let places = folds.iter().map(|(index, kind, node)| (*index, *kind, node));
         let places = places.filter(|(index, _, _)| (begin..end).contains(index));
-        let ahead = |node: &Node| direction * node.parameter;
+        let ahead = |node: &BranchNode| direction * node.parameter;
         let farthest =
             points.chain(places).max_by(|one, other| ahead(one.2).total_cmp(&ahead(other.2)));
         real.extend(farthest.map(|(index, kind, node)| (index, kind, node.clone())));

@@ -3,23 +3,23 @@
 use nalgebra::DVector;
 
 use super::backbone::places_of_rest;
-use super::balance::Balance;
-use super::continuation::Path;
-use super::stability::{Budget, half_of_peak_to_peak, settle};
-use super::{Asked, Elsewhere, ResponseError};
+use super::balance::HarmonicBalance;
+use super::continuation::BranchPath;
+use super::stability::{SimulationBudget, half_of_peak_to_peak, settle};
+use super::{Elsewhere, PreparedRequest, ResponseError};
 
 /// A motion to begin with.
 #[derive(Clone, Debug)]
 pub(super) struct Seed {
     pub(super) parameter: f64,
-    /// Of the motion.
+    /// The frequency of the motion.
     pub(super) frequency: f64,
     pub(super) positions: Vec<f64>,
     /// Position and velocity with which it begins, where a simulation has come to it.
     pub(super) start: Option<[f64; 2]>,
 }
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Motions to begin with: where simulations settle, from rest and from a ring of starts as
     /// large as the motions of the first branches; and what did not repeat itself.
     pub(super) fn seeds(
@@ -33,9 +33,9 @@ impl Asked<'_> {
             return Ok((self.cycles()?, vec![]));
         }
         let [low, high] = self.question.range;
-        let balance = Balance::new(&self.driven, harmonics);
-        /// Without damping the ends and the middle are where somebody would put a resonance, at
-        /// which there is no motion.
+        let balance = HarmonicBalance::new(&self.driven, harmonics);
+        /// Fraction of the range at which the search starts: without damping there is no motion at
+        /// a resonance, which a user is likely to place at an end or in the middle.
         const OFF: f64 = 0.382;
         let part = |index: u32| match self.driven.undamped {
             true => (f64::from(index) + OFF) / f64::from(VALUES),
@@ -62,18 +62,23 @@ impl Asked<'_> {
                     size = size.max(extent);
                     seeds.push(seed);
                 }
-                elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
+                elsewhere.extend(self.add_settled(
+                    [place, 0.0],
+                    *parameter,
+                    &mut seeds,
+                    &mut budget,
+                ));
             }
         }
         size = size.max(size_of(&seeds));
         // The ring is as wide as the branches that are known by now.
-        let first: Vec<Path> = match self.driven.is_balanced() {
+        let first: Vec<BranchPath> = match self.driven.is_balanced() {
             true => self.branches(&balance, &seeds, size),
             false => vec![],
         };
         for path in &first {
             for (found, parameter) in
-                self.walk(&seeds, size).returns(&balance, path, self.surroundings())
+                self.walk(&seeds, size).reentries(&balance, path, self.surroundings())
             {
                 seeds.push(self.seed(&balance, &found, parameter));
                 size = size.max(balance.core.extent(&found));
@@ -97,23 +102,23 @@ impl Asked<'_> {
                     let (sine, cosine) =
                         (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
                     let start = [radius * size * cosine, -radius * size * omega * sine];
-                    elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
+                    elsewhere.extend(self.add_settled(start, *parameter, &mut seeds, &mut budget));
                 }
             }
         }
         elsewhere.sort_by(Elsewhere::in_order);
         elsewhere.dedup();
         if seeds.is_empty() {
-            return Err(self.nothing());
+            return Err(self.no_motion_error());
         }
         Ok((seeds, elsewhere))
     }
 
-    /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds
+    /// The motion that a balance finds from rest at a place, and its extent; `None` if it finds
     /// none.
     fn balanced_from_rest(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         place: f64,
         parameter: f64,
     ) -> Option<(Seed, f64)> {
@@ -127,11 +132,11 @@ impl Asked<'_> {
     }
 
     /// A motion of a balance to begin with.
-    fn seed(&self, balance: &Balance, found: &DVector<f64>, parameter: f64) -> Seed {
+    fn seed(&self, balance: &HarmonicBalance, found: &DVector<f64>, parameter: f64) -> Seed {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
             let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
-            balance.at(found, parameter, phase)[0]
+            balance.phase_point_at(found, parameter, phase)[0]
         });
         Seed {
             parameter,
@@ -141,8 +146,8 @@ impl Asked<'_> {
         }
     }
 
-    /// How far beyond the range branches are followed that might come back: not to where the
-    /// parameter has another sign.
+    /// The range, widened, in which branches that leave it are followed because they might come
+    /// back; it does not reach a parameter of the other sign.
     fn surroundings(&self) -> [f64; 2] {
         const TIMES: f64 = 4.0;
         let [low, high] = self.question.range;
@@ -153,12 +158,12 @@ impl Asked<'_> {
     }
 
     /// Adds where a simulation settles, or says that it does not repeat itself.
-    fn settled(
+    fn add_settled(
         &self,
         start: [f64; 2],
         parameter: f64,
         seeds: &mut Vec<Seed>,
-        budget: &mut Budget,
+        budget: &mut SimulationBudget,
     ) -> Option<Elsewhere> {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;

@@ -10,11 +10,11 @@
 //! chapter V).
 
 use super::backbone::places_of_rest;
-use super::jump::{Until, follow};
+use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
-use super::{Asked, ResponseError};
+use super::{PreparedRequest, ResponseError};
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
 /// Values of the parameter at which cycles are looked for; the second where the first find none.
 const VALUES: [u32; 2] = [5, 33];
@@ -26,7 +26,7 @@ const RINGS: i32 = 22;
 /// Growth that is no more than the error of the steps.
 const ROUNDING: f64 = 1e-8;
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Limit cycles, each with its frequency and its positions.
     pub(super) fn cycles(&self) -> Result<Vec<Seed>, ResponseError> {
         let [low, high] = self.question.range;
@@ -38,7 +38,7 @@ impl Asked<'_> {
                 }
                 let parameter = low + (high - low) * f64::from(index) / f64::from(count - 1);
                 self.count([1, 0], seeds.len());
-                for place in self.places(parameter) {
+                for place in self.rest_positions(parameter) {
                     self.count([0, 2 * RINGS as usize + 1], seeds.len());
                     match self.driven.is_balanced() {
                         true => self.cycles_about(place, parameter, &mut seeds),
@@ -50,11 +50,11 @@ impl Asked<'_> {
                 return Ok(seeds);
             }
         }
-        Err(self.nothing())
+        Err(self.no_motion_error())
     }
 
     /// The places of rest about which something may swing.
-    fn places(&self, parameter: f64) -> Vec<f64> {
+    fn rest_positions(&self, parameter: f64) -> Vec<f64> {
         const SIZES: [f64; 3] = [1.0, 0.03, 30.0];
         let mut found: Vec<f64> = Vec::new();
         for size in SIZES {
@@ -78,7 +78,7 @@ impl Asked<'_> {
                 let Some(path) = self.swing(place, radius, parameter, backward, FOUND) else {
                     continue;
                 };
-                // A jump from growing to shrinking is no cycle.
+                // A jump from growing to shrinking is not a cycle.
                 if (path.end().x - 1.0).abs() > 1e-4 {
                     continue;
                 }
@@ -89,7 +89,7 @@ impl Asked<'_> {
                 if backward {
                     positions[1..].reverse();
                 }
-                let period = path.end().t / self.pace(place, radius, parameter);
+                let period = path.end().t / self.approximate_frequency(place, radius, parameter);
                 seeds.push(Seed {
                     parameter,
                     frequency: std::f64::consts::TAU / period,
@@ -103,7 +103,7 @@ impl Asked<'_> {
     /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What
     /// sticks cannot be followed backward.
     fn cycles_across_jumps(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
-        /// Beyond it a motion does not turn back.
+        /// The longest time in which a motion has to turn back.
         const LONGEST: f64 = 1e3;
         const SAMPLES: usize = 512;
         let swing = |radius: f64, (tolerance, _): (f64, usize)| {
@@ -112,7 +112,7 @@ impl Asked<'_> {
                 &self.driven,
                 [place + radius, 0.0],
                 parameter,
-                Until::Turn(LONGEST),
+                StopCondition::Turn(LONGEST),
                 &options,
             )?;
             let away = course.end[0] - place;
@@ -121,7 +121,7 @@ impl Asked<'_> {
         let growth =
             |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
         for radius in fixed_radii(growth) {
-            // A jump from growing to shrinking is no cycle.
+            // A jump from growing to shrinking is not a cycle.
             let found =
                 swing(radius, FOUND).filter(|(_, away)| (away / radius - 1.0).abs() <= 1e-4);
             if let Some((course, _)) = found {
@@ -135,13 +135,13 @@ impl Asked<'_> {
         }
     }
 
-    /// About the frequency of a motion so far from rest.
-    fn pace(&self, place: f64, radius: f64, parameter: f64) -> f64 {
+    /// Approximate frequency of a motion at this distance from rest.
+    fn approximate_frequency(&self, place: f64, radius: f64, parameter: f64) -> f64 {
         (self.driven.force(&[place + radius, 0.0, 0.0, parameter]) / radius).sqrt()
     }
 
-    /// From rest right of a place to the next turning point there, in radii and in times of the
-    /// pace; nothing where it does not turn.
+    /// The half swing from rest right of an equilibrium to the next turning point there, in radii
+    /// and in periods of the approximate frequency; `None` if it does not turn.
     fn swing(
         &self,
         place: f64,
@@ -153,7 +153,7 @@ impl Asked<'_> {
         const LONGEST: f64 = 2e3;
         /// Radii away from where it does not come back.
         const GONE: f64 = 1e3;
-        let pace = self.pace(place, radius, parameter);
+        let pace = self.approximate_frequency(place, radius, parameter);
         let speed = radius * pace * if backward { -1.0 } else { 1.0 };
         let scaled = |_: f64, x: f64, v: f64| {
             -self.driven.force(&[place + radius * x, speed * v, 0.0, parameter])
@@ -162,7 +162,8 @@ impl Asked<'_> {
         let start = State { t: 0.0, x: 1.0, v: 0.0 };
         let events =
             [Event::stop(|_, _, v| v).falling(), Event::stop(|_, x, _| GONE - x.abs()).falling()];
-        let options = Options { maximum_steps, ..Options::with_tolerance(tolerance) };
+        let options =
+            IntegrationOptions { maximum_steps, ..IntegrationOptions::with_tolerance(tolerance) };
         let path = integrate(scaled, start, LONGEST, &events, &options).ok()?;
         let turned = matches!(path.stop_reason(), StopReason::Event { event: 0, .. });
         (turned && path.end().x > 0.0).then_some(path)

@@ -1,11 +1,11 @@
 //! Steady motions by the slow equations of a method, beside the branches that were found and
 //! judged.
 //!
-//! In: a [`Response`] and a [`Solution`] with slow equations of the primary resonance, such as that
-//! of multiple scales. Out: its steady motions over the range, and how far they are from the stable
-//! points of the branches, each of which has its true motion beside it.
+//! In: a [`ResponseDiagram`] and a [`Solution`] with slow equations of the primary resonance, such
+//! as that of multiple scales. Out: its steady motions over the range, and how far they are from
+//! the stable points of the branches, each of which has its true motion beside it.
 
-use super::{Question, Response};
+use super::{ResponseDiagram, ResponseRequest};
 use crate::solution::Solution;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
@@ -31,15 +31,15 @@ pub struct SlowResponse {
     /// The largest error of the amplitude at the stable points of the branches, over the amplitude
     /// there.
     pub error: Option<f64>,
-    /// Where that is.
+    /// The parameter at that point.
     pub worst: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
-    /// Values of the parameter at which steady motions of the truncated slow equations are
-    /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None`
-    /// where there are none.
+    /// Values of the parameter at which steady motions of the truncated slow equations are [left
+    /// out](Solution::steady_motions), the lowest and the highest amplitude of these; `None` if
+    /// there are none.
     pub spurious: Option<Spurious>,
-    /// How many stable points there are.
+    /// Number of stable points.
     pub points: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     pub verdict: Verdict,
@@ -48,14 +48,14 @@ pub struct SlowResponse {
 /// Steady motions that only the truncation of slow equations makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spurious {
-    /// How many, at all values of the parameter together.
+    /// Their number, summed over all values of the parameter.
     pub count: usize,
     /// Their lowest and their highest amplitude.
     pub amplitudes: [f64; 2],
 }
 
 impl Spurious {
-    fn of(found: &[SteadyState]) -> Option<Self> {
+    fn from_states(found: &[SteadyState]) -> Option<Self> {
         let amplitudes = || found.iter().map(|state| state.amplitude);
         let lowest = amplitudes().min_by(f64::total_cmp)?;
         Some(Self { count: found.len(), amplitudes: [lowest, amplitudes().fold(lowest, f64::max)] })
@@ -78,7 +78,7 @@ pub struct SlowState {
 }
 
 /// The steady motions by these slow equations at one value of the parameter.
-fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> SteadyMotions {
+fn motions_at(question: &ResponseRequest, solution: &Solution, parameter: f64) -> SteadyMotions {
     let numbers = question.values.numbers();
     let value_of = |name: Symbol| match name == question.parameter {
         true => Some(parameter),
@@ -87,24 +87,24 @@ fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> Stead
     solution.steady_motions(&value_of)
 }
 
-impl Response {
-    /// The same with the steady motions of these slow equations beside it.
+impl ResponseDiagram {
+    /// This response with the steady motions of these slow equations beside it.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
-    /// use lindstedt::response::{Question, respond};
+    /// use lindstedt::response::{ResponseRequest, respond};
     /// use lindstedt::{Method, Options, solve};
     ///
-    /// let question = Question::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
+    /// let question = ResponseRequest::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
     /// let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
     /// let solution = solve(&question.oscillator, &options)?;
-    /// let response = respond(&question)?.beside(solution);
+    /// let response = respond(&question)?.with_slow_equations(solution);
     /// let slow = response.slow.ok_or("slow equations")?;
     /// assert!(slow.error.is_some_and(|error| error < 0.3) && slow.points > 20);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn beside(mut self, solution: Solution) -> Self {
+    pub fn with_slow_equations(mut self, solution: Solution) -> Self {
         let question = &self.question;
         let [low, high] = question.range;
         let value = |index: u32| low + (high - low) * f64::from(index) / f64::from(VALUES);
@@ -140,14 +140,14 @@ impl Response {
         self.slow = Some(SlowResponse {
             solution: Box::new(solution),
             states,
-            verdict: Verdict::of(
+            verdict: Verdict::from_passed(
                 MISSING * missing <= count
                     && error.is_some_and(|error| error <= question.tolerance),
             ),
             error,
             worst,
             missing,
-            spurious: Spurious::of(&spurious),
+            spurious: Spurious::from_states(&spurious),
             points: count,
         });
         self

@@ -14,15 +14,15 @@ use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
 
 use super::driven::Driven;
-use super::jump::{Course, Until, follow};
+use super::jump::{StopCondition, VariationalMotion, follow};
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
 pub(super) const SAMPLES: usize = 256;
 
-/// What a small disturbance of a periodic motion has become after a period.
+/// The monodromy matrix: the image of a small disturbance of a periodic motion after one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floquet {
     /// M(T).
@@ -92,11 +92,11 @@ pub(super) const TOLERANCE: f64 = 1e-10;
 /// Steps that a period may take.
 const STEPS: usize = 4_000;
 
-pub(super) fn options(size: f64, tolerance: f64) -> Options {
-    Options {
+pub(super) fn options(size: f64, tolerance: f64) -> IntegrationOptions {
+    IntegrationOptions {
         absolute_tolerance: tolerance * size.clamp(1e-12, 1.0),
         maximum_steps: STEPS,
-        ..Options::with_tolerance(tolerance)
+        ..IntegrationOptions::with_tolerance(tolerance)
     }
 }
 
@@ -105,7 +105,7 @@ pub(super) const FAR: f64 = 0.3;
 
 /// Whether shooting has settled so closely, by how far an orbit is from closing and how far
 /// Newton's method would move it.
-pub(super) fn settled(closely: f64) -> impl FnMut(f64, f64) -> bool {
+pub(super) fn convergence_test(closely: f64) -> impl FnMut(f64, f64) -> bool {
     let mut before = f64::INFINITY;
     move |missed, moved| {
         // Near a fold rounding is magnified: what does not shrink any more has come as near as it
@@ -116,8 +116,8 @@ pub(super) fn settled(closely: f64) -> impl FnMut(f64, f64) -> bool {
     }
 }
 
-/// The periodic motion whose start is near this one; nothing where shooting does not settle, or
-/// goes far away.
+/// The periodic motion whose start is near this one; `None` if shooting does not settle, or goes
+/// far away.
 pub fn periodic_motion(
     driven: &Driven,
     guess: [f64; 2],
@@ -128,14 +128,15 @@ pub fn periodic_motion(
     let (period, sizes) = (std::f64::consts::TAU / omega, [size, size * omega]);
     let follow = |start: [f64; 2], period: f64| {
         let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
-        let course = follow(driven, start, parameter, Until::Time(period), &options)?;
+        let course = follow(driven, start, parameter, StopCondition::Time(period), &options)?;
         let [x, v, variations @ ..] = course.end;
         Some(([x, v], Matrix2::from_column_slice(&variations), course))
     };
     let solve = |matrix: DMatrix<f64>, missed| matrix.lu().solve(&missed);
     let shooting =
         Shooting { guess, period, rates: None, sizes, solve, most: 12, far: FAR, known: &[] };
-    let PeriodicOrbit { start, monodromy, path, .. } = shooting.orbit(follow, settled(1e-9))?;
+    let PeriodicOrbit { start, monodromy, path, .. } =
+        shooting.orbit(follow, convergence_test(1e-9))?;
     let floquet = Floquet { monodromy, self_excited: false };
     Some(TrueMotion::new(start, omega, floquet, &path.positions(SAMPLES), path.stuck()))
 }
@@ -208,17 +209,17 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     0.5 * (top(1.0) + top(-1.0))
 }
 
-/// What several simulations share: evaluations of the force that they may take, and who may ask
-/// them to end.
+/// The budget of several simulations together: the evaluations of the force that are left, and the
+/// interrupt.
 #[derive(Clone, Copy, Debug)]
-pub struct Budget {
+pub struct SimulationBudget {
     /// Evaluations that are left.
     pub evaluations: usize,
-    /// Looked at after every period.
+    /// The interrupt, tested after every period.
     pub interrupt: Interrupt,
 }
 
-impl Budget {
+impl SimulationBudget {
     /// Takes what a period has cost; whether there may be another one.
     pub(super) fn spend(&mut self, evaluations: usize) -> bool {
         self.evaluations = self.evaluations.saturating_sub(evaluations);
@@ -226,13 +227,13 @@ impl Budget {
     }
 }
 
-/// Where a simulation has come to.
+/// The steady state that a simulation has reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// Position and velocity at phase zero.
     pub state: [f64; 2],
     /// The periods of the motion after which it comes back, or would where what has not died out
-    /// yet is gone; nothing where it does not within eight.
+    /// yet is gone; `None` if it does not within eight.
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
@@ -241,11 +242,11 @@ pub struct Settled {
 /// A period of a simulation: in one, or by legs between the jumps of the force.
 enum Period {
     One(Trajectory<Point<[f64; 2]>>),
-    Legs(Course),
+    Legs(VariationalMotion),
 }
 
 impl Period {
-    /// Position and velocity at the end; nothing where it was not reached.
+    /// Position and velocity at the end; `None` if it was not reached.
     fn end(&self) -> Option<[f64; 2]> {
         match self {
             Self::One(path) => path.is_complete().then(|| path.end().y),
@@ -272,13 +273,13 @@ impl Period {
 
 /// Follows the equation as it was given from a start, period by period, until it repeats itself to
 /// `closely` (of its size), or `most` periods are over; the tolerance of a step is a thousandth of
-/// that. Nothing where it cannot be followed: it escapes, or the `budget` is spent.
+/// that. `None` if it cannot be followed: it escapes, or the `budget` is spent.
 pub fn settle(
     driven: &Driven,
     start: [f64; 2],
     parameter: f64,
     (most, closely): (usize, f64),
-    budget: &mut Budget,
+    budget: &mut SimulationBudget,
 ) -> Option<Settled> {
     /// Periods in which a repetition is looked for.
     const LONGEST: usize = 8;
@@ -304,7 +305,7 @@ pub fn settle(
                 driven,
                 begin,
                 parameter,
-                Until::Time(period),
+                StopCondition::Time(period),
                 &settings(size),
             )?),
             false => {
@@ -336,8 +337,8 @@ pub fn settle(
     };
     let end = states.len() - 1;
     let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
-    // What dies out slowly beside a motion comes back to itself as well, where its frequency is a
-    // fraction of the drive's.
+    // A slowly decaying disturbance repeats itself, too, if its frequency is a fraction of that of
+    // the drive.
     let dies_out = |count: usize| {
         let around = |quarter: usize| {
             let last = end * quarter / 4;

@@ -16,38 +16,38 @@
 
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
-use super::balance::Balance;
+use super::balance::HarmonicBalance;
 use super::branches::largest;
-use super::continuation::{BranchEnd, Node, Path};
-use super::jump::{Course, Until, follow};
+use super::continuation::{BranchEnd, BranchNode, BranchPath};
+use super::jump::{StopCondition, VariationalMotion, follow};
 use super::seeds::Seed;
 use super::stability::{
-    Floquet, SAMPLES, TOLERANCE, TrueMotion, half_of_peak_to_peak, options, settled,
+    Floquet, SAMPLES, TOLERANCE, TrueMotion, convergence_test, half_of_peak_to_peak, options,
 };
-use super::{Asked, LONGEST_STEP, MOST_BRANCHES};
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use super::{LONGEST_STEP, MOST_BRANCHES, PreparedRequest};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, passes};
 
 /// Position, velocity and parameter, each in its size.
-type Scaled = Vector3<f64>;
+type ScaledPoint = Vector3<f64>;
 
 /// A periodic motion on a branch.
 #[derive(Clone, Debug)]
-struct Shot {
-    at: Scaled,
-    tangent: Scaled,
-    course: Course,
+struct ShootingOrbit {
+    at: ScaledPoint,
+    tangent: ScaledPoint,
+    course: VariationalMotion,
 }
 
 /// The map of a period in its sizes.
 struct PeriodMap<'a> {
-    asked: &'a Asked<'a>,
-    /// Of position, velocity and parameter.
-    sizes: Scaled,
+    asked: &'a PreparedRequest<'a>,
+    /// The sizes of position, velocity and parameter.
+    sizes: ScaledPoint,
 }
 
 impl<'a> PeriodMap<'a> {
-    fn new(asked: &'a Asked<'a>, size: f64, parameter: f64) -> Self {
+    fn new(asked: &'a PreparedRequest<'a>, size: f64, parameter: f64) -> Self {
         let [low, high] = asked.question.range;
         let size = size.max(1e-12);
         Self {
@@ -56,27 +56,27 @@ impl<'a> PeriodMap<'a> {
         }
     }
 
-    fn scaled(&self, start: [f64; 2], parameter: f64) -> Scaled {
+    fn scaled(&self, start: [f64; 2], parameter: f64) -> ScaledPoint {
         Vector3::new(start[0], start[1], parameter).component_div(&self.sizes)
     }
 
-    fn start(&self, at: &Scaled) -> ([f64; 2], f64) {
+    fn start(&self, at: &ScaledPoint) -> ([f64; 2], f64) {
         let real = at.component_mul(&self.sizes);
         ([real[0], real[1]], real[2])
     }
 
-    /// A period from here; nothing where it cannot be followed.
-    fn period(&self, at: &Scaled) -> Option<Course> {
-        /// Beyond it a motion without drive does not turn back.
+    /// A period from here; `None` if it cannot be followed.
+    fn period(&self, at: &ScaledPoint) -> Option<VariationalMotion> {
+        /// The longest time in which a motion without drive has to turn back.
         const LONGEST: f64 = 1e3;
         let (start, parameter) = self.start(at);
         let driven = &self.asked.driven;
         let options = options(self.sizes[0].max(start[0].abs()), TOLERANCE);
         if driven.self_excited {
             let mut course =
-                follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
-            // What is beside the start in the velocity is no other start; what is beside the end
-            // along the motion is the same end.
+                follow(driven, [start[0], 0.0], parameter, StopCondition::Turn(LONGEST), &options)?;
+            // A displacement along the trajectory is no other motion: the start counts by its
+            // position alone, and the velocity at the end is zero.
             let [x, _, by_start, ..] = course.end;
             course.end = [x, 0.0, by_start, 0.0, 0.0, 0.0];
             return course.turned().then_some(course);
@@ -85,11 +85,17 @@ impl<'a> PeriodMap<'a> {
         if omega.is_nan() || omega <= 0.0 {
             return None;
         }
-        follow(driven, start, parameter, Until::Time(std::f64::consts::TAU / omega), &options)
+        follow(
+            driven,
+            start,
+            parameter,
+            StopCondition::Time(std::f64::consts::TAU / omega),
+            &options,
+        )
     }
 
     /// dP/dp, by differences.
-    fn by_parameter(&self, at: &Scaled) -> Option<[f64; 2]> {
+    fn by_parameter(&self, at: &ScaledPoint) -> Option<[f64; 2]> {
         const STEP: f64 = 1e-5;
         let [above, below] =
             [STEP, -STEP].map(|step| self.period(&(at + Vector3::new(0.0, 0.0, step))));
@@ -98,7 +104,12 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// The bordered matrix at a motion, with this last row.
-    fn bordered(&self, course: &Course, by_parameter: [f64; 2], row: &Scaled) -> Matrix3<f64> {
+    fn bordered(
+        &self,
+        course: &VariationalMotion,
+        by_parameter: [f64; 2],
+        row: &ScaledPoint,
+    ) -> Matrix3<f64> {
         let [_, _, a, c, b, d] = course.end;
         let ratio = self.sizes[1] / self.sizes[0];
         Matrix3::new(
@@ -116,12 +127,12 @@ impl<'a> PeriodMap<'a> {
 
     /// Newton's method at right angles to a direction: the motion, its tangent turned as the
     /// direction.
-    fn corrected(&self, guess: &Scaled, direction: &Scaled) -> Option<Shot> {
+    fn corrected(&self, guess: &ScaledPoint, direction: &ScaledPoint) -> Option<ShootingOrbit> {
         const MOST: usize = 14;
         const SETTLED: f64 = 1e-9;
         let mut at = *guess;
         let mut by_parameter = self.by_parameter(&at)?;
-        let mut settled = settled(SETTLED);
+        let mut settled = convergence_test(SETTLED);
         for iteration in 0..MOST {
             let course = self.period(&at)?;
             let (start, _) = self.start(&at);
@@ -138,7 +149,7 @@ impl<'a> PeriodMap<'a> {
                 let matrix = self.bordered(&course, by_parameter, direction);
                 let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
                 let length = tangent.norm();
-                return (length > 0.0 && length.is_finite()).then(|| Shot {
+                return (length > 0.0 && length.is_finite()).then(|| ShootingOrbit {
                     at,
                     tangent: tangent / length,
                     course,
@@ -153,7 +164,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// The motion at this parameter near a start, its tangent toward larger parameters.
-    fn at(&self, start: [f64; 2], parameter: f64) -> Option<Shot> {
+    fn shoot(&self, start: [f64; 2], parameter: f64) -> Option<ShootingOrbit> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
@@ -161,10 +172,10 @@ impl<'a> PeriodMap<'a> {
     /// no more. `met` says where motions of another branch are met.
     fn walk(
         &self,
-        first: Shot,
-        met: &dyn Fn(&Node) -> bool,
-        balance: &Balance,
-    ) -> (Vec<Shot>, BranchEnd) {
+        first: ShootingOrbit,
+        met: &dyn Fn(&BranchNode) -> bool,
+        balance: &HarmonicBalance,
+    ) -> (Vec<ShootingOrbit>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
         const MOST: usize = 500;
@@ -175,7 +186,7 @@ impl<'a> PeriodMap<'a> {
         const ALL: f64 = 1.0 - 1e-9;
         const NEARLY_ALL: f64 = 0.8;
         let bounds = self.asked.question.range.map(|bound| bound / self.sizes[2]);
-        let step = |shots: &[Shot], length: &mut f64| {
+        let step = |shots: &[ShootingOrbit], length: &mut f64| {
             let length = *length;
             if self.asked.question.interrupt.is_requested() {
                 return Ended(None, BranchEnd::Interrupted);
@@ -224,7 +235,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// A point of a branch with the harmonics of the motion.
-    fn node(&self, balance: &Balance, shot: &Shot) -> Node {
+    fn node(&self, balance: &HarmonicBalance, shot: &ShootingOrbit) -> BranchNode {
         let (start, parameter) = self.start(&shot.at);
         let frequency = std::f64::consts::TAU / shot.course.duration();
         let self_excited = self.asked.driven.self_excited;
@@ -254,7 +265,7 @@ impl<'a> PeriodMap<'a> {
 
 /// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears
 /// what drives it.
-fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
+fn cut_rest(balance: &HarmonicBalance, path: &mut BranchPath, size: f64) {
     const NOTHING: f64 = 1e-5;
     let moves = |node: &Node| balance.core.extent(&node.coefficients) > NOTHING * size;
     let Some(first) = path.nodes.iter().position(moves) else {
@@ -272,14 +283,14 @@ fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
     }
 }
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Follows every branch on from where harmonic balance has lost it because the motion begins to
     /// stick, and adds those on which it sticks all along.
     pub(super) fn follow_sticking(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         seeds: &[Seed],
-        paths: &mut Vec<Path>,
+        paths: &mut Vec<BranchPath>,
         size: f64,
     ) {
         if self.driven.jumps() == 0 {
@@ -306,13 +317,14 @@ impl Asked<'_> {
                 half_of_peak_to_peak(&seed.positions).max(0.1 * size),
                 seed.parameter,
             );
-            let Some(shot) = map.at(start, seed.parameter) else {
+            let Some(shot) = map.shoot(start, seed.parameter) else {
                 continue;
             };
             let (start, _) = map.start(&shot.at);
-            let known =
-                |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
-            // What rests all the time is no motion.
+            let known = |path: &BranchPath| {
+                self.lies_on(balance, path, start, seed.parameter, map.sizes[0])
+            };
+            // An equilibrium is not a motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
             if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
                 let found = self.stuck_branch(balance, &map, shot, paths);
@@ -323,8 +335,13 @@ impl Asked<'_> {
 
     /// A branch of self-excited motions with its end in the place where they are born from rest, if
     /// it has one: motions too small to be told from rest are left out.
-    fn ended_at_rest(&self, balance: &Balance, seeds: &[Seed], mut path: Path) -> Path {
-        /// Of the largest motion.
+    fn ended_at_rest(
+        &self,
+        balance: &HarmonicBalance,
+        seeds: &[Seed],
+        mut path: BranchPath,
+    ) -> BranchPath {
+        /// Ratio to the largest motion below which a motion is small.
         const SMALL: f64 = 1e-3;
         if !self.driven.self_excited {
             return path;
@@ -345,7 +362,7 @@ impl Asked<'_> {
             let rest =
                 path.nodes.last().and_then(|last| walk.rest_beside(balance, last, last.parameter));
             if let Some(rest) = rest {
-                path.nodes.push(Node { truth: None, ..rest });
+                path.nodes.push(BranchNode { truth: None, ..rest });
                 path.ends[side] = BranchEnd::Rest;
             }
             if side == 0 {
@@ -358,13 +375,13 @@ impl Asked<'_> {
     /// The branch through a motion that sticks.
     fn stuck_branch(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         map: &PeriodMap,
-        shot: Shot,
-        paths: &[Path],
-    ) -> Option<Path> {
-        let met = |node: &Node| self.is_met(balance, paths, node);
-        let turned = |shot: Shot| Shot { tangent: -shot.tangent, ..shot };
+        shot: ShootingOrbit,
+        paths: &[BranchPath],
+    ) -> Option<BranchPath> {
+        let met = |node: &BranchNode| self.is_met(balance, paths, node);
+        let turned = |shot: ShootingOrbit| ShootingOrbit { tangent: -shot.tangent, ..shot };
         let (behind, last) = map.walk(shot.clone(), &met, balance);
         let closing = (last == BranchEnd::Closed).then(|| shot.clone());
         let (before, first) = match last {
@@ -373,26 +390,26 @@ impl Asked<'_> {
         };
         let before = before.into_iter().skip(1).rev().map(turned);
         let shots = before.chain(behind).chain(closing);
-        let nodes: Vec<Node> = shots.map(|shot| map.node(balance, &shot)).collect();
-        (nodes.len() > 1).then_some(Path { nodes, ends: [first, last], mirrored: false })
+        let nodes: Vec<BranchNode> = shots.map(|shot| map.node(balance, &shot)).collect();
+        (nodes.len() > 1).then_some(BranchPath { nodes, ends: [first, last], mirrored: false })
     }
 
     /// Follows a branch on beyond one of its ends.
     fn follow_on(
         &self,
-        balance: &Balance,
-        paths: &mut [Path],
+        balance: &HarmonicBalance,
+        paths: &mut [BranchPath],
         (index, side): (usize, usize),
         size: f64,
     ) {
         /// Points at an end that harmonic balance may have led astray.
         const ASTRAY: usize = 40;
         let path = &paths[index];
-        let nodes: Vec<&Node> = match side {
+        let nodes: Vec<&BranchNode> = match side {
             0 => path.nodes.iter().collect(),
             _ => path.nodes.iter().rev().collect(),
         };
-        let truth = |node: &Node| Some(self.judged(balance, node).1?.start);
+        let truth = |node: &BranchNode| Some(self.judged(balance, node).1?.start);
         let good = (0..nodes.len().saturating_sub(1).min(ASTRAY)).find_map(|skipped| {
             Some((skipped, truth(nodes[skipped])?, truth(nodes[skipped + 1])?))
         });
@@ -414,11 +431,11 @@ impl Asked<'_> {
         let Some(first) = map.corrected(&last, &(direction / length)) else {
             return;
         };
-        let others: Vec<Path> = (0..paths.len())
+        let others: Vec<BranchPath> = (0..paths.len())
             .filter(|other| *other != index)
             .map(|other| paths[other].clone())
             .collect();
-        let met = |node: &Node| self.is_met(balance, &others, node);
+        let met = |node: &BranchNode| self.is_met(balance, &others, node);
         let (shots, end) = map.walk(first, &met, balance);
         let mut outward = shots.iter().skip(1).map(|shot| map.node(balance, shot));
         let path = &mut paths[index];
@@ -426,8 +443,10 @@ impl Asked<'_> {
         match side {
             0 => {
                 // Points are in the order of the branch, and so are their tangents.
-                let mut all: Vec<Node> =
-                    outward.by_ref().map(|node| Node { tangent: -node.tangent, ..node }).collect();
+                let mut all: Vec<BranchNode> = outward
+                    .by_ref()
+                    .map(|node| BranchNode { tangent: -node.tangent, ..node })
+                    .collect();
                 all.reverse();
                 all.extend(path.nodes.drain(..).skip(skipped));
                 path.nodes = all;
@@ -440,7 +459,7 @@ impl Asked<'_> {
     }
 
     /// Whether a motion that does not stick lies on one of these branches.
-    fn is_met(&self, balance: &Balance, paths: &[Path], node: &Node) -> bool {
+    fn is_met(&self, balance: &HarmonicBalance, paths: &[BranchPath], node: &BranchNode) -> bool {
         let Some(truth) = node.truth else {
             return false;
         };
@@ -451,8 +470,8 @@ impl Asked<'_> {
     /// Whether a motion with this start lies on a branch.
     fn lies_on(
         &self,
-        balance: &Balance,
-        path: &Path,
+        balance: &HarmonicBalance,
+        path: &BranchPath,
         start: [f64; 2],
         parameter: f64,
         size: f64,
@@ -472,7 +491,7 @@ impl Asked<'_> {
             let guess =
                 [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
             let map = PeriodMap::new(self, size, parameter);
-            let truth = || map.at(guess, parameter).map(|shot| map.start(&shot.at).0);
+            let truth = || map.shoot(guess, parameter).map(|shot| map.start(&shot.at).0);
             apart(guess) <= NEAR * size && truth().is_some_and(|truth| apart(truth) <= SAME * size)
         })
     }
@@ -480,9 +499,9 @@ impl Asked<'_> {
     /// A motion between two of a branch of which one is known by shooting, at this part of the way.
     pub(super) fn stuck_between(
         &self,
-        balance: &Balance,
-        from: &Node,
-        to: &Node,
+        balance: &HarmonicBalance,
+        from: &BranchNode,
+        to: &BranchNode,
         part: f64,
     ) -> Option<Node> {
         let size =

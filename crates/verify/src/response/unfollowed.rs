@@ -4,34 +4,33 @@
 //! shooting, is none that shooting finds from the branches: harmonic balance has not come to it, or
 //! has come to another one.
 
-use super::balance::Balance;
-use super::continuation::{Node, Path};
-use super::jump::{Until, follow};
+use super::balance::HarmonicBalance;
+use super::continuation::{BranchNode, BranchPath};
+use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
 use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
-use super::{Asked, Elsewhere, LONGEST_STEP};
+use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
 
 /// A motion at a value of the parameter, by its start and those of its images: begun a period of
 /// the drive later, or mirrored.
-struct Motion {
+struct MotionWithImages {
     parameter: f64,
     starts: Vec<[f64; 2]>,
     size: f64,
 }
 
-impl Asked<'_> {
-    /// Where simulations have settled on motions that lie on none of these branches, each motion
-    /// once.
+impl PreparedRequest<'_> {
+    /// The motions reached by simulations that lie on none of these branches, each motion once.
     pub(super) fn unfollowed(
         &self,
-        balance: &Balance,
-        paths: &[Path],
+        balance: &HarmonicBalance,
+        paths: &[BranchPath],
         seeds: &[Seed],
         size: f64,
     ) -> Vec<Elsewhere> {
-        /// Of the largest motion: what moves less rests.
+        /// Ratio to the largest motion below which a motion is at rest.
         const NOTHING: f64 = 1e-6;
-        let mut known: Vec<Motion> = Vec::new();
+        let mut known: Vec<MotionWithImages> = Vec::new();
         let mut found = Vec::new();
         for seed in seeds {
             let Some(start) = seed.start.filter(|_| !self.driven.self_excited) else {
@@ -47,13 +46,17 @@ impl Asked<'_> {
             let Some(start) = truth.map(|truth| truth.start) else {
                 continue;
             };
-            let is_known =
-                |motion: &Motion| motion.parameter == parameter && self.is_one(motion, start);
+            let is_known = |motion: &MotionWithImages| {
+                motion.parameter == parameter && self.is_one(motion, start)
+            };
             if known.iter().any(is_known) {
                 continue;
             }
-            let motion =
-                Motion { parameter, starts: self.images(start, parameter, extent), size: extent };
+            let motion = MotionWithImages {
+                parameter,
+                starts: self.images(start, parameter, extent),
+                size: extent,
+            };
             if !paths.iter().any(|path| self.passes(balance, path, &motion)) {
                 found.push(Elsewhere { parameter, periods: Some(1) });
             }
@@ -70,7 +73,7 @@ impl Asked<'_> {
             / self.question.periods as f64;
         let settings = options(size, TOLERANCE);
         let after = |halves: usize| {
-            let time = Until::Time(0.5 * halves as f64 * period);
+            let time = StopCondition::Time(0.5 * halves as f64 * period);
             let [x, v, ..] = follow(&self.driven, start, parameter, time, &settings)?.end;
             Some(if halves % 2 == 1 { [-x, -v] } else { [x, v] })
         };
@@ -79,8 +82,8 @@ impl Asked<'_> {
     }
 
     /// Whether a motion begins as this one or as an image of it, or where the force is the same.
-    fn is_one(&self, motion: &Motion, [x, v]: [f64; 2]) -> bool {
-        /// Of its size.
+    fn is_one(&self, motion: &MotionWithImages, [x, v]: [f64; 2]) -> bool {
+        /// Ratio of a difference to the size below which two motions are the same.
         const SAME: f64 = 1e-3;
         let omega = self.driven.frequency_at(motion.parameter);
         motion.starts.iter().any(|start| {
@@ -92,19 +95,24 @@ impl Asked<'_> {
 
     /// Whether a branch passes a motion, by the true motions that shooting finds from it at the
     /// same value of the parameter.
-    fn passes(&self, balance: &Balance, path: &Path, motion: &Motion) -> bool {
+    fn passes(
+        &self,
+        balance: &HarmonicBalance,
+        path: &BranchPath,
+        motion: &MotionWithImages,
+    ) -> bool {
         let [low, high] = self.question.range;
         let parameter = motion.parameter;
         let is_it = |guess: [f64; 2]| {
             let truth = periodic_motion(&self.driven, guess, parameter, motion.size);
-            // What shooting does not come to is taken as it is.
+            // A motion to which shooting does not converge is taken as simulated.
             self.is_one(motion, truth.map_or(guess, |truth| truth.start))
         };
         // A branch may end a little before an end of the range.
         let ends = [path.nodes.first(), path.nodes.last()].into_iter().flatten();
         let mut beside =
             ends.filter(|node| (node.parameter - parameter).abs() <= LONGEST_STEP * (high - low));
-        let between = |pair: &[Node]| {
+        let between = |pair: &[BranchNode]| {
             let [one, other] = pair else { return false };
             let Some(part) = one.part_of_way(other, parameter) else {
                 return false;

@@ -9,7 +9,7 @@
 //! expanded force, but what stands inside a function or below a fraction stays as it was typed:
 //! `exp(-((t - 20)*1e5)^2)` written out would lose ten digits.
 
-use super::Energy;
+use super::EnergyWithPowers;
 use crate::conservative::potential;
 use crate::exact::rational::ratio;
 use crate::expr::{Expr, ExprError, Node};
@@ -18,8 +18,8 @@ use crate::symbol::{Symbol, fresh_stem};
 use num_traits::Signed as _;
 
 /// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every
-/// other term; nothing for an inertia that depends on the position, whose energy is another.
-pub(super) fn of(oscillator: &Oscillator) -> Option<Energy> {
+/// other term; `None` for an inertia that depends on the position, whose energy is another.
+pub(super) fn energy_of_equation(oscillator: &Oscillator) -> Option<EnergyWithPowers> {
     let velocity = oscillator.velocity();
     let speed = Expr::from(velocity);
     let backwards = -&speed;
@@ -41,7 +41,7 @@ pub(super) fn of(oscillator: &Oscillator) -> Option<Energy> {
             powers[1].push(works(&term));
         }
     }
-    Some(Energy { value: Expr::sum(value), powers: powers.concat() })
+    Some(EnergyWithPowers { value: Expr::sum(value), powers: powers.concat() })
 }
 
 /// The terms of a force written out, functions and denominators as they were typed.

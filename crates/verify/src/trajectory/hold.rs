@@ -18,12 +18,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{Course, Piece, Section, TrajectoryError, surplus};
+use super::{PoincareSection, TrajectoryError, TrajectoryRequest, TrajectorySegment, surplus};
 use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
-use crate::system::{End, Event, Options, Path, Solver, System};
+use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions};
 
 /// A speed that rounding leaves of one that is zero, beside speeds and places of one.
 const AT_REST: f64 = 1e-9;
@@ -38,10 +38,10 @@ const UNSEEN: f64 = 1e-12;
 /// A force that exceeds the friction by so large a part of it leads away from rest at once.
 const CLEARLY: f64 = 1e-3;
 
-/// So often may something be held.
+/// Largest number of sticking phases.
 const MOST_HOLDS: usize = 10_000;
 
-/// So many stretches without length in a row lead nowhere.
+/// Number of consecutive segments of length zero after which the motion is stuck.
 const IDLE: usize = 8;
 
 /// First-order equations in numbers.
@@ -67,9 +67,9 @@ struct Surface {
     strength: f64,
 }
 
-/// How a surface counts on a stretch of the motion.
+/// The mode of a switching surface on a segment of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Regime {
+enum SurfaceRegime {
     /// As the equations are typed: a corner of theirs.
     Typed,
     /// The motion stays on it.
@@ -82,13 +82,13 @@ enum Regime {
 }
 
 /// The surfaces that a motion was on where a stretch of it begins.
-type Regimes = Vec<(Surface, Regime)>;
+type Regimes = Vec<(Surface, SurfaceRegime)>;
 
-/// How all states are read from those that are followed.
+/// The map from the integrated states to all states.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
-    /// For each state its place among those that are followed, or its value in terms of them.
-    states: Vec<Result<usize, CompiledFunction>>,
+    /// The index of each state among the integrated ones, or its value in terms of them.
+    all_states: Vec<Result<usize, CompiledFunction>>,
     /// The values of the letters in these.
     numbers: Vec<f64>,
 }
@@ -102,11 +102,11 @@ impl Layout {
             Ok(place) => followed[*place],
             Err(value) => value.call(&arguments),
         };
-        self.states.iter().map(state).collect()
+        self.all_states.iter().map(state).collect()
     }
 }
 
-impl Course {
+impl TrajectoryRequest {
     /// The motion stretch by stretch, each as the equations say or with something held by friction,
     /// and why it ends. The first stretch has been followed, as the equations say.
     pub(super) fn pieces(
@@ -114,15 +114,15 @@ impl Course {
         first: Path,
         solver: &Solver,
         equations: &StateEquations,
-        options: &Options,
+        options: &SystemOptions,
         recorded: usize,
-    ) -> Result<(Vec<Piece>, End), TrajectoryError> {
+    ) -> Result<(Vec<TrajectorySegment>, PathEnd), TrajectoryError> {
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
         let (mut first, mut from, mut state) = (Some(first), 0.0, Vec::new());
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
-            let piece = match regimes.iter().all(|(_, regime)| *regime == Regime::Typed) {
-                true => Piece {
+            let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
+                true => TrajectorySegment {
                     recorded,
                     layout: None,
                     from,
@@ -133,39 +133,39 @@ impl Course {
                 },
                 false => match self.stretch(equations, &regimes, from, &mut state, options)? {
                     Some(piece) => piece,
-                    None => break End::Sticks,
+                    None => break PathEnd::Sticks,
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            let (last, recorded) = (piece.at(end), piece.recorded);
+            let (last, recorded) = (piece.states_at(end), piece.recorded);
             holds += usize::from(piece.is_held());
             pieces.push(piece);
             let Some(last) = last else { break reason };
             state = last;
-            // What else may hold it is looked for where there is more friction than is needed.
+            // Other surfaces can hold the motion only if there is more friction than is needed.
             let hit = match reason {
-                End::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
+                PathEnd::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
                 _ => None,
             };
             let released = match reason {
-                End::Event(event) => {
+                PathEnd::Event(event) => {
                     hit.is_none() && released(&mut regimes, event.saturating_sub(recorded))
                 }
-                End::Sticks => false,
+                PathEnd::Sticks => false,
                 reason => break reason,
             };
             if !released {
                 regimes = match surfaces(equations, end, &state)? {
-                    found if found.is_empty() => break End::Sticks,
+                    found if found.is_empty() => break PathEnd::Sticks,
                     found => match regimes_at(equations, found, end, &state, hit.as_ref())? {
                         Some(regimes) => regimes,
-                        None => break End::Sticks,
+                        None => break PathEnd::Sticks,
                     },
                 };
             }
             idle = if end > from { 0 } else { idle + 1 };
             if idle > IDLE || holds > MOST_HOLDS {
-                break End::Sticks;
+                break PathEnd::Sticks;
             }
             from = end;
         };
@@ -173,16 +173,16 @@ impl Course {
     }
 
     /// The motion from a time on, until something that is held is released or something that was
-    /// left is back. The states that are held are set to what is held. Nothing where there are no
-    /// such equations.
+    /// left is back. The states that are held are set to what is held. `None` if there are no such
+    /// equations.
     fn stretch(
         &self,
         equations: &StateEquations,
         regimes: &Regimes,
         from: f64,
         state: &mut [f64],
-        options: &Options,
-    ) -> Result<Option<Piece>, TrajectoryError> {
+        options: &SystemOptions,
+    ) -> Result<Option<TrajectorySegment>, TrajectoryError> {
         let Some(sliding) = sliding(equations, regimes, &numbers_at(equations, from, state))?
         else {
             return Ok(None);
@@ -204,12 +204,16 @@ impl Course {
         };
         let states: Result<Vec<_>, _> = equations.states.iter().enumerate().map(of_state).collect();
         let Ok(states) = states else { return Ok(None) };
-        let layout = Layout { states, numbers: equations.values.values().copied().collect() };
+        let layout =
+            Layout { all_states: states, numbers: equations.values.values().copied().collect() };
         let start: Vec<f64> = followed.iter().map(|index| state[*index]).collect();
         state.copy_from_slice(&layout.states(from, &start));
         let rates = Rates { states: names.clone(), right: right.clone() };
-        let section =
-            self.section.as_ref().map(|section| section.on(&sliding.fixed)).transpose()?;
+        let section = self
+            .section
+            .as_ref()
+            .map(|section| section.with_fixed_states(&sliding.fixed))
+            .transpose()?;
         let mut events = section.map_or(vec![], |section| section.events(&rates));
         let recorded = events.len();
         events.extend(sliding.events);
@@ -218,7 +222,7 @@ impl Course {
         };
         let system = system.with_critical_times(equations.critical);
         let path = system.solve(from, &start, self.duration, &events, options);
-        Ok(path.ok().map(|path| Piece {
+        Ok(path.ok().map(|path| TrajectorySegment {
             recorded,
             layout: sliding.held.then_some(layout),
             from,
@@ -227,9 +231,9 @@ impl Course {
     }
 }
 
-impl Section {
+impl PoincareSection {
     /// This section with these expressions in place of some states.
-    fn on(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
+    fn with_fixed_states(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         Ok(match self {
             Self::Every(period) => Self::Every(period.clone()),
             Self::Rising(expression) => Self::Rising(expression.substitute_all(fixed)?),
@@ -244,8 +248,8 @@ const EVENTS: usize = 4;
 /// back on its surface.
 fn released(regimes: &mut Regimes, event: usize) -> bool {
     match regimes.get_mut(event / EVENTS) {
-        Some((_, regime)) if *regime == Regime::Held => {
-            *regime = Regime::Left(if event.is_multiple_of(2) { 1 } else { -1 });
+        Some((_, regime)) if *regime == SurfaceRegime::Held => {
+            *regime = SurfaceRegime::Left(if event.is_multiple_of(2) { 1 } else { -1 });
             true
         }
         _ => false,
@@ -255,9 +259,10 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
 /// The surface whose friction reaches its bound in an event, where others have theirs from it or
 /// from each other.
 fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
-    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, Regime::Tied(..)));
-    let (surface, _) =
-        regimes.get(event / EVENTS).filter(|(_, regime)| surplus && *regime == Regime::Held)?;
+    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, SurfaceRegime::Tied(..)));
+    let (surface, _) = regimes
+        .get(event / EVENTS)
+        .filter(|(_, regime)| surplus && *regime == SurfaceRegime::Held)?;
     Some(surface.u.clone())
 }
 
@@ -277,7 +282,7 @@ fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol
 }
 
 /// A velocity that an expression is linear in, the one that it depends on most here, and its
-/// coefficient; nothing where the expression is not linear in the velocities, or contains none.
+/// coefficient; `None` if the expression is not linear in the velocities, or contains none.
 fn leading_velocity(
     expression: &Expr,
     equations: &StateEquations,
@@ -371,9 +376,9 @@ fn surfaces(
     Ok(found)
 }
 
-/// How each of these surfaces, on which a state is, counts from there on: held where the friction
-/// that this needs is within its bound. Nothing where that cannot be told. Of the surface that was
-/// just hit the friction is at its bound, unless others take it over.
+/// Determines the mode of each of these surfaces, on all of which a state lies: held if the
+/// friction that this needs is within its bound. On the surface that was just hit the friction is
+/// at its bound, unless others take it over. Returns `None` if the modes cannot be determined.
 fn regimes_at(
     equations: &StateEquations,
     found: Vec<Surface>,
@@ -384,18 +389,18 @@ fn regimes_at(
     let mut numbers = numbers_at(equations, time, state);
     let mut regimes = Regimes::new();
     for mut surface in found {
-        let alone = vec![(surface.clone(), Regime::Held)];
+        let alone = vec![(surface.clone(), SurfaceRegime::Held)];
         let jump = sliding(equations, &alone, &numbers)?
             .and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
         // Rates that lead away on both sides, or do not jump, hold nothing.
         if let Some(jump) = jump.filter(|jump| *jump < 0.0) {
             surface.strength = -jump;
-            regimes.push((surface, Regime::Held));
+            regimes.push((surface, SurfaceRegime::Held));
         }
     }
     let mut excess = f64::INFINITY;
     loop {
-        if !tie(equations, &mut regimes, &numbers)? {
+        if !tie_frictions(equations, &mut regimes, &numbers)? {
             return Ok(None);
         }
         let Some(sliding) = sliding(equations, &regimes, &numbers)? else {
@@ -416,8 +421,8 @@ fn regimes_at(
                 return Ok(None);
             }
             let is_hit = regimes.iter().enumerate().any(|(other, (surface, regime))| {
-                let of_one_size =
-                    other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
+                let of_one_size = other == *index
+                    || matches!(regime, SurfaceRegime::Tied(lead, _) if lead == index);
                 of_one_size && hit == Some(&surface.u)
             });
             let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
@@ -429,8 +434,10 @@ fn regimes_at(
             let side = if share > 0.0 { 1 } else { -1 };
             for (other, (_, regime)) in regimes.iter_mut().enumerate() {
                 *regime = match *regime {
-                    Regime::Tied(lead, sign) if lead == index => Regime::Left(sign * side),
-                    _ if other == index => Regime::Left(side),
+                    SurfaceRegime::Tied(lead, sign) if lead == index => {
+                        SurfaceRegime::Left(sign * side)
+                    }
+                    _ if other == index => SurfaceRegime::Left(side),
                     regime => regime,
                 };
             }
@@ -439,7 +446,7 @@ fn regimes_at(
         }
         if sliding.shares.is_empty() && excess > CLEARLY {
             // The corner itself says where the motion goes.
-            regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
+            regimes.iter_mut().for_each(|(_, regime)| *regime = SurfaceRegime::Typed);
         }
         return Ok(Some(regimes));
     }
@@ -447,14 +454,14 @@ fn regimes_at(
 
 /// Gives shares of one size to the frictions that the equations leave open: there are more of them
 /// at rest than independent velocities. `false` where that cannot be told.
-fn tie(
+fn tie_frictions(
     equations: &StateEquations,
     regimes: &mut Regimes,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<bool, ExprError> {
     for (_, regime) in regimes.iter_mut() {
-        if matches!(regime, Regime::Tied(..)) {
-            *regime = Regime::Held;
+        if matches!(regime, SurfaceRegime::Tied(..)) {
+            *regime = SurfaceRegime::Held;
         }
     }
     let Some(rates) = SurfaceRates::new(equations, regimes, numbers)? else {
@@ -474,7 +481,7 @@ fn tie(
         rates.on.iter().map(|index| (rates.share(*index), Expr::zero())).collect();
     let (mut matrix, mut right) = (Vec::new(), Vec::new());
     for index in &rates.on {
-        let rate = rates.of(equations, &regimes[*index].0.u)?;
+        let rate = rates.rate_of(equations, &regimes[*index].0.u)?;
         let mut row = Vec::new();
         for column in &rates.on {
             let entry = rate.differentiate(rates.share(*column))?.substitute_all(&none)?;
@@ -498,10 +505,10 @@ fn tie(
         };
         for (other, sign) in others {
             let regime = &mut regimes[rates.on[*other]].1;
-            if *regime != Regime::Held {
+            if *regime != SurfaceRegime::Held {
                 return Ok(false);
             }
-            *regime = Regime::Tied(rates.on[*lead], sign * first);
+            *regime = SurfaceRegime::Tied(rates.on[*lead], sign * first);
         }
     }
     Ok(true)
@@ -515,7 +522,7 @@ struct SurfaceRates {
     fixed: BTreeMap<Symbol, Expr>,
     /// The surfaces that the motion stays on.
     on: Vec<usize>,
-    /// Those that do not follow from the ones before.
+    /// The surfaces whose frictions are linearly independent.
     independent: Vec<usize>,
     /// The first letters of the names.
     stem: String,
@@ -530,7 +537,9 @@ impl SurfaceRates {
         let taken: Vec<Symbol> =
             equations.states.iter().chain(equations.values.keys()).copied().collect();
         let on: Vec<usize> = (0..regimes.len())
-            .filter(|index| matches!(regimes[*index].1, Regime::Held | Regime::Tied(..)))
+            .filter(|index| {
+                matches!(regimes[*index].1, SurfaceRegime::Held | SurfaceRegime::Tied(..))
+            })
             .collect();
         let mut rates = Self {
             right: Vec::new(),
@@ -582,7 +591,7 @@ impl SurfaceRates {
     }
 
     /// The rate of an expression.
-    fn of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
+    fn rate_of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
         let mut parts = vec![u.differentiate(Symbol::new("t"))?];
         for (state, rate) in equations.states.iter().zip(&self.right) {
             parts.push(u.differentiate(*state)? * rate);
@@ -616,7 +625,7 @@ fn sliding(
         return Ok(None);
     };
     let held: Vec<usize> =
-        (0..regimes.len()).filter(|index| regimes[*index].1 == Regime::Held).collect();
+        (0..regimes.len()).filter(|index| regimes[*index].1 == SurfaceRegime::Held).collect();
     if held.len() != rates.independent.len() {
         return Ok(None);
     }
@@ -627,7 +636,7 @@ fn sliding(
     let none: BTreeMap<Symbol, Expr> =
         held.iter().map(|index| (share(*index), Expr::zero())).collect();
     for index in &rates.independent {
-        let rate = rates.of(equations, &regimes[*index].0.u)?;
+        let rate = rates.rate_of(equations, &regimes[*index].0.u)?;
         let row: Vec<Expr> = held
             .iter()
             .map(|column| rate.differentiate(share(*column)))
@@ -655,8 +664,10 @@ fn sliding(
     let mut events = Vec::new();
     for (index, (surface, regime)) in regimes.iter().enumerate() {
         events.extend(match regime {
-            Regime::Typed | Regime::Tied(..) => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
-            Regime::Held => {
+            SurfaceRegime::Typed | SurfaceRegime::Tied(..) => {
+                [(); EVENTS].map(|()| Event::record(Expr::from(1)))
+            }
+            SurfaceRegime::Held => {
                 let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
                 let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
                 [
@@ -666,7 +677,7 @@ fn sliding(
                     Event::stop(&share + &more).falling(),
                 ]
             }
-            Regime::Left(side) => {
+            SurfaceRegime::Left(side) => {
                 let away = Expr::from(*side) * surface.u.substitute_all(fixed)?;
                 let unseen = number(UNSEEN * surface.strength);
                 [
@@ -706,17 +717,17 @@ fn on_surfaces(
         known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
     });
     let sign = match meant {
-        None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
-        Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
-        Some((_, Regime::Tied(lead, sign), same)) => {
+        None | Some((_, SurfaceRegime::Typed, _)) => return expr.with_children(children),
+        Some((index, SurfaceRegime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
+        Some((_, SurfaceRegime::Tied(lead, sign), same)) => {
             Expr::from(same * sign) * Expr::from(share(lead))
         }
-        Some((_, Regime::Left(side), same)) => Expr::from(same * side),
+        Some((_, SurfaceRegime::Left(side), same)) => Expr::from(same * side),
     };
     Ok(match (function, meant, arguments.first()) {
         (Function::Sign, ..) => sign,
         (Function::Step, ..) => (Expr::from(1) + sign) * Expr::number(ratio(1, 2)),
-        (_, Some((_, Regime::Left(_), _)), Some(argument)) => sign * argument,
+        (_, Some((_, SurfaceRegime::Left(_), _)), Some(argument)) => sign * argument,
         _ => Expr::zero(),
     })
 }

@@ -1,5 +1,5 @@
-//! Where a drive is short: the times at which a step has to end, so that no integrator steps over a
-//! pulse.
+//! Short pulses of a drive: the times at which a step has to end, so that no integrator steps over
+//! one.
 //!
 //! ```text
 //! F(t) = exp(-((t - s)/w)^2), tanh((t - s)/w), ...      s +- 2 w, 4 w, 8 w, ..., half the way to the next pulse
@@ -14,7 +14,8 @@ use crate::conservative::features::{Feature, Features};
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// So many widths away a pulse is nothing in double precision: from there on steps may grow faster.
+/// Number of widths beyond which a pulse vanishes in double precision: from there on steps may grow
+/// faster.
 const FAR: f64 = 32.0;
 
 /// The times between zero and the duration at which a step has to end, in order. Waves alone,

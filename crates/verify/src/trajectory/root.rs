@@ -18,8 +18,8 @@ use crate::expr::{Expr, ExprError, Function, Node};
 use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 
-/// The same expression with its roots at corners so that they have a value on both sides. What a
-/// corner depends on must not jump, so inside of one no steps are put in.
+/// The expression with its roots extended across corners, so that they have a value on both sides.
+/// An argument of a corner must not jump, so inside of one no steps are put in.
 pub(super) fn roots_across_corners(
     expression: &Expr,
     values: &BTreeMap<Symbol, f64>,
@@ -86,8 +86,8 @@ fn rises_as_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     draws_root(exponent, values) && exponent.evaluate(values).is_ok_and(|value| value > 0.0)
 }
 
-/// What is nowhere negative and zero at a corner: the inner expression where its gate is not zero,
-/// or its absolute value there.
+/// A non-negative expression that is zero at a corner: the inner expression where its gate is not
+/// zero, and its absolute value at the corner.
 struct Rooted {
     inner: Expr,
     gate: Expr,

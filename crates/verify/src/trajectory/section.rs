@@ -17,30 +17,30 @@ use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::symbol::Symbol;
-use crate::system::{Event, Occurrence};
+use crate::system::{Event, EventCrossing};
 
 /// The most states that one section holds.
 pub const MOST_CROSSINGS: f64 = 1e6;
 
-/// Where a motion is looked at.
+/// The condition for recording a point of the motion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Section {
+pub enum PoincareSection {
     /// Once in this time, which may depend on the parameters: `2*pi/Omega`.
     Every(Expr),
-    /// Where this grows through zero: `x'`, `x - 0.1`.
+    /// An expression that grows through zero: `x'`, `x - 0.1`.
     Rising(Expr),
 }
 
 /// A state on a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
-    /// When.
+    /// The time.
     pub time: f64,
     /// Coordinates, then velocities.
     pub state: Vec<f64>,
 }
 
-impl Section {
+impl PoincareSection {
     /// The letters in it.
     pub fn expression(&self) -> &Expr {
         match self {
@@ -48,8 +48,8 @@ impl Section {
         }
     }
 
-    /// What the integrator has to look out for: the expression, and its rate, whose zeros are where
-    /// a touch may be. A rate that cannot be written is left out.
+    /// The events that the integrator locates: the zeros of the expression, and those of its rate,
+    /// at which it may touch zero. A rate that cannot be written is left out.
     pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
             Self::Every(_) => vec![],
@@ -62,7 +62,7 @@ impl Section {
     }
 }
 
-/// ds/dt along a motion; nothing where it cannot be written.
+/// ds/dt along a motion; `None` if it cannot be written.
 fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
     let mut parts = vec![expression.differentiate(Symbol::new("t")).ok()?];
     for (state, right) in rates.states.iter().zip(&rates.right) {
@@ -72,7 +72,7 @@ fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
     (!rate.is_zero()).then_some(rate)
 }
 
-/// What a motion leaves behind on its section.
+/// Crossings and touches of the section.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OnSection {
     pub(super) crossings: Vec<Crossing>,
@@ -87,11 +87,11 @@ impl Trajectory {
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::trajectory::{Course, Section};
+    /// use lindstedt::trajectory::{TrajectoryRequest, PoincareSection};
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
     /// course.begin("x".into(), 1.0)?;
-    /// course.section = Some(Section::Rising(parse_expression("x'")?));
+    /// course.section = Some(PoincareSection::Rising(parse_expression("x'")?));
     /// let turning: Vec<f64> = course.follow()?.crossings().iter().map(|crossing| crossing.time).collect();
     /// assert!((turning[2] - 5.0 * std::f64::consts::PI).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -108,11 +108,11 @@ impl Trajectory {
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::trajectory::{Course, Section};
+    /// use lindstedt::trajectory::{TrajectoryRequest, PoincareSection};
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
     /// course.begin("x".into(), 1.0)?;
-    /// course.section = Some(Section::Rising(parse_expression("x - 1")?));
+    /// course.section = Some(PoincareSection::Rising(parse_expression("x - 1")?));
     /// let motion = course.follow()?;
     /// assert_eq!((motion.crossings().len(), motion.touches().len()), (0, 7));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -121,18 +121,18 @@ impl Trajectory {
         &self.on_section.touches
     }
 
-    /// Both, found.
+    /// Finds both.
     pub(super) fn find_on_section(&self) -> Result<OnSection, TrajectoryError> {
         let course = &self.course;
         let mut touched: Vec<[f64; 3]> = Vec::new();
         let times: Vec<f64> = match &course.section {
             None => vec![],
-            Some(Section::Rising(expression)) => {
+            Some(PoincareSection::Rising(expression)) => {
                 let met = self.pieces.iter().flat_map(|piece| {
-                    let own = |occurrence: &&Occurrence| occurrence.event < piece.recorded;
+                    let own = |occurrence: &&EventCrossing| occurrence.event < piece.recorded;
                     piece.path.occurrences().iter().filter(own)
                 });
-                let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
+                let (crossed, turned): (Vec<&EventCrossing>, Vec<&EventCrossing>) =
                     met.partition(|occurrence| occurrence.event == 0);
                 touched =
                     self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());
@@ -142,7 +142,7 @@ impl Trajectory {
                 let rising = crossed.into_iter().filter(|occurrence| occurrence.rising);
                 rising.map(|occurrence| occurrence.time).filter(|time| !touches(*time)).collect()
             }
-            Some(Section::Every(period)) => {
+            Some(PoincareSection::Every(period)) => {
                 let mut values = course.values.clone();
                 values.remove(&Symbol::new("t"));
                 let number = period.evaluate(&values).unwrap_or(f64::NAN);
@@ -153,7 +153,7 @@ impl Trajectory {
                 (1..=count as u32).map(|index| number * f64::from(index)).collect()
             }
         };
-        let crossing = |time: f64| Some(Crossing { time, state: self.at(time)? });
+        let crossing = |time: f64| Some(Crossing { time, state: self.states_at(time)? });
         let in_time = |time: &f64| *time >= course.after;
         Ok(OnSection {
             crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
@@ -161,17 +161,17 @@ impl Trajectory {
         })
     }
 
-    /// Of the times at which an expression is largest or least those at which it is zero, to
-    /// rounding, and is not at the turns before and behind, both on the same side; each between
-    /// these two.
+    /// The extrema of an expression at which it is zero, to rounding, and not zero at the extrema
+    /// before and behind, both on the same side; each between these two.
     fn turns_on(&self, expression: &Expr, turns: Vec<f64>) -> Vec<[f64; 3]> {
-        /// Of the largest value.
+        /// Ratio to the largest value below which an extremum is a touch.
         const TOUCH: f64 = 1e-9;
         let Some(function) = self.compiled(expression) else {
             return vec![];
         };
-        let value =
-            |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
+        let value = |time: f64| {
+            Some(function(time, &self.states_at(time)?)).filter(|value| value.is_finite())
+        };
         let times = [0.0].into_iter().chain(turns).chain([self.end()]);
         let heights: Vec<(f64, f64)> =
             times.filter_map(|time| Some((time, value(time)?))).collect();

@@ -11,32 +11,32 @@
 //! motions side by side).
 
 use super::{ACCOUNTS, Trajectory};
-use crate::system::End;
+use crate::system::PathEnd;
 
 /// The part of a state by which its start is displaced: more than rounding, and so little that
 /// differences grow in proportion.
 pub const DISPLACEMENT: f64 = 1e-12;
 
-/// What the errors of the integration begin with, at least.
+/// Least relative error that the integration starts with.
 const ROUNDING: f64 = 1e-15;
 
 /// The part of a motion whose size displaces what begins at zero.
 const BEGINNING: u32 = 100;
 
-/// What is lost when the sixth digit is.
+/// The relative error at which the sixth digit is lost.
 const SIX_DIGITS: f64 = 1e-6;
 
 impl Trajectory {
     /// The time until which its states are known to six digits of their sizes, one of two thousand
     /// in the motion; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
-    /// where they are known to the end. Costs as much as the motion.
+    /// if they are known to the end. Costs as much as the motion.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
-    /// use lindstedt::trajectory::Course;
+    /// use lindstedt::trajectory::TrajectoryRequest;
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + 0.25*x' - x + x^3 - 0.3*cos(t)")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 0.25*x' - x + x^3 - 0.3*cos(t)")?);
     /// course.begin("x".into(), 1.0)?;
     /// course.duration = 400.0;
     /// let known = course.clone().follow()?.known_until().ok_or("a chaotic motion")?;
@@ -46,13 +46,13 @@ impl Trajectory {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn known_until(&self) -> Option<f64> {
-        if self.reason == End::Interrupted {
+        if self.reason == PathEnd::Interrupted {
             return None;
         }
         let time = |end: f64, index: u32| end * f64::from(index) / f64::from(ACCOUNTS);
         let sizes = |count: u32| {
             let mut sizes = vec![0.0_f64; self.course.rates.states.len()];
-            for state in (0..=count).filter_map(|index| self.at(time(self.end(), index))) {
+            for state in (0..=count).filter_map(|index| self.states_at(time(self.end(), index))) {
                 for (size, value) in sizes.iter_mut().zip(&state) {
                     *size = size.max(value.abs());
                 }
@@ -70,7 +70,7 @@ impl Trajectory {
         let sizes = sizes(ACCOUNTS);
         let (mut known, mut doubtful) = (0.0, false);
         for time in (0..=ACCOUNTS).map(|index| time(end, index)) {
-            let (one, other) = (self.at(time)?, displaced.at(time)?);
+            let (one, other) = (self.states_at(time)?, displaced.states_at(time)?);
             let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
             // One moment alone may lie between two jumps of one force.

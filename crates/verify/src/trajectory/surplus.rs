@@ -16,11 +16,11 @@
 /// A part of the largest entry that counts as zero.
 const NOTHING: f64 = 1e-9;
 
-/// So many slips are looked at.
+/// Largest number of combinations of slips that are tried.
 const MOST_SLIPS: usize = 20_000;
 
 /// The shares that have one size, each by its number with a sign, for as many as the equations
-/// leave open; `None` where they contradict each other, or are too many.
+/// leave open; `None` if they contradict each other, or are too many.
 pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
     let (mut shares, mut open) = solutions(matrix, right)?;
     let mut groups = Vec::new();
@@ -103,10 +103,11 @@ fn next_choice(chosen: &mut [usize], count: usize) -> bool {
     true
 }
 
-/// One solution of linear equations and the directions in which there are more; `None` where they
+/// One solution of linear equations and the directions in which there are more; `None` if they
 /// contradict each other.
 fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-    /// What rounding, and places that are on their surfaces to rounding, leave of zero.
+    /// Relative size below which an entry is zero: rounding, and the error of the positions on
+    /// their surfaces.
     const APART: f64 = 1e-6;
     let count = matrix.first().map_or(0, Vec::len);
     let mut rows: Vec<Vec<f64>> = matrix
@@ -183,7 +184,7 @@ mod tests {
         assert_eq!(groups([1.0, 0.5], [1.2, 0.0]), Some(vec![vec![(0, 1), (2, 1)]]));
         assert_eq!(groups([0.1, 0.5], [1.0, 0.0]), Some(vec![vec![(0, 1), (1, 1)]]));
         assert_eq!(groups([1.0, 0.5], [0.0, -1.0]), Some(vec![vec![(1, -1), (2, 1)]]));
-        // What contradicts itself has no shares.
+        // Contradicting equations have no solution.
         assert_eq!(of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
         assert_eq!(of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
         // Nothing is open.

@@ -1,21 +1,21 @@
 //! Many motions of one equation: a parameter, or a start, takes value after value, and each motion
 //! leaves its section behind.
 //!
-//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their
-//! order, whatever the number of threads; where somebody asks to stop, those that were begun. With
-//! a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+//! In: a [`TrajectoryRequest`] and the values of some of its names. Out: a [`SweptMotion`] each, in
+//! their order, whatever the number of threads; where somebody asks to stop, those that were begun.
+//! With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
-use super::{Course, Crossing, TrajectoryError};
-use crate::parallel::{each, threads};
+use super::{Crossing, TrajectoryError, TrajectoryRequest};
+use crate::parallel::{par_map, threads};
 use crate::symbol::Symbol;
-use crate::system::{End, Integrator, LANES};
+use crate::system::{Integrator, LANES, PathEnd};
 
-/// What one of many motions leaves behind.
+/// The record of one motion of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptMotion {
     /// The values of what is varied, in the order of the names.
     pub values: Vec<f64>,
-    /// When it ended.
+    /// The time at which it ended.
     pub end: f64,
     /// Coordinates, then velocities there.
     pub state: Vec<f64>,
@@ -23,16 +23,16 @@ pub struct SweptMotion {
     pub extremes: Vec<[f64; 2]>,
     /// The states on the section from then on; none without a section.
     pub crossings: Vec<Crossing>,
-    /// When it touches the section and does not cross it, from then on.
+    /// The times from then on at which it touches the section without crossing it.
     pub touches: Vec<f64>,
-    /// Why it ended.
-    pub reason: End,
+    /// The reason why it ended.
+    pub reason: PathEnd,
 }
 
-/// Follows the course at every one of the values; `progress` hears of each motion that is done.
-/// Costs a motion each, or less where eight of them go side by side, on all cores. Once the
-/// interrupt of the course asks for it, no other motion is begun; those that had come past the time
-/// `after` are handed back.
+/// Follows the course at every one of the values; `progress` is called after each motion. Costs a
+/// motion each, or less where eight of them go side by side, on all cores. Once the interrupt of
+/// the course asks for it, no other motion is begun; those that had come past the time `after` are
+/// handed back.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and why.
@@ -40,16 +40,16 @@ pub struct SweptMotion {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::trajectory::{Course, sweep};
+/// use lindstedt::trajectory::{TrajectoryRequest, sweep};
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + k*x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + k*x = 0")?);
 /// course.begin("x'".into(), 1.0)?;
 /// let motions = sweep(&course, &["k".into()], &[vec![1.0], vec![4.0]], || ()).map_err(|(_, error)| error)?;
 /// assert!((motions[1].extremes[0][1] - 0.5).abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(
-    course: &Course,
+    course: &TrajectoryRequest,
     names: &[Symbol],
     grid: &[Vec<f64>],
     progress: impl Fn() + Sync,
@@ -76,20 +76,20 @@ pub fn sweep(
             return Ok(vec![]);
         }
         let courses = group.iter().map(|(_, values)| at(values)).collect();
-        let motions = Course::followed_together(courses, ready.as_ref());
+        let motions = TrajectoryRequest::followed_together(courses, ready.as_ref());
         let mut swept = Vec::with_capacity(group.len());
         for ((number, values), motion) in group.iter().zip(motions) {
             let motion = motion.map_err(|error| (*number, error))?;
             progress();
             // One that was cut off before it counts, or before it moved, has nothing to show.
             let end = motion.end();
-            if motion.reason() == End::Interrupted && (end < course.after || end == 0.0) {
+            if motion.reason() == PathEnd::Interrupted && (end < course.after || end == 0.0) {
                 continue;
             }
             swept.push(SweptMotion {
                 values: values.to_vec(),
                 end,
-                state: motion.at(end).unwrap_or_default(),
+                state: motion.states_at(end).unwrap_or_default(),
                 extremes: motion.extremes(),
                 crossings: motion.crossings().to_vec(),
                 touches: motion.touches().to_vec(),
@@ -99,6 +99,7 @@ pub fn sweep(
         Ok(swept)
     };
     let groups: Vec<_> = numbered.chunks(size).collect();
-    let motions: Result<Vec<Vec<SweptMotion>>, _> = each(&groups, together).into_iter().collect();
+    let motions: Result<Vec<Vec<SweptMotion>>, _> =
+        par_map(&groups, together).into_iter().collect();
     Ok(motions?.into_iter().flatten().collect())
 }

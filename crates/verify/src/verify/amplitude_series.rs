@@ -23,9 +23,9 @@ use crate::exact::{Integer, Rational};
 const BITS: usize = 768;
 
 /// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as there are of the force;
-/// `force[k]` belongs to `y^k`, `force[1]` is one. `None` where a number is not finite.
+/// `force[k]` belongs to `y^k`, `force[1]` is one. `None` if a number is not finite.
 pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
-    let fixed = |value: f64| Some(whole(&from_f64(value)?));
+    let fixed = |value: f64| Some(to_integer(&from_f64(value)?));
     // 2 V/y^2: the coefficient of y^(k-1) is 2 f_k/(k+1).
     let potential: Vec<Integer> = force
         .iter()
@@ -59,7 +59,7 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     Some(squared.into_iter().map(|value| to_f64(&Rational::new(value, scale.clone()))).collect())
 }
 
-fn whole(value: &Rational) -> Integer {
+fn to_integer(value: &Rational) -> Integer {
     (value.numer() << BITS) / value.denom()
 }
 

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use super::orbit::{Meant, Physics};
+use super::orbit::{NumericOscillator, OrbitTarget};
 use crate::conservative::is_odd;
 use crate::conservative::well::Well;
 use crate::numeric::ode::root::find_root;
@@ -16,19 +16,19 @@ pub(super) struct TrueBackbone<'a> {
     amplitude: Symbol,
     /// The values asked for.
     pub(super) numbers: &'a BTreeMap<Symbol, f64>,
-    physics: Option<Physics>,
+    physics: Option<NumericOscillator>,
     known: RefCell<BTreeMap<u64, Option<f64>>>,
     well: Option<Well>,
     /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
     places: Vec<f64>,
-    /// How many times the amplitude asked for a motion without escape is looked at.
+    /// Range of the search in multiples of the given amplitude, for a motion without escape.
     times: f64,
 }
 
-/// How far beyond the amplitude asked for a motion without escape is looked at.
+/// Range of the search in multiples of the given amplitude, for a motion without escape.
 const FARTHEST: f64 = 100.0;
 
-/// The same where each frequency is found step by step: what velocities add may grow without a
+/// That range if each frequency is found by integration: terms in the velocity may grow without
 /// bound.
 const FARTHEST_BY_STEPS: f64 = 2.0;
 
@@ -38,26 +38,26 @@ const MOST_FOR_ONE: f64 = 3e7;
 const MOST: u64 = 100_000_000;
 
 impl<'a> TrueBackbone<'a> {
-    /// Of the motions that are meant, in a well where it has an end.
+    /// The backbone of the motions that are meant, in a well if it has an end.
     pub(super) fn new(
         oscillator: &'a Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &'a BTreeMap<Symbol, f64>,
         well: Option<Well>,
     ) -> Self {
         let mut backbone = Self {
             amplitude: meant.convention.symbol(),
             numbers,
-            physics: Physics::new(oscillator, meant, numbers).ok(),
+            physics: NumericOscillator::new(oscillator, meant, numbers).ok(),
             known: RefCell::default(),
             well,
             places: vec![],
             times: FARTHEST,
         };
-        let asked = backbone.asked().abs();
+        let asked = backbone.given_amplitude().abs();
         let _ = backbone.frequency(asked);
         let work = backbone.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
-        let by_energy = backbone.physics.as_ref().is_none_or(Physics::by_energy);
+        let by_energy = backbone.physics.as_ref().is_none_or(NumericOscillator::by_energy);
         backbone.times = match by_energy {
             true => (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST),
             false => FARTHEST_BY_STEPS,
@@ -70,20 +70,20 @@ impl<'a> TrueBackbone<'a> {
     }
 
     /// The amplitude asked for, with its sign.
-    pub(super) fn asked(&self) -> f64 {
+    pub(super) fn given_amplitude(&self) -> f64 {
         self.numbers.get(&self.amplitude).copied().unwrap_or(1.0)
     }
 
     /// The numbers with another size of the amplitude.
     pub(super) fn numbers_at(&self, size: f64) -> BTreeMap<Symbol, f64> {
         let mut numbers = self.numbers.clone();
-        numbers.insert(self.amplitude, size.copysign(self.asked()));
+        numbers.insert(self.amplitude, size.copysign(self.given_amplitude()));
         numbers
     }
 
     /// The size of the amplitude beyond which no motion released on the side asked for is periodic.
     pub(super) fn largest_amplitude(&self) -> f64 {
-        let end = self.well.and_then(|well| well.on_side(self.asked()));
+        let end = self.well.and_then(|well| well.on_side(self.given_amplitude()));
         end.map_or(f64::INFINITY, |end| end.amplitude.abs())
     }
 
@@ -103,22 +103,22 @@ impl<'a> TrueBackbone<'a> {
     }
 
     /// The end of what is looked at.
-    pub(super) fn farthest(&self) -> f64 {
-        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
-            .max(self.asked().abs().min(self.largest_amplitude()))
+    pub(super) fn search_limit(&self) -> f64 {
+        f64::min(0.999 * self.largest_amplitude(), self.times * self.given_amplitude().abs())
+            .max(self.given_amplitude().abs().min(self.largest_amplitude()))
     }
 
-    /// The true frequency; `None` where the motion is not periodic.
+    /// The true frequency; `None` if the motion is not periodic.
     pub(super) fn frequency(&self, size: f64) -> Option<f64> {
         if let Some(known) = self.known.borrow().get(&size.to_bits()) {
             return *known;
         }
-        let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
+        let affordable = |physics: &&NumericOscillator| physics.rest.evaluations() < MOST;
         let found = self
             .physics
             .as_ref()
             .filter(affordable)
-            .and_then(|physics| physics.frequency(size.copysign(self.asked())).ok());
+            .and_then(|physics| physics.frequency(size.copysign(self.given_amplitude())).ok());
         self.known.borrow_mut().insert(size.to_bits(), found);
         found
     }
@@ -134,7 +134,7 @@ impl<'a> TrueBackbone<'a> {
         let at_once = FOR_A_ROOT * physics.rest.evaluations();
         // These places only say where to look, and leave most of the work to what is found there.
         let affordable = || physics.rest.evaluations() + at_once < MOST / 4;
-        let (side, farthest) = (self.asked().signum(), self.farthest());
+        let (side, farthest) = (self.given_amplitude().signum(), self.search_limit());
         let mut sizes: Vec<f64> = Vec::new();
         let cuts = physics.rest.cuts(-farthest, farthest);
         for &place in cuts.iter().step_by(cuts.len().div_ceil(MOST_PLACES).max(1)) {
@@ -163,7 +163,7 @@ impl<'a> TrueBackbone<'a> {
     pub(super) fn amplitudes(&self) -> Vec<f64> {
         const PER_DECADE: i32 = 4;
         const LINEAR: usize = 8;
-        let (asked, farthest) = (self.asked().abs(), self.farthest());
+        let (asked, farthest) = (self.given_amplitude().abs(), self.search_limit());
         let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
             .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
             .collect();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use super::force_of;
 use super::validity::Range;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::decimal::significant;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -18,11 +18,11 @@ use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
-/// How far `f/x` must have moved to count, relatively: less may be rounding.
+/// The relative change of `f/x` that counts: a smaller one may be rounding.
 const VISIBLE: f64 = 1e-12;
 
-/// What the bounds of the max-min approach are at these numbers; outside where they are not those
-/// at rest and at `x = A`.
+/// Checks the bounds of the max-min approach at these numbers; the range is outside if they are not
+/// those at rest and at `x = A`.
 pub(super) fn bounds(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -55,7 +55,7 @@ pub(super) fn bounds(
         true => "rises",
         false => "falls",
     };
-    let turn = turns(&course);
+    let turn = first_extremum(&course);
     let text = match (turn, outside) {
         _ if !beyond(largest, least) => format!(
             "{quotient} is {} at every {x} up to {AMPLITUDE}: {FREQUENCY}^2 is that",
@@ -82,9 +82,9 @@ pub(super) fn bounds(
     Some(Range { text, outside })
 }
 
-/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` where
-/// it has no value.
-fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
+/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` if it
+/// has no value.
+fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     const LINEAR: i32 = 512;
     /// Towards rest by decades.
     const DECADES: i32 = 6;
@@ -101,11 +101,11 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     places.retain(|place| *place > 0.0 && *place <= amplitude);
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let quotient = |x: f64| force.at(x) / x;
+    let quotient = |x: f64| force.value(x) / x;
     let at_rest = Some(force.slope(0.0)).filter(|slope| slope.is_finite());
     let mut course = vec![(0.0, at_rest.unwrap_or_else(|| quotient(1e-9 * amplitude)))];
     course.extend(places.iter().map(|&place| (place, quotient(place))));
-    // Where it is stationary: x f' = f.
+    // The quotient f/x is stationary where x f' = f.
     let rate = |x: f64| force.slope(x) - quotient(x);
     for pair in places.windows(2) {
         if rate(pair[0]) * rate(pair[1]) < 0.0
@@ -119,7 +119,7 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
 }
 
 /// The first place at which the values turn back by more than rounding.
-fn turns(course: &[(f64, f64)]) -> Option<f64> {
+fn first_extremum(course: &[(f64, f64)]) -> Option<f64> {
     let (mut highest, mut lowest) = (course[0], course[0]);
     let mut rising: Option<bool> = None;
     for &point in course {

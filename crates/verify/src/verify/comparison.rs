@@ -16,7 +16,7 @@ use super::{Verdict, VerificationError, judge, largest_deviation, meant};
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
-use crate::method::numbers::{Known, NoNumbers};
+use crate::method::numbers::{NoNumbers, NumbersCache};
 use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -27,12 +27,12 @@ use crate::values::Values;
 /// A method that applies.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Row {
-    /// What it derived.
+pub struct ComparisonRow {
+    /// The derived answer.
     pub solution: Solution,
-    /// omega by the formula; `None` where there is none.
+    /// omega by the formula; `None` if there is none.
     pub frequency: Option<f64>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub reason: Option<NoNumbers>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
     /// they were solved for.
@@ -43,12 +43,12 @@ pub struct Row {
     pub max_deviation: Option<f64>,
     /// The range in which the frequency is within the tolerance, of the amplitude of the table's
     /// first row.
-    pub reach: Option<Reach>,
-    /// The verdict on the frequency; `None` where the true one is not known.
+    pub reach: Option<AmplitudeReach>,
+    /// The verdict on the frequency; `None` if the true one is not known.
     pub verdict: Option<Verdict>,
 }
 
-impl Row {
+impl ComparisonRow {
     /// The convergence-control parameter that was chosen for the numbers, where it was.
     pub fn chosen_hbar(&self) -> Option<(Symbol, f64)> {
         let hbar = convergence_control(&self.solution);
@@ -59,9 +59,9 @@ impl Row {
 
 impl Comparison {
     /// The letters of its formulas: those of the first answer.
-    pub fn letters(&self) -> Letters {
+    pub fn letters(&self) -> ResultSymbols {
         let first = self.rows.first().map(|row| row.solution.letters());
-        first.unwrap_or_else(|| Letters::beside(&[], false))
+        first.unwrap_or_else(|| ResultSymbols::avoiding(&[], false))
     }
 }
 
@@ -70,7 +70,7 @@ impl Comparison {
 pub struct Refused {
     /// The method.
     pub method: Method,
-    /// Why not.
+    /// The reason.
     pub reason: Refusal,
 }
 
@@ -82,17 +82,17 @@ pub struct Comparison {
     pub equation: Equation,
     /// The values at which the methods were judged.
     pub at: Values,
-    /// omega of the true motion; `None` where it cannot be computed.
+    /// omega of the true motion; `None` if it cannot be computed.
     pub true_frequency: Option<f64>,
-    /// Why it cannot.
+    /// The reason why it cannot.
     pub reason: Option<VerificationError>,
     /// The tolerance of verdicts and ranges, relative: 0.01 is 1 %.
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
-    pub rows: Vec<Row>,
-    /// Those that do not.
+    pub rows: Vec<ComparisonRow>,
+    /// The methods that do not apply.
     pub refused: Vec<Refused>,
-    /// Where the true motion is periodic.
+    /// The ranges of validity, in words, if the true motion is periodic.
     pub validity: Vec<String>,
 }
 
@@ -176,7 +176,7 @@ pub fn compare(
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
     super::check_digits(oscillator, first, &numbers)?;
-    let meant = meant(oscillator, first, &numbers);
+    let meant = orbit_target(oscillator, first, &numbers);
     let (true_motion, reason) = match super::meant_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
@@ -202,8 +202,8 @@ pub fn compare(
     })
 }
 
-/// What every method says: periodic motions, slow ones that settle on none, and refusals of those
-/// that say nothing else.
+/// Answers of all methods: periodic motions, slow ones that do not settle, and the refusals of
+/// those that give neither.
 fn answers(
     oscillator: &Oscillator,
     at: &Values,
@@ -219,8 +219,8 @@ fn answers(
         };
         let mut found = solved(&options);
         if found.is_err() && in_a_parameter {
-            // Where the parameter that is small by default leaves a method nothing to expand in,
-            // the amplitude may be.
+            // If the default small parameter leaves a method nothing to expand in, the amplitude
+            // may serve.
             let by_amplitude = solved(&Options {
                 small: Some(AmplitudeConvention::Initial.symbol().to_string()),
                 ..options.clone()
@@ -246,7 +246,7 @@ fn answers(
                 Some(settled) => solutions.push(settled),
                 None => slow.push(solution),
             },
-            // What nothing tells the start of is no motion to compare.
+            // A motion without a known initial state cannot be compared.
             (Ok(solution), Some(method))
                 if solution.response.is_none() && super::periodic(&solution).is_err() =>
             {
@@ -318,7 +318,7 @@ fn driven(
             "driven: the error is that of the amplitude; {}: {words}",
             solution.title()
         ));
-        rows.push(Row {
+        rows.push(ComparisonRow {
             solution: solution.clone(),
             frequency: judged.frequency,
             reason: None,
@@ -369,7 +369,7 @@ fn of_transients(
                 followed.reason
             ));
         }
-        rows.push(Row {
+        rows.push(ComparisonRow {
             frequency: judged.frequency,
             reason: judged.reason,
             chosen: judged.chosen,
@@ -402,7 +402,7 @@ fn row(
     true_motion: Option<&TrueMotion>,
     truth: &TrueBackbone,
     tolerance: f64,
-) -> Row {
+) -> ComparisonRow {
     let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error =
@@ -412,15 +412,15 @@ fn row(
         .zip(true_motion)
         .and_then(|((frequency, motion), truth)| largest_deviation(truth, frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
-    Row {
+    ComparisonRow {
         solution: solution.clone(),
         frequency,
         reason,
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
         relative_error,
         max_deviation,
-        reach: reach(oscillator, solution, truth, tolerance),
-        verdict: true_motion.map(|_| Verdict::of(pass)),
+        reach: amplitude_reach(oscillator, solution, truth, tolerance),
+        verdict: true_motion.map(|_| Verdict::from_passed(pass)),
     }
 }
 
@@ -493,7 +493,7 @@ pub fn backbones(
     };
     let mut curves: Vec<Backbone> = Vec::new();
     for row in comparison.rows.iter().filter(|row| row.solution.method != Method::Exact) {
-        let followed = Known::default();
+        let followed = NumbersCache::default();
         let points = curve(&|amplitude| {
             formula_frequency_along(
                 oscillator,

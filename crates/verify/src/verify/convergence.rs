@@ -27,7 +27,7 @@ use crate::exact::rational::to_f64;
 use crate::exact::{Doubles, Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::power_series::PowerSeries;
-use crate::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
+use crate::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::recurrence::numeric_taylor;
 use crate::series::{FourierSeries, singularity};
@@ -49,12 +49,12 @@ pub struct Singularity {
 /// Coefficients to which a law of ratios is fitted.
 const WINDOW: usize = 8;
 
-/// How well, relative to the radius, two windows must agree.
+/// Relative agreement of the radii by two windows of coefficients that is required.
 const AGREEMENT: f64 = 0.01;
 
-/// How far the series of omega^2 in a solution converges, by its
-/// [own exact coefficients](crate::series::singularity); `None` where it has too few, or symbols
-/// that do not enter in step with the order, or none that show a law.
+/// The nearest singularity of the series of omega^2 in a solution, by its [own exact
+/// coefficients](crate::series::singularity); `None` if it has too few of them, symbols that do not
+/// enter in step with the order, or coefficients that show no law.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -76,7 +76,7 @@ pub fn converges(solution: &Solution) -> Option<Convergence> {
 }
 
 /// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that
-/// it ends, or that they fall faster than the powers of any number; `None` where they say neither.
+/// it ends, or that they fall faster than the powers of any number; `None` if they say neither.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -105,11 +105,12 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     if solution.numerical {
         return None;
     }
-    let (mut variable, mut coefficients) = PowerSeries::of(solution, true).in_one_variable()?;
+    let (mut variable, mut coefficients) =
+        PowerSeries::from_solution(solution, true).in_one_variable()?;
     if solution.method.counts() == Counts::Powers {
         // The powers to the order of the answer that are not in the law are zero.
-        let count =
-            solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
+        let count = solution.order as usize
+            / usize::try_from(PowerSeries::from_solution(solution, true).step).ok()?;
         coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
     }
     let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());
@@ -121,8 +122,8 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     Some((variable, coefficients))
 }
 
-/// The radius of convergence of the series of `solution` in its small parameter, in words; nothing
-/// where its coefficients show no law.
+/// The radius of convergence of the series of `solution` in its small parameter, in words; `None`
+/// if its coefficients show no law.
 pub(super) fn convergence(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -188,26 +189,26 @@ fn at_numbers(
 }
 
 /// omega^2 in powers of the small parameter over a unit, up to a factor.
-struct Series {
+struct FrequencySeries {
     coefficients: Vec<f64>,
     unit: f64,
 }
 
 /// The unit of `x` in which the largest Taylor coefficient of the force is of the size of the
 /// linear one, given the coefficients in another unit.
-fn growth(force: &[f64]) -> f64 {
+fn unit_of_growth(force: &[f64]) -> f64 {
     let linear = force[1];
     let rate = |(k, value): (usize, &f64)| (value / linear).abs().powf(1.0 / (k as f64 - 1.0));
     force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
 }
 
-/// In the amplitude of a force of the position alone.
+/// The series in the amplitude of a force of the position alone.
 fn in_the_amplitude(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     amplitude: f64,
-) -> Option<Series> {
+) -> Option<FrequencySeries> {
     let (highest, few) = (2 * SERIES_TERMS + 1, 9);
     if oscillator.force.contains(oscillator.velocity()) {
         return None;
@@ -221,7 +222,7 @@ fn in_the_amplitude(
     // vanish nor explode.
     let mut unit = amplitude.abs();
     for degree in [few, highest] {
-        let rate = growth(&taylor(unit, degree)?);
+        let rate = unit_of_growth(&taylor(unit, degree)?);
         if !rate.is_normal() {
             return None;
         }
@@ -239,7 +240,7 @@ fn in_the_amplitude(
         even().for_each(|k| coefficients[k] = 0.0);
     }
     (coefficients[1], coefficients[0]) = (1.0, 0.0);
-    Some(Series { coefficients: amplitude_series(&coefficients)?, unit })
+    Some(FrequencySeries { coefficients: amplitude_series(&coefficients)?, unit })
 }
 
 /// In a parameter, at the amplitude given: secular terms removed in floating-point numbers.
@@ -248,7 +249,7 @@ fn in_a_parameter(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     small: Symbol,
-) -> Option<Series> {
+) -> Option<FrequencySeries> {
     let cycle = solution.limit_cycle.as_ref();
     // The frequency of most limit cycles has even powers alone.
     let highest = if cycle.is_some() { 2 * SERIES_TERMS } else { SERIES_TERMS };
@@ -264,8 +265,8 @@ fn in_a_parameter(
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
         amplitude: match cycle {
-            Some(_) => Amplitude::Determined,
-            None => Amplitude::Free,
+            Some(_) => AmplitudeKind::Determined,
+            None => AmplitudeKind::Free,
         },
         detuning: Detuning::Acceleration,
     };
@@ -275,10 +276,10 @@ fn in_a_parameter(
     if cycle.is_some() {
         forget_odd_noise(&mut coefficients);
     }
-    Some(Series { coefficients, unit })
+    Some(FrequencySeries { coefficients, unit })
 }
 
-/// Of a limit cycle rounding leaves odd powers where there are none.
+/// Removes odd powers that rounding leaves in the series of a limit cycle.
 fn forget_odd_noise(coefficients: &mut [f64]) {
     let mut odd = (1..coefficients.len()).step_by(2);
     if odd.all(|k| coefficients[k].abs() < 1e-9 * coefficients[k - 1].abs()) {
@@ -288,8 +289,8 @@ fn forget_odd_noise(coefficients: &mut [f64]) {
 }
 
 /// The terms of the force at an amplitude, in units of the linear frequency and of a value of the
-/// small parameter that makes the largest one; and that value. `None` where the force is none of a
-/// few powers.
+/// small parameter that makes the largest one; and that value. `None` if the force is none of a few
+/// powers.
 fn in_numbers(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -360,8 +361,8 @@ fn with_numbers(
     oscillator.with_values(&values).ok()
 }
 
-/// The nearest singularity of a power series, from its coefficients; `None` where they show no
-/// regular pattern.
+/// The nearest singularity of a power series, from its coefficients; `None` if they show no regular
+/// pattern.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -428,7 +429,7 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
         return None;
     }
     let solved = matrix.clone().svd(true, true).solve(&right, 1e-14).ok()?;
-    // What is left over says whether the coefficients follow the law at all.
+    // The residual of the fit says whether the coefficients follow the law at all.
     let left_over = (&matrix * &solved - &right).norm() / right.norm();
     let (alpha, beta) = (solved[0], solved[3]);
     let cosine = 0.5 * alpha / (-beta).sqrt();

@@ -12,10 +12,9 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
 //!
-//! Where two steady motions lead to one true motion, it belongs to the nearer of those that are as
-//! stable; for the other one the search goes on with the motions that are known kept away from, and
-//! what it finds counts where it is nearer to this steady motion than to any other that is as
-//! stable.
+//! If two steady motions lead to the same true motion, it belongs to the nearer of those of the
+//! same stability; for the other one the search is repeated away from the known motions, and a
+//! result counts if it is nearer to this steady motion than to any other of the same stability.
 //!
 //! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by
 //! `delta^n`, which is the slope to expect. It may be more where a coefficient of the error
@@ -33,7 +32,7 @@ use super::{Motions, Verdict, Verification, VerificationError};
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
-use crate::numeric::ode::{Options, State, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, integrate};
 use crate::numeric::periodic::{PeriodicOrbit, periodic_motion};
 use crate::oscillator::Oscillator;
 use crate::solution::response::{SteadyMotions, SteadyState};
@@ -44,9 +43,9 @@ use crate::values::Values;
 /// A steady motion of the slow equations beside the true one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedState {
-    /// By the slow equations.
+    /// The steady state by the slow equations.
     pub state: SteadyState,
-    /// The amplitude of the true motion; `None` where none was found.
+    /// The amplitude of the true motion; `None` if none was found.
     pub true_amplitude: Option<f64>,
     /// Whether the true motion attracts, by its Floquet multipliers.
     pub true_stable: Option<bool>,
@@ -56,7 +55,7 @@ pub struct JudgedState {
     pub max_deviation: Option<f64>,
 }
 
-/// The largest stable steady motion by the formula and the true one, over one period; `None` where
+/// The largest stable steady motion by the formula and the true one, over one period; `None` if
 /// there is no such motion.
 pub(super) fn motions(
     oscillator: &Oscillator,
@@ -64,11 +63,11 @@ pub(super) fn motions(
     response: &Response,
     at: &Values,
 ) -> Result<Option<Motions>, VerificationError> {
-    let question = Question::new(oscillator, solution, response, at)?;
+    let question = DrivenComparison::new(oscillator, solution, response, at)?;
     let states = question.states();
     let largest = states.iter().find(|state| state.is_stable()).or(states.first());
-    let Some((state, found)) =
-        largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
+    let Some((state, found)) = largest
+        .and_then(|state| Some((*state, question.truth.find_near(&question.motion, *state)?)))
     else {
         return Ok(None);
     };
@@ -82,7 +81,7 @@ pub(super) fn motions(
             .collect(),
         truth: times
             .map(|t| {
-                let (x, v) = found.at(t);
+                let (x, v) = found.phase_point_at(t);
                 (t, x, v)
             })
             .collect(),
@@ -90,16 +89,16 @@ pub(super) fn motions(
 }
 
 /// A driven oscillator with numbers.
-struct Question<'a> {
+struct DrivenComparison<'a> {
     solution: &'a Solution,
     numbers: BTreeMap<Symbol, f64>,
     /// omega of the motion itself.
     frequency: f64,
     truth: Truth,
-    motion: Formula,
+    motion: SteadyFormula,
 }
 
-impl<'a> Question<'a> {
+impl<'a> DrivenComparison<'a> {
     fn new(
         oscillator: &Oscillator,
         solution: &'a Solution,
@@ -127,7 +126,7 @@ impl<'a> Question<'a> {
             solution,
             frequency: driving.abs() * f64::from(q) / f64::from(p),
             truth: Truth::new(oscillator, &numbers, period, [p, q])?,
-            motion: Formula::new(solution, response, &numbers)?,
+            motion: SteadyFormula::new(solution, response, &numbers)?,
             numbers,
         })
     }
@@ -140,7 +139,7 @@ impl<'a> Question<'a> {
         self.solution.steady_motions(&|name| self.numbers.get(&name).copied())
     }
 
-    /// What the formula leaves of the equation, over the force.
+    /// Root mean square residual of the formula in the equation, over that of the force.
     fn residual(&self, state: SteadyState) -> Option<f64> {
         let times = (0..SAMPLES).map(|k| self.truth.period * k as f64 / SAMPLES as f64);
         let (mut defects, mut forces) = (0.0, 0.0);
@@ -157,7 +156,7 @@ impl<'a> Question<'a> {
     /// is as stable or else nearer. Of those at an amplitude at which the series does not converge
     /// only what has a true motion of its own near by, and how many have none.
     fn judged_states(&self) -> (Vec<JudgedState>, usize) {
-        /// How far the true amplitude may be off.
+        /// Largest relative error of the true amplitude.
         const NEAR: f64 = 0.3;
         let SteadyMotions { states, spurious } = self.steady_motions();
         let (count, states) = (states.len(), [states, spurious].concat());
@@ -174,8 +173,8 @@ impl<'a> Question<'a> {
             })
             .collect();
         let judge = |state: &SteadyState, found: Option<&PeriodicOrbit>| match is_held(state) {
-            true => held(*state),
-            false => self.truth.beside(&self.motion, *state, found),
+            true => held_state(*state),
+            false => self.truth.compare(&self.motion, *state, found),
         };
         let judged: Vec<JudgedState> =
             states.iter().zip(&found).map(|(state, found)| judge(state, found.as_ref())).collect();
@@ -201,17 +200,17 @@ impl<'a> Question<'a> {
         let mut known: Vec<[f64; 2]> = (0..states.len())
             .filter(|k| !lost(*k))
             .filter_map(|k| found[k].as_ref())
-            .flat_map(|found| self.truth.starts(found))
+            .flat_map(|found| self.truth.initial_states(found))
             .collect();
         let mut another = |state: &SteadyState| {
-            let found = self.truth.another(&self.motion, *state, &known)?;
+            let found = self.truth.find_another(&self.motion, *state, &known)?;
             let judged = judge(state, Some(&found));
             let own = apart(&judged)?;
             let others = states.iter().map(|other| judge(other, Some(&found)));
             if others.filter_map(|other| apart(&other)).any(|other| other < own) {
                 return None;
             }
-            known.extend(self.truth.starts(&found));
+            known.extend(self.truth.initial_states(&found));
             Some(judged)
         };
         let mut all: Vec<JudgedState> = (0..states.len())
@@ -235,18 +234,22 @@ impl<'a> Question<'a> {
     }
 }
 
-/// Where a true motion begins.
+/// Position and velocity at the start of a true motion.
 fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
-    found.as_ref().map(|found| found.at(0.0))
+    found.as_ref().map(|found| found.phase_point_at(0.0))
 }
 
 /// All that is small is halved again and again, and the deviation of the same steady motion
 /// measured.
-fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> Option<f64> {
+fn slope(
+    oscillator: &Oscillator,
+    question: &DrivenComparison,
+    judged: &JudgedState,
+) -> Option<f64> {
     const HALVINGS: i32 = 3;
     /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
     const FLOOR: f64 = 1e-8;
-    /// By how much of itself the amplitude may have changed.
+    /// The relative change of the amplitude beyond which it is another motion.
     const OTHER: f64 = 0.5;
     let deviation = |halvings: i32| {
         if halvings == 0 {
@@ -254,9 +257,13 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
         }
         let smaller = smaller(oscillator, question.solution, &question.numbers, halvings)?;
         let response = smaller.solution.response.as_ref()?;
-        let question =
-            Question::of_numbers(&smaller.oscillator, &smaller.solution, response, smaller.numbers)
-                .ok()?;
+        let question = DrivenComparison::of_numbers(
+            &smaller.oscillator,
+            &smaller.solution,
+            response,
+            smaller.numbers,
+        )
+        .ok()?;
         let apart = |state: &SteadyState| (state.amplitude - judged.state.amplitude).abs();
         let states = question.states().into_iter();
         let alike = states.filter(|state| state.is_stable() == judged.state.is_stable());
@@ -264,12 +271,12 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
         if apart(&state) > OTHER * judged.state.amplitude {
             return None;
         }
-        let found = question.truth.near(&question.motion, state)?;
-        question.truth.beside(&question.motion, state, Some(&found)).max_deviation
+        let found = question.truth.find_near(&question.motion, state)?;
+        question.truth.compare(&question.motion, state, Some(&found)).max_deviation
     };
     let errors: Vec<f64> =
         (0..HALVINGS).map_while(deviation).take_while(|error| *error >= FLOOR).collect();
-    // What is halved is the square of a small amplitude.
+    // The halved quantity is the square of a small amplitude.
     let power = if is_small_in_amplitude(question.solution) { 2.0 } else { 1.0 };
     slopes_of(&errors).map(|slope| power * slope)
 }
@@ -282,7 +289,7 @@ pub(super) fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    let question = Question::new(oscillator, solution, response, at)?;
+    let question = DrivenComparison::new(oscillator, solution, response, at)?;
     let (states, spurious) = question.judged_states();
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
     let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
@@ -315,12 +322,12 @@ pub(super) fn judge(
         steady_states: states,
         spurious,
         followed: None,
-        verdict: Verdict::of(passed),
+        verdict: Verdict::from_passed(passed),
     })
 }
 
 /// A motion that dry friction holds where it is.
-fn held(state: SteadyState) -> JudgedState {
+fn held_state(state: SteadyState) -> JudgedState {
     JudgedState {
         state,
         true_amplitude: Some(0.0),
@@ -336,7 +343,7 @@ struct Truth {
     period: f64,
     /// The harmonic of the period whose amplitude is meant.
     own: u32,
-    /// How many periods of the drive it takes.
+    /// Number of drive periods in a period of the motion.
     drives: u32,
 }
 
@@ -370,7 +377,7 @@ impl Truth {
     /// those that begin at the known places.
     fn by_newton(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         known: &[[f64; 2]],
     ) -> Option<PeriodicOrbit> {
@@ -383,10 +390,10 @@ impl Truth {
 
     /// The true periodic motion near one by the formula; where a second one is near that is as
     /// stable as it, and the first is not, that one.
-    fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
-        /// How far the amplitude of the second may be off.
+    fn as_stable(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
+        /// Largest relative error of the amplitude of the second motion.
         const NEAR: f64 = 0.3;
-        let found = self.near(motion, state)?;
+        let found = self.find_near(motion, state)?;
         let is_alike = |found: &PeriodicOrbit| found.attracts() == state.is_stable();
         let is_near = |found: &PeriodicOrbit| {
             (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR
@@ -394,13 +401,13 @@ impl Truth {
         if is_alike(&found) || state.amplitude == 0.0 {
             return Some(found);
         }
-        let second = self.by_newton(motion, state, &self.starts(&found));
+        let second = self.by_newton(motion, state, &self.initial_states(&found));
         second.filter(|second| is_alike(second) && is_near(second)).or(Some(found))
     }
 
     /// The true periodic motion near one by the formula.
-    fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
-        /// For how long a motion is left to settle.
+    fn find_near(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
+        /// Number of periods in which a motion may settle.
         const PERIODS: f64 = 200.0;
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
@@ -410,7 +417,7 @@ impl Truth {
         // Near a fold the search may miss what a motion settles on all the same.
         let settled = || {
             let [x, v] = start;
-            let options = Options::with_tolerance(1e-9);
+            let options = IntegrationOptions::with_tolerance(1e-9);
             let end = PERIODS * self.period;
             let path = integrate(acceleration, State { t: 0.0, x, v }, end, &[], &options).ok()?;
             let end = path.end();
@@ -422,9 +429,9 @@ impl Truth {
     }
 
     /// A true periodic motion near one by the formula that is none of the known ones.
-    fn another(
+    fn find_another(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         known: &[[f64; 2]],
     ) -> Option<PeriodicOrbit> {
@@ -441,26 +448,29 @@ impl Truth {
         (size > 0.0).then(search).flatten()
     }
 
-    /// Where a true motion begins, and where it does a period of the drive later and so on, which
-    /// are other starts of the same one.
-    fn starts(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
+    /// Initial states of a true motion at every period of the drive: all of them are starts of the
+    /// same motion.
+    fn initial_states(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
-        let start = |k: u32| found.at(part * f64::from(k)).into();
+        let start = |k: u32| found.phase_point_at(part * f64::from(k)).into();
         (0..self.drives).map(start).collect()
     }
 
-    fn beside(
+    fn compare(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         found: Option<&PeriodicOrbit>,
     ) -> JudgedState {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
         let deviation = found.map(|found| {
-            let largest =
-                largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
-            let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
+            let largest = largest_over(self.period, |t| {
+                (found.phase_point_at(t).0 - motion.position(t, state)).abs()
+            });
+            let size = largest_over(self.period, |t| {
+                (found.phase_point_at(t).0 - motion.equilibrium).abs()
+            });
             if size == 0.0 { 0.0 } else { largest / size }
         });
         JudgedState {
@@ -474,14 +484,14 @@ impl Truth {
 }
 
 /// The motion by the formula, in time, amplitude and phase.
-struct Formula {
+struct SteadyFormula {
     position: CompiledFunction,
     velocity: CompiledFunction,
     acceleration: CompiledFunction,
     equilibrium: f64,
 }
 
-impl Formula {
+impl SteadyFormula {
     fn new(
         solution: &Solution,
         response: &Response,

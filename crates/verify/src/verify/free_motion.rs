@@ -11,32 +11,32 @@ use super::VerificationError;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode;
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
-use crate::trajectory::{Course, Trajectory};
+use crate::trajectory::{Trajectory, TrajectoryRequest};
 
-/// What is followed.
+/// A motion released from rest, and for how long it is followed.
 pub(super) struct Start {
-    /// What it swings about.
+    /// The equilibrium about which it oscillates.
     pub(super) equilibrium: f64,
-    /// Where it begins, at rest, from the equilibrium.
+    /// The initial distance from the equilibrium, at rest.
     pub(super) distance: f64,
-    /// How long it is followed.
+    /// Duration, in the unit of time.
     pub(super) duration: f64,
-    /// How often it is looked at, well below a quarter of a period.
+    /// The interval between samples, well below a quarter of a period.
     pub(super) step: f64,
 }
 
-/// How a motion is known.
-enum Path {
-    /// From the equation, and held where friction holds it.
+/// The representation of a motion.
+enum FreePath {
+    /// Power series of the equation, with sticking at dry friction.
     Series(Box<Trajectory>),
-    /// By Runge-Kutta on values of the force alone.
+    /// Runge-Kutta on values of the force alone.
     Evaluated(ode::Trajectory),
 }
 
-/// The motion by values of the force alone; `None` where there is none.
+/// The motion by values of the force alone; `None` if there is none.
 fn evaluated(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -49,23 +49,23 @@ fn evaluated(
     let force =
         CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
     let begin = ode::State { t: 0.0, x: start.equilibrium + start.distance, v: 0.0 };
-    let options = ode::Options {
+    let options = ode::IntegrationOptions {
         maximum_step: start.step,
-        ..ode::Options::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
+        ..ode::IntegrationOptions::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
     };
     ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
 }
 
 /// A motion with what is read off it.
 pub(super) struct FreeMotion {
-    motion: Path,
+    motion: FreePath,
     equilibrium: f64,
     end: f64,
     /// Whether it could not be followed as long as it was asked for.
     ends_early: bool,
     /// Times and distances from the equilibrium at which it turns, the start left out.
     pub(super) turns: Vec<(f64, f64)>,
-    /// When and where friction takes hold of it, from the equilibrium.
+    /// Time and position, from the equilibrium, at which friction takes hold of it.
     held: Option<(f64, f64)>,
     /// Times at which it goes through the equilibrium.
     pub(super) crossings: Vec<f64>,
@@ -75,15 +75,15 @@ impl FreeMotion {
     /// Follows the motion.
     ///
     /// # Errors
-    /// It cannot be followed.
-    pub(super) fn of(
+    /// The motion cannot be followed.
+    pub(super) fn follow(
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,
         start: &Start,
     ) -> Result<Self, VerificationError> {
         /// A millionth of the deviations that are told apart.
         const TOLERANCE: f64 = 1e-11;
-        let mut course = Course::of_equation(oscillator);
+        let mut course = TrajectoryRequest::of_equation(oscillator);
         let parameters = course.parameters();
         let known = numbers.iter().filter(|(name, _)| parameters.contains(name));
         course.values = known.map(|(name, value)| (*name, *value)).collect();
@@ -92,15 +92,15 @@ impl FreeMotion {
         course.begin(oscillator.coordinate, start.equilibrium + start.distance)?;
         let motion = course.follow()?;
         let (end, motion) = match motion.end() < start.duration {
-            // A root of the velocity, say, is no power series where it turns; by its values alone
-            // the motion goes on.
+            // A root of the velocity, say, is not a power series where it turns; by its values
+            // alone the motion goes on.
             true => match evaluated(oscillator, numbers, start) {
                 Some(other) if other.end().t > motion.end() => {
-                    (other.end().t, Path::Evaluated(other))
+                    (other.end().t, FreePath::Evaluated(other))
                 }
-                _ => (motion.end(), Path::Series(Box::new(motion))),
+                _ => (motion.end(), FreePath::Series(Box::new(motion))),
             },
-            false => (start.duration, Path::Series(Box::new(motion))),
+            false => (start.duration, FreePath::Series(Box::new(motion))),
         };
         if end < start.step {
             return Err(VerificationError::NotFollowed { time: end });
@@ -114,11 +114,11 @@ impl FreeMotion {
             held: None,
             crossings: vec![],
         };
-        followed.look(start.step);
+        followed.take_sample(start.step);
         Ok(followed)
     }
 
-    /// Why there is no swing where it goes through its equilibrium less than twice.
+    /// The reason why there is no swing where it goes through its equilibrium less than twice.
     pub(super) fn why_no_swing(&self) -> VerificationError {
         match self.ends_early {
             true => VerificationError::NotFollowed { time: self.end },
@@ -126,47 +126,47 @@ impl FreeMotion {
         }
     }
 
-    /// When it ends.
+    /// The time at which it ends.
     pub(super) fn end(&self) -> f64 {
         self.end
     }
 
     /// Distance from the equilibrium and velocity.
-    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let found = match &self.motion {
-            Path::Series(motion) => {
-                motion.at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
+            FreePath::Series(motion) => {
+                motion.states_at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
             }
-            Path::Evaluated(motion) => motion.at(time),
+            FreePath::Evaluated(motion) => motion.phase_point_at(time),
         };
         found.map_or((f64::NAN, f64::NAN), |(x, v)| (x - self.equilibrium, v))
     }
 
     /// Finds where it turns and where it crosses.
-    fn look(&mut self, step: f64) {
+    fn take_sample(&mut self, step: f64) {
         /// More looks than any motion here needs.
         const MOST: usize = 1_000_000;
         let count = (self.end / step).ceil();
         let count = if count.is_finite() { (count as usize).min(MOST) } else { 0 };
         let time = |k: usize| self.end * k as f64 / count as f64;
         let (mut turns, mut crossings) = (vec![], vec![]);
-        let mut before = (0.0, self.at(0.0));
+        let mut before = (0.0, self.phase_point_at(0.0));
         for k in 1..=count {
-            let now = (time(k), self.at(time(k)));
+            let now = (time(k), self.phase_point_at(time(k)));
             let ((t0, (x0, v0)), (t1, (x1, v1))) = (before, now);
             if x0 * x1 < 0.0
-                && let Ok(t) = find_root(|t| self.at(t).0, t0, t1)
+                && let Ok(t) = find_root(|t| self.phase_point_at(t).0, t0, t1)
             {
                 crossings.push(t);
             }
             // At the very start it is at rest, and where friction holds it it does not turn.
             let turned = v0 * v1 < 0.0;
-            if turned && let Ok(t) = find_root(|t| self.at(t).1, t0, t1) {
-                turns.push((t, self.at(t).0));
+            if turned && let Ok(t) = find_root(|t| self.phase_point_at(t).1, t0, t1) {
+                turns.push((t, self.phase_point_at(t).0));
             }
             if v0 != 0.0 && v1 == 0.0 {
                 let t = self.begin_of_rest(t0, t1);
-                self.held = Some((t, self.at(t).0));
+                self.held = Some((t, self.phase_point_at(t).0));
             }
             before = now;
         }
@@ -174,17 +174,18 @@ impl FreeMotion {
         self.crossings = crossings;
     }
 
-    /// When the velocity becomes zero and stays so, between a time at which it moves and one at
-    /// which it is held.
+    /// The time at which the velocity becomes zero and stays so, between a time at which it moves
+    /// and one at which it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
-        let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, Until::Width(0.0));
+        let [_, begin] =
+            bisect(|t| self.phase_point_at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
         begin
     }
 
-    /// When the line through the sizes at the turning points, and where it is held, straight on the
-    /// logarithm, comes down to this size.
+    /// The time at which the line through the sizes at the turning points, and where it is held,
+    /// straight on the logarithm, comes down to this size.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
-        let start = (0.0, self.at(0.0).0);
+        let start = (0.0, self.phase_point_at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)
             .chain(self.turns.iter().copied())
             .chain(self.held)

@@ -17,21 +17,21 @@ use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
-use crate::numeric::ode::{Options, State, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, integrate};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::AMPLITUDE;
 use crate::values::Values;
 
-/// How many periods of the slowest part are followed, and of the fastest at most.
+/// Number of periods of the slowest component that are followed, and of the fastest one at most.
 const PERIODS: [f64; 2] = [10.0, 200.0];
 const SAMPLES: usize = 4096;
 
 /// The formula and the true motion at the same instants.
-struct Followed {
-    formula: Vec<Sample>,
-    truth: Vec<Sample>,
+struct SampledMotions {
+    formula: Vec<TimedState>,
+    truth: Vec<TimedState>,
     numbers: BTreeMap<Symbol, f64>,
     /// The angular frequencies of the drives.
     drives: Vec<f64>,
@@ -40,7 +40,7 @@ struct Followed {
     residual: f64,
 }
 
-impl Followed {
+impl SampledMotions {
     fn new(
         oscillator: &Oscillator,
         solution: &Solution,
@@ -79,8 +79,9 @@ impl Followed {
         let until = (PERIODS[0] * TAU / slow).min(PERIODS[1] * TAU / fast);
         let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v]);
         let begin = State { t: 0.0, x: equilibrium + numbers[&start], v: 0.0 };
-        let path = integrate(acceleration, begin, until, &[], &Options::with_tolerance(1e-12))
-            .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
+        let path =
+            integrate(acceleration, begin, until, &[], &IntegrationOptions::with_tolerance(1e-12))
+                .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
         if !path.is_complete() {
             let time = path.end().t;
             return Err(VerificationError::NotFollowed { time });
@@ -96,7 +97,7 @@ impl Followed {
             formula: times().map(|t| (t, place.call(&[t]), speed.call(&[t]))).collect(),
             truth: times()
                 .map(|t| {
-                    let (x, v) = path.at(t).unwrap_or((f64::NAN, f64::NAN));
+                    let (x, v) = path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN));
                     (t, x, v)
                 })
                 .collect(),
@@ -150,7 +151,7 @@ pub(super) fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    let followed = Followed::new(oscillator, solution, motion, at)?;
+    let followed = SampledMotions::new(oscillator, solution, motion, at)?;
     let deviation = followed.deviation();
     let numbers = &followed.numbers;
     let frequency = followed.drives.first().copied().unwrap_or(0.0);
@@ -184,7 +185,7 @@ pub(super) fn judge(
         steady_states: vec![],
         spurious: 0,
         followed: None,
-        verdict: Verdict::of(deviation.is_some_and(|deviation| deviation <= tolerance)),
+        verdict: Verdict::from_passed(deviation.is_some_and(|deviation| deviation <= tolerance)),
     })
 }
 
@@ -198,6 +199,7 @@ pub(super) fn motions(
     motion: &Expr,
     at: &Values,
 ) -> Result<Motions, VerificationError> {
-    let Followed { formula, truth, .. } = Followed::new(oscillator, solution, motion, at)?;
+    let SampledMotions { formula, truth, .. } =
+        SampledMotions::new(oscillator, solution, motion, at)?;
     Ok(Motions { formula, truth, envelope: None })
 }

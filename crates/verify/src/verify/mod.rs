@@ -46,7 +46,7 @@ pub use transient::Followed;
 pub use validity::{Range, Reach};
 pub use values::{checked, needed_values};
 
-pub use crate::conservative::well::{End, Rim, Well};
+pub use crate::conservative::well::{Well, WellBoundary, WellEnd};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -77,13 +77,13 @@ pub const DEFAULT_TOLERANCE: f64 = 0.01;
 pub enum Verdict {
     /// The frequency is within the tolerance.
     Pass,
-    /// It is not, or it is not real.
+    /// The formula is not within the tolerance, or not real.
     Fail,
 }
 
 impl Verdict {
     /// Passed or not.
-    pub fn of(passed: bool) -> Self {
+    pub fn from_passed(passed: bool) -> Self {
         if passed { Self::Pass } else { Self::Fail }
     }
 
@@ -102,32 +102,33 @@ impl Verdict {
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
-    /// omega by the formula, in the unit of time of the equation; `None` where there is none.
+    /// omega by the formula, in the unit of time of the equation; `None` if there is none.
     pub frequency: Option<f64>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub reason: Option<NoNumbers>,
     /// omega of the true motion.
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
-    /// Which law the frequency comes from: `omega^2`, of which it is the root, or `omega`.
+    /// The law that gives the frequency: `omega^2`, of which it is the root, or `omega`.
     pub judged_on: &'static str,
     /// The error of the other law, the series of omega itself, where the formula has both.
     pub error_of_omega: Option<f64>,
     /// Largest deviation over one true period, as a part of the amplitude.
     pub max_deviation: Option<f64>,
-    /// Why there is none, where the true motion has a period and no path that Runge-Kutta follows.
+    /// The reason why there is none, where the true motion has a period and no path that
+    /// Runge-Kutta follows.
     pub no_deviation: Option<String>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
     /// Measured exponent of the frequency error; of a motion followed from its start that of
-    /// `max_deviation`, over times that grow as what is small becomes less. `None` where rounding
+    /// `max_deviation`, over times that grow as what is small becomes less. `None` if rounding
     /// hides it, and for motions over several wells, which do not become small.
     pub slope: Option<f64>,
     /// Whether the motion runs over several wells through an unstable equilibrium: such motions
     /// have a least amplitude.
     pub over_several_wells: bool,
-    /// Where the formula holds, in words and numbers; what lies outside is marked.
+    /// The ranges in which the formula holds, in words and numbers; values outside are marked.
     pub ranges: Vec<validity::Range>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
     /// they were solved for.
@@ -137,7 +138,7 @@ pub struct Verification {
     pub values: Vec<(Symbol, f64)>,
     /// theta at `t = 0`: pi for a negative amplitude whose size stands in `values`, else 0.
     pub phase: f64,
-    /// The motion in theta; `None` where the frequency is not real or the motion is not known.
+    /// The motion in theta; `None` if the frequency is not real or the motion is not known.
     pub motion: Option<FourierSeries<Doubles>>,
     /// Driven motions: every steady motion by the slow equations, largest first, beside the true
     /// one.
@@ -161,8 +162,8 @@ impl Verification {
             .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
     }
 
-    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all
-    /// of it.
+    /// The verdict with the two numbers that it is about; `None` if the frequency alone says all of
+    /// it.
     pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
@@ -210,12 +211,12 @@ pub fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    judge_to(oscillator, solution, at, tolerance, Extent::Range)
+    judge_to(oscillator, solution, at, tolerance, VerificationScope::Range)
 }
 
-/// How much is judged.
+/// The extent of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum VerificationScope {
     /// The motion at the values given, and nothing else: where motions are periodic, neither how
     /// its error grows nor how far the formula is good, which takes most of the time.
     Motion,
@@ -232,7 +233,7 @@ pub fn judge_to(
     solution: &Solution,
     at: &Values,
     tolerance: f64,
-    extent: Extent,
+    extent: VerificationScope,
 ) -> Result<Verification, VerificationError> {
     let _letters = solution.letters().in_force();
     if let Some(relative) = in_another_coordinate(oscillator, solution)? {
@@ -242,7 +243,7 @@ pub fn judge_to(
         return in_time::judge(oscillator, solution, motion, at, tolerance);
     }
     if let Some(response) = &solution.response {
-        repeats(solution)?;
+        check_common_period(solution)?;
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -264,7 +265,7 @@ pub fn judge_to(
     let numbers = checked_numbers(solution, at)?;
     let solution = settled.as_ref().unwrap_or(solution);
     check_digits(oscillator, solution, &numbers)?;
-    let meant = meant(oscillator, solution, &numbers);
+    let meant = orbit_target(oscillator, solution, &numbers);
     let truth = meant_motion(oscillator, solution, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
@@ -273,7 +274,7 @@ pub fn judge_to(
     let max_deviation = motion
         .as_ref()
         .and_then(|(frequency, motion)| largest_deviation(&truth, *frequency, motion));
-    let physics = Physics::new(oscillator, &meant, &numbers)?;
+    let physics = NumericOscillator::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
         // The mean square of a force that is infinite at rest is nothing but what the samples
@@ -293,7 +294,7 @@ pub fn judge_to(
         symbols.values.retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
         symbols.values.extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
     }
-    let ranged = extent == Extent::Range;
+    let ranged = extent == VerificationScope::Range;
     let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
     let far = far.into_iter().flatten();
     Ok(Verification {
@@ -329,12 +330,12 @@ pub fn judge_to(
             false => motion.by_harmonic(half_a_period),
         }),
         followed: None,
-        verdict: Verdict::of(pass),
+        verdict: Verdict::from_passed(pass),
     })
 }
 
-/// An error where the drives have frequencies without a ratio.
-fn repeats(solution: &Solution) -> Result<(), VerificationError> {
+/// An error if the drives have frequencies without a ratio.
+fn check_common_period(solution: &Solution) -> Result<(), VerificationError> {
     let apart = |note: &Note| matches!(note, Note::ForcedWaves { .. });
     match solution.validity.iter().any(apart) {
         true => Err(VerificationError::NeverRepeats),
@@ -356,10 +357,10 @@ fn in_another_coordinate(
 
 /// The values with the amplitude that the formula is written in, where that of the other convention
 /// is given instead, and what was converted in words: the true motion released at `A` has the first
-/// harmonic `a`. `None` where there is nothing to convert.
+/// harmonic `a`. `None` if there is nothing to convert.
 ///
 /// # Errors
-/// No true periodic motion of the amplitude given.
+/// There is no true periodic motion of this amplitude.
 fn in_convention_of(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -377,9 +378,9 @@ fn in_convention_of(
     if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
         return Ok(None);
     }
-    let meant = Meant { convention: given, ..meant(oscillator, solution, &numbers) };
+    let meant = OrbitTarget { convention: given, ..orbit_target(oscillator, solution, &numbers) };
     let equilibrium = solution.equilibrium.evaluate(&numbers)?;
-    let motion = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let motion = TrueMotion::follow(oscillator, &meant, &numbers)?;
     let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
         return Ok(None);
     };
@@ -436,7 +437,7 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         }
     };
     let expected = || formula_frequency(oscillator, solution, numbers);
-    Meant {
+    OrbitTarget {
         equilibrium: solution.equilibrium.clone(),
         convention: solution.amplitude,
         limit_cycle: solution.limit_cycle.as_ref().map(near),
@@ -451,39 +452,43 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
 fn meant_motion(
     oscillator: &Oscillator,
     solution: &Solution,
-    meant: &Meant,
+    meant: &OrbitTarget,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
-    let found = TrueMotion::of(oscillator, meant, numbers);
+    let found = TrueMotion::follow(oscillator, meant, numbers);
     found.map_err(|error| validity::why_no_motion(oscillator, solution, numbers, error))
 }
 
-/// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+/// The force about the equilibrium of an answer; `None` if a symbol of it has no number.
 fn force_of(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<Force> {
+) -> Option<CentredForce> {
     let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
-    Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
+    CentredForce::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
 
-/// Where a true limit cycle lies and what it does to its neighbours.
+/// Describes the position of a true limit cycle and whether it attracts.
 fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::Range> {
     let cycle = truth.limit_cycle()?;
     let does = if cycle.attracts() { "attracts" } else { "repels" };
     Some(validity::Range {
         text: format!(
             "the true limit cycle turns at {coordinate} = {} and {does}",
-            decimal(cycle.at(0.0).0)
+            decimal(cycle.phase_point_at(0.0).0)
         ),
         outside: false,
     })
 }
 
-/// Why the displacement is not judged, where the true path is not known.
-fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Option<String> {
+/// The reason why the displacement is not judged, where the true path is not known.
+fn unfollowed(
+    truth: &TrueMotion,
+    physics: &NumericOscillator,
+    coordinate: Symbol,
+) -> Option<String> {
     if truth.has_path() {
         return None;
     }
@@ -497,8 +502,8 @@ fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Opti
     Some(format!("Runge-Kutta does not follow the true motion{why}"))
 }
 
-/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path
-/// is not known.
+/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` if the path is
+/// not known.
 fn largest_deviation(
     truth: &TrueMotion,
     frequency: f64,
@@ -512,8 +517,8 @@ fn largest_deviation(
     largest.is_finite().then_some(largest)
 }
 
-/// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero
-/// where the amplitude is free.
+/// A number that is positive if the limit cycle of a formula attracts, negative if it repels, and
+/// zero if the amplitude is free.
 fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let cycle = solution.limit_cycle.as_ref()?;
     let own = cycle.cycles.get(cycle.number.wrapping_sub(1))?;
@@ -523,7 +528,7 @@ fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f6
     own.attracts_where.as_ref()?.evaluate(&numbers).ok()
 }
 
-fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
+fn residual(physics: &NumericOscillator, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
     let velocity = motion.derivative();
     let acceleration = velocity.derivative();
     let (mut defects, mut forces) = (0.0, 0.0);

@@ -1,18 +1,18 @@
 //! The true motion of an equation as it was typed: its period from the energy or the Runge-Kutta
-//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`Meant`]); how a
-//! formula came about is not known here, and `tests/library/layers.rs` holds that wall.
+//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`OrbitTarget`]);
+//! how a formula came about is not known here, and `tests/library/layers.rs` holds that wall.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::VerificationError;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::energy::grows_towards_zero;
 use crate::numeric::ode::root::find_root;
 use crate::numeric::period::{PeriodError, Swing, period_between, swing_with_cuts};
-use crate::numeric::return_map::{Equation, LimitCycle, nearest_limit_cycle};
+use crate::numeric::return_map::{AutonomousEquation, NumericalLimitCycle, nearest_limit_cycle};
 use crate::oscillator::Oscillator;
 use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
@@ -20,29 +20,29 @@ use crate::symbol::Symbol;
 /// Points per period on which motions are compared and their harmonics taken.
 pub(super) const SAMPLES: usize = 1024;
 
-/// Which true motion is meant.
-pub(super) struct Meant {
-    /// What it swings about.
+/// The true motion that an answer is compared with.
+pub(super) struct OrbitTarget {
+    /// The equilibrium about which it oscillates.
     pub(super) equilibrium: Expr,
-    /// What the amplitude measures.
+    /// The definition of its amplitude.
     pub(super) convention: AmplitudeConvention,
-    /// Where it is a limit cycle: near which one.
+    /// The neighbourhood of a limit cycle; `None` for a member of a family of periodic motions.
     pub(super) limit_cycle: Option<NearCycle>,
-    /// About which omega to expect where the energy does not tell the period: how long to wait for
-    /// the return, no more.
+    /// Approximate omega if the energy does not give the period: it only limits the time of the
+    /// return.
     pub(super) frequency: Option<f64>,
 }
 
-/// Where to look for a limit cycle.
+/// The neighbourhood in which a limit cycle is searched.
 pub(super) struct NearCycle {
-    /// About its amplitude.
+    /// Its approximate amplitude.
     pub(super) amplitude: f64,
-    /// Of cycles close to each other it is the one that attracts, or does not; `None` where either
+    /// Whether the cycle attracts, to choose between cycles close to each other; `None` if either
     /// will do.
     pub(super) attracts: Option<bool>,
 }
 
-impl Meant {
+impl OrbitTarget {
     /// The amplitude among the numbers; one where there is none, as for a frequency that is free of
     /// it.
     pub(super) fn amplitude_at(&self, numbers: &BTreeMap<Symbol, f64>) -> f64 {
@@ -53,7 +53,7 @@ impl Meant {
 /// One period of a true motion, from a turning point.
 enum Orbit {
     Swing(Swing),
-    LimitCycle(LimitCycle),
+    LimitCycle(NumericalLimitCycle),
 }
 
 impl Orbit {
@@ -65,10 +65,10 @@ impl Orbit {
     }
 
     /// Displacement and velocity, `t` between zero and the period.
-    fn at(&self, t: f64) -> (f64, f64) {
+    fn phase_point_at(&self, t: f64) -> (f64, f64) {
         match self {
-            Self::Swing(path) => path.at(t).unwrap_or((f64::NAN, f64::NAN)),
-            Self::LimitCycle(cycle) => cycle.at(t),
+            Self::Swing(path) => path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN)),
+            Self::LimitCycle(cycle) => cycle.phase_point_at(t),
         }
     }
 }
@@ -77,7 +77,7 @@ impl Orbit {
 pub(super) struct TrueMotion {
     /// omega.
     pub(super) frequency: f64,
-    /// `None` where the energy gives the period but Runge-Kutta cannot follow the motion.
+    /// `None` if the energy gives the period but Runge-Kutta cannot follow the motion.
     orbit: Option<Orbit>,
     /// The instant of the path that is `t = 0` of the formula.
     shift: f64,
@@ -90,14 +90,15 @@ impl TrueMotion {
     ///
     /// # Errors
     /// There is none, or it cannot be followed.
-    pub(super) fn of(
+    pub(super) fn follow(
         oscillator: &Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
-        /// How well the Runge-Kutta return and the energy must agree for the path to be used.
+        /// Relative agreement of the periods by Runge-Kutta and by the energy that is required to
+        /// use the path.
         const AGREEMENT: f64 = 1e-6;
-        let physics = Physics::new(oscillator, meant, numbers)?;
+        let physics = NumericOscillator::new(oscillator, meant, numbers)?;
         if let Some(near) = &meant.limit_cycle {
             let cycle = physics.limit_cycle(near)?;
             let frequency = TAU / cycle.period();
@@ -129,7 +130,7 @@ impl TrueMotion {
     }
 
     fn from_orbit(
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
         orbit: Orbit,
         frequency: f64,
@@ -144,13 +145,13 @@ impl TrueMotion {
         };
         let amplitude = match (meant.convention, &meant.limit_cycle) {
             (AmplitudeConvention::FirstHarmonic, None) => meant.amplitude_at(numbers).abs(),
-            _ => (orbit.at(0.0).0 - equilibrium).abs(),
+            _ => (orbit.phase_point_at(0.0).0 - equilibrium).abs(),
         };
         Self { frequency, orbit: Some(orbit), shift, amplitude }
     }
 
     /// The limit cycle, where the motion is one.
-    pub(super) fn limit_cycle(&self) -> Option<&LimitCycle> {
+    pub(super) fn limit_cycle(&self) -> Option<&NumericalLimitCycle> {
         match &self.orbit {
             Some(Orbit::LimitCycle(cycle)) => Some(cycle),
             _ => None,
@@ -158,7 +159,7 @@ impl TrueMotion {
     }
 
     /// The amplitude of this free motion by the other convention: of a release the first harmonic,
-    /// of a first harmonic the release; `None` where its path is not known.
+    /// of a first harmonic the release; `None` if its path is not known.
     pub(super) fn amplitude_by_the_other(
         &self,
         convention: AmplitudeConvention,
@@ -167,7 +168,7 @@ impl TrueMotion {
         let orbit = self.orbit.as_ref()?;
         Some(match convention {
             AmplitudeConvention::Initial => first_harmonic(orbit).0,
-            AmplitudeConvention::FirstHarmonic => orbit.at(0.0).0 - equilibrium,
+            AmplitudeConvention::FirstHarmonic => orbit.phase_point_at(0.0).0 - equilibrium,
         })
     }
 
@@ -184,28 +185,29 @@ impl TrueMotion {
     /// The time, the true position and the true velocity at the time `t` of the formula.
     pub(super) fn sample(&self, t: f64) -> (f64, f64, f64) {
         let place = (t + self.shift).rem_euclid(self.period());
-        let (x, v) = self.orbit.as_ref().map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
+        let (x, v) =
+            self.orbit.as_ref().map_or((f64::NAN, f64::NAN), |orbit| orbit.phase_point_at(place));
         (t, x, v)
     }
 }
 
 /// The equation with numbers for its parameters, seen from its equilibrium.
-pub(super) struct Physics {
+pub(super) struct NumericOscillator {
     /// The force at rest.
-    pub(super) rest: Force,
-    /// What velocities add to it, as a function of position and velocity; `None` where the period
-    /// follows from the energy.
+    pub(super) rest: CentredForce,
+    /// The velocity-dependent part of the force as a function of position and velocity; `None` if
+    /// the period follows from the energy.
     moving: Option<CompiledFunction>,
-    /// How long a motion is followed.
+    /// The longest time for which a motion is followed.
     longest: f64,
-    /// What the amplitude measures.
+    /// The definition of the amplitude.
     convention: AmplitudeConvention,
 }
 
-impl Physics {
+impl NumericOscillator {
     pub(super) fn new(
         oscillator: &Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let parts = oscillator.parts()?;
@@ -220,7 +222,7 @@ impl Physics {
             }
         };
         meant.equilibrium.evaluate(numbers)?;
-        let rest = Force::new(&at_rest, x, &meant.equilibrium, numbers, amplitude);
+        let rest = CentredForce::new(&at_rest, x, &meant.equilibrium, numbers, amplitude);
         let mut physics = Self {
             rest: rest
                 .ok_or_else(|| VerificationError::Missing(without_number(oscillator, numbers)))?,
@@ -256,7 +258,7 @@ impl Physics {
     pub(super) fn force_at(&self, y: f64, v: f64) -> f64 {
         let position = self.rest.equilibrium() + y;
         let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
-        self.rest.at(y) + moving
+        self.rest.value(y) + moving
     }
 
     /// The period of a motion released at this distance from the equilibrium, by its energy.
@@ -291,12 +293,12 @@ impl Physics {
     }
 
     /// The true limit cycle nearest to an amplitude.
-    fn limit_cycle(&self, near: &NearCycle) -> Result<LimitCycle, VerificationError> {
+    fn limit_cycle(&self, near: &NearCycle) -> Result<NumericalLimitCycle, VerificationError> {
         let amplitude = near.amplitude;
         let equilibrium = self.rest.equilibrium();
         let step = 1e-3 * amplitude;
-        let slope = (self.rest.at(step) - self.rest.at(-step)) / (2.0 * step);
-        let equation = Equation {
+        let slope = (self.rest.value(step) - self.rest.value(-step)) / (2.0 * step);
+        let equation = AutonomousEquation {
             acceleration: &|x, v| -self.force_at(x - equilibrium, v),
             equilibrium,
             amplitude,
@@ -351,7 +353,7 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     let period = orbit.period();
     let sample = |k: usize| {
         let phase = k as f64 / SAMPLES as f64;
-        let x = orbit.at(period * phase).0;
+        let x = orbit.phase_point_at(period * phase).0;
         (x * (TAU * phase).cos(), x * (TAU * phase).sin())
     };
     let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
@@ -361,12 +363,12 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
 /// omega of the true motion, without its path where energy alone gives it.
 pub(super) fn true_frequency(
     oscillator: &Oscillator,
-    meant: &Meant,
+    meant: &OrbitTarget,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
-    let physics = Physics::new(oscillator, meant, numbers)?;
+    let physics = NumericOscillator::new(oscillator, meant, numbers)?;
     match meant.limit_cycle {
-        Some(_) => TrueMotion::of(oscillator, meant, numbers).map(|truth| truth.frequency),
+        Some(_) => TrueMotion::follow(oscillator, meant, numbers).map(|truth| truth.frequency),
         None => physics.frequency(meant.amplitude_at(numbers)),
     }
 }

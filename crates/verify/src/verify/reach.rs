@@ -1,5 +1,5 @@
-//! How far a formula is good: the first amplitude at which the error of its frequency crosses the
-//! tolerance.
+//! The amplitude range of a formula: the first amplitude at which the error of its frequency
+//! crosses the tolerance.
 //!
 //! The error is followed from rest outwards. Between two points it is taken to be as straight as
 //! its value in the middle says: where that leaves room for a crossing the stretch is halved. Where
@@ -13,9 +13,9 @@ use super::formula::formula_frequency_along;
 use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;
-use crate::method::numbers::Known;
-use crate::method::table::{Entry, Motion};
-use crate::numeric::ode::root::{Until, bisect};
+use crate::method::numbers::NumbersCache;
+use crate::method::table::{MethodEntry, MotionEvaluation};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -48,28 +48,28 @@ pub(super) fn places_of_law(
     cuts.into_iter().map(|place| place * to.signum()).filter(|size| *size > 0.0).collect()
 }
 
-/// How far a formula is good; amplitudes have their sign.
+/// The amplitude range in which a formula is within the tolerance; amplitudes have their sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reach {
-    /// At every amplitude looked at, up to this one.
+pub enum AmplitudeReach {
+    /// All amplitudes of the search, up to this one.
     Everywhere(f64),
-    /// Up to this amplitude.
+    /// Amplitudes up to this one.
     UpTo(f64),
     /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a
     /// law that is outside near rest.
     Between {
-        /// From this one on.
+        /// The lower end.
         from: f64,
-        /// Up to this one, or as far as was looked at.
+        /// The upper end, or the end of the search.
         to: f64,
         /// Whether no crossing was found up there.
         open: bool,
     },
-    /// At no amplitude.
+    /// No amplitude.
     Nowhere,
 }
 
-impl Reach {
+impl AmplitudeReach {
     /// Whether an amplitude is outside.
     pub fn leaves_out(self, amplitude: f64) -> bool {
         match self {
@@ -119,14 +119,14 @@ impl Reach {
     }
 }
 
-/// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be
+/// The range from rest in which the frequency stays within the tolerance; `None` if it cannot be
 /// followed.
-pub(super) fn reach(
+pub(super) fn amplitude_reach(
     oscillator: &Oscillator,
     solution: &Solution,
     truth: &TrueBackbone,
     tolerance: f64,
-) -> Option<Reach> {
+) -> Option<AmplitudeReach> {
     // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve
     // to follow.
     let fixed =
@@ -136,12 +136,14 @@ pub(super) fn reach(
     }
     // Over the many hilltops of a force that waves a balance has many solutions, and following it
     // finds one or another.
-    if Entry::of(solution.method).motion == Motion::Balance && truth.has_waves_of_hilltops() {
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Balance
+        && truth.has_waves_of_hilltops()
+    {
         return None;
     }
     let mut amplitudes = truth.amplitudes();
-    let asked = truth.asked();
-    let known = Known::default();
+    let asked = truth.given_amplitude();
+    let known = NumbersCache::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;
         let frequency =
@@ -153,14 +155,20 @@ pub(super) fn reach(
         let good = error(asked.abs())?.abs() <= tolerance;
         let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
         return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
-            inner if inner > 0.0 => {
-                Reach::Between { from: inner.copysign(asked), to: last.copysign(asked), open: true }
-            }
-            _ => Reach::Everywhere(last.copysign(asked)),
+            inner if inner > 0.0 => AmplitudeReach::Between {
+                from: inner.copysign(asked),
+                to: last.copysign(asked),
+                open: true,
+            },
+            _ => AmplitudeReach::Everywhere(last.copysign(asked)),
         });
     }
-    amplitudes.extend(places_of_law(solution, truth.numbers, asked.signum() * truth.farthest()));
-    amplitudes.retain(|size| *size <= truth.farthest());
+    amplitudes.extend(places_of_law(
+        solution,
+        truth.numbers,
+        asked.signum() * truth.search_limit(),
+    ));
+    amplitudes.retain(|size| *size <= truth.search_limit());
     amplitudes.sort_by(f64::total_cmp);
     if truth.smallest_amplitude() > 0.0 {
         amplitudes.retain(|size| *size > truth.smallest_amplitude());
@@ -201,10 +209,10 @@ pub(super) fn reach(
     }
     for pair in points.windows(2) {
         if let Some(end) = follow.first_crossing(pair[0], pair[1]) {
-            return Some(Reach::UpTo(signed(end)));
+            return Some(AmplitudeReach::UpTo(signed(end)));
         }
     }
-    Some(Reach::Everywhere(signed(last)))
+    Some(AmplitudeReach::Everywhere(signed(last)))
 }
 
 /// The range about the amplitude asked for in which the frequency stays within the tolerance, or,
@@ -214,14 +222,14 @@ fn about_the_amplitude(
     amplitudes: &[f64],
     asked: f64,
     tolerance: f64,
-) -> Option<Reach> {
+) -> Option<AmplitudeReach> {
     // Close to the separatrix the truth may have no digits.
     let points: Vec<(f64, f64)> =
         amplitudes.iter().filter_map(|&size| Some((size, error(size)?))).collect();
     let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
     let own = points.iter().position(|point| point.0 == asked.abs() && good(point));
     let Some(start) = own.or_else(|| points.iter().rposition(good)) else {
-        return (!points.is_empty()).then_some(Reach::Nowhere);
+        return (!points.is_empty()).then_some(AmplitudeReach::Nowhere);
     };
     let follow = |pairs: Vec<[(f64, f64); 2]>| {
         let follow = Follow { error, tolerance, evaluations: std::cell::Cell::new(0) };
@@ -235,7 +243,7 @@ fn about_the_amplitude(
         follow(points[..=start].windows(2).rev().map(|pair| [pair[1], pair[0]]).collect());
     let last = points.last().map_or(asked, |point| point.0);
     let signed = |size: f64| size.copysign(asked);
-    Some(Reach::Between {
+    Some(AmplitudeReach::Between {
         from: signed(inwards.unwrap_or(points[0].0)),
         to: signed(outwards.unwrap_or(last)),
         open: outwards.is_none(),
@@ -252,11 +260,11 @@ struct Follow<'a> {
 impl Follow<'_> {
     /// The first crossing between two points, of which the first is good.
     fn first_crossing(&self, from: (f64, f64), to: (f64, f64)) -> Option<f64> {
-        /// How many stretches may be halved in all, and how often one.
+        /// Largest number of bisections in all, and of one interval.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
-        /// Of the tolerance: where the error is larger, one look at the middle is not enough, for
-        /// it may bend to both sides.
+        /// Ratio of the error to the tolerance beyond which one sample in the middle is not enough,
+        /// because the error may bend to both sides.
         const CLOSE: f64 = 0.3;
         const LOOKS: usize = 3;
         let mut open = vec![(from, to, 0)];
@@ -269,7 +277,7 @@ impl Follow<'_> {
                 continue;
             }
             let Some(value) = (self.error)(middle) else {
-                // Where nothing is known in between the range ends with what is.
+                // If nothing is known in between, the range ends with the last known amplitude.
                 if high.1.abs() > self.tolerance {
                     return Some(low.0);
                 }
@@ -288,7 +296,7 @@ impl Follow<'_> {
                 continue;
             }
             if value.abs() > self.tolerance {
-                // What lies beyond the middle does not matter any more.
+                // Everything beyond the middle is irrelevant once an error is found there.
                 open.clear();
                 if bend.is_finite() && bend < 0.1 * self.tolerance {
                     return Some(self.crossing(low, middle));
@@ -310,7 +318,7 @@ impl Follow<'_> {
     fn crossing(&self, good: (f64, f64), bad: (f64, f64)) -> f64 {
         let is_good =
             |size: f64| (self.error)(size).is_some_and(|error| error.abs() <= self.tolerance);
-        let [last, _] = bisect(is_good, good.0, bad.0, Until::Halvings(14));
+        let [last, _] = bisect(is_good, good.0, bad.0, BisectionStop::Halvings(14));
         last
     }
 }

@@ -12,7 +12,7 @@ use super::VerificationError;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Options as Integration, Point, integrate_first_order};
+use crate::numeric::ode::{IntegrationOptions as Integration, Point, integrate_first_order};
 use crate::solution::modulation::Release;
 use crate::solution::{AmplitudeConvention, Method, Modulation, Solution};
 use crate::symbol::Symbol;
@@ -21,13 +21,13 @@ use crate::symbol::Symbol;
 const MOST_PERIODS: f64 = 50.0;
 /// Periods that are always followed.
 const LEAST_PERIODS: f64 = 3.0;
-/// How often in a period a motion is looked at.
+/// Samples of a motion per period.
 pub(super) const LOOKS: f64 = 32.0;
 
 /// The slow equations with numbers, solved from the start.
 pub(super) struct SlowMotion {
     /// Amplitude and phase at a time.
-    slow: Slow,
+    slow: SlowSolution,
     /// The motion about the equilibrium in amplitude and phase, and its rate.
     place: CompiledFunction,
     speed: CompiledFunction,
@@ -36,14 +36,14 @@ pub(super) struct SlowMotion {
     pub(super) equilibrium: f64,
     /// The amplitude at the start.
     start: f64,
-    /// What the phase begins with beside its own start: pi for a negative one, whose size the
-    /// formula takes.
+    /// An angle added to the initial phase: pi for a negative amplitude, whose size the formula
+    /// takes.
     turn: f64,
     /// 2 pi over the rate of the phase there.
     pub(super) period: f64,
     /// The amplitudes that stay.
     steady: Vec<f64>,
-    /// When the amplitude is zero, by its closed form.
+    /// The time at which the amplitude is zero, by its closed form.
     ends: f64,
     /// Whether the order is so high that it tells by how much the motion turns beside the phases 0
     /// and pi, for its amplitude drifts.
@@ -53,8 +53,8 @@ pub(super) struct SlowMotion {
 /// Amplitude and phase at a time.
 type SlowPath = Box<dyn Fn(f64) -> Option<[f64; 2]>>;
 
-/// How amplitude and phase are known.
-enum Slow {
+/// The representation of amplitude and phase.
+enum SlowSolution {
     /// In closed form, in the time.
     Closed([CompiledFunction; 2]),
     /// Point by point, at equal steps, with as many rates.
@@ -62,11 +62,11 @@ enum Slow {
 }
 
 /// The numbers of a motion released at rest.
-struct Numbers {
+struct ReleaseValues {
     /// Parameters, definitions and the amplitude at the start, which is the size of one that is
     /// turned.
     known: BTreeMap<Symbol, f64>,
-    /// The same as exact numbers.
+    /// These values as exact numbers.
     exact: BTreeMap<Symbol, Expr>,
     /// Whether a negative amplitude is taken as half a turn.
     turned: bool,
@@ -74,10 +74,10 @@ struct Numbers {
     closed_forms_hold: bool,
 }
 
-impl Numbers {
+impl ReleaseValues {
     /// # Errors
     /// A definition without a value.
-    fn of(
+    fn new(
         solution: &Solution,
         modulation: &Modulation,
         numbers: &BTreeMap<Symbol, f64>,
@@ -102,7 +102,7 @@ impl Numbers {
         Ok(Self { exact: exact.collect(), known, turned, closed_forms_hold: !negative || simple })
     }
 
-    fn put(&self, expression: &Expr) -> Result<Expr, ExprError> {
+    fn evaluate_known(&self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.substitute_all(&self.exact)
     }
 
@@ -120,10 +120,10 @@ impl Numbers {
     }
 
     /// Amplitude and phase in closed form, where there is one that holds.
-    fn closed(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
+    fn closed_form(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
         let transient = modulation.transient.as_ref().filter(|_| self.closed_forms_hold)?;
         let compiled = |expression: &Expr| {
-            CompiledFunction::new(&self.put(expression).ok()?, &[Symbol::new("t")]).ok()
+            CompiledFunction::new(&self.evaluate_known(expression).ok()?, &[Symbol::new("t")]).ok()
         };
         Some([compiled(&transient.amplitude)?, compiled(transient.phase.as_ref()?)?])
     }
@@ -149,11 +149,13 @@ impl SlowMotion {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let numbers = Numbers::of(solution, modulation, numbers)?;
+        let numbers = ReleaseValues::new(solution, modulation, numbers)?;
         let (a, theta) = (modulation.amplitude, solution.phase());
-        let place = numbers.put(&displacement(solution, theta)?)?;
-        let rates =
-            [numbers.put(&modulation.amplitude_rate)?, numbers.put(&modulation.phase_rate)?];
+        let place = numbers.evaluate_known(&displacement(solution, theta)?)?;
+        let rates = [
+            numbers.evaluate_known(&modulation.amplitude_rate)?,
+            numbers.evaluate_known(&modulation.phase_rate)?,
+        ];
         let moved = |of: &Expr| -> Result<Expr, ExprError> {
             let slopes = [of.differentiate(a)?, of.differentiate(theta)?];
             Ok(&slopes[0] * &rates[0] + &slopes[1] * &rates[1])
@@ -167,9 +169,11 @@ impl SlowMotion {
             return Err(VerificationError::NoSlowFrequency);
         }
         let period = TAU / frequency;
-        let slow = match numbers.closed(modulation) {
-            Some(closed) => Slow::Closed(closed),
-            None => Slow::Followed(followed(a, &rates, start, 2.0 * MOST_PERIODS * period)?),
+        let slow = match numbers.closed_form(modulation) {
+            Some(closed) => SlowSolution::Closed(closed),
+            None => {
+                SlowSolution::Followed(followed(a, &rates, start, 2.0 * MOST_PERIODS * period)?)
+            }
         };
         let transient = modulation.transient.as_ref();
         let ends = transient.and_then(|transient| transient.ends.as_ref());
@@ -195,15 +199,15 @@ impl SlowMotion {
     /// Amplitude and phase; the amplitude zero once it has come down to that.
     fn slow_at(&self, t: f64) -> [f64; 2] {
         let [amplitude, phase] = match &self.slow {
-            Slow::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
-            Slow::Followed(of) => of(t).unwrap_or([f64::NAN; 2]),
+            SlowSolution::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
+            SlowSolution::Followed(of) => of(t).unwrap_or([f64::NAN; 2]),
         };
         let over = t >= self.ends || amplitude * self.start <= 0.0;
         [if over { 0.0 } else { amplitude }, phase + self.turn]
     }
 
     /// Distance from the equilibrium and velocity.
-    pub(super) fn at(&self, t: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let at = self.slow_at(t);
         match at[0] == 0.0 {
             true => (0.0, 0.0),
@@ -211,7 +215,7 @@ impl SlowMotion {
         }
     }
 
-    /// The rate of the velocity; `None` where it cannot be written down.
+    /// The rate of the velocity; `None` if it cannot be written down.
     pub(super) fn acceleration(&self, t: f64) -> Option<f64> {
         let acceleration = self.acceleration.as_ref()?;
         let at = self.slow_at(t);
@@ -224,7 +228,7 @@ impl SlowMotion {
         if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
     }
 
-    /// Where the formula turns on the side of a true turning point.
+    /// The extremum of the formula on the side of a true turning point.
     pub(super) fn turned(&self, t: f64, x: f64) -> f64 {
         let turn = |side: f64| {
             let speed = |phase: f64| self.speed.call(&[self.slow_at(t)[0], phase]);
@@ -242,12 +246,12 @@ impl SlowMotion {
     pub(super) fn crossings(&self, until: f64) -> Vec<f64> {
         let count = (LOOKS * until / self.period).ceil().max(1.0) as usize;
         let time = |k: usize| until * k as f64 / count as f64;
-        let mut before = (0.0, self.at(0.0).0);
+        let mut before = (0.0, self.phase_point_at(0.0).0);
         let mut found = vec![];
         for k in 1..=count {
-            let now = (time(k), self.at(time(k)).0);
+            let now = (time(k), self.phase_point_at(time(k)).0);
             if before.1 * now.1 < 0.0
-                && let Ok(t) = find_root(|t| self.at(t).0, before.0, now.0)
+                && let Ok(t) = find_root(|t| self.phase_point_at(t).0, before.0, now.0)
             {
                 found.push(t);
             }
@@ -256,12 +260,12 @@ impl SlowMotion {
         found
     }
 
-    /// When the amplitude comes down to a size.
+    /// The time at which the amplitude comes down to a size.
     pub(super) fn falls_to(&self, size: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.slow_at(t)[0].abs(), size, longest)
     }
 
-    /// When the turning points come down to a distance from the equilibrium.
+    /// The time at which the turning points come down to a distance from the equilibrium.
     pub(super) fn turns_at(&self, distance: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.turned(t, 1.0).abs(), distance, longest)
     }
@@ -277,7 +281,7 @@ impl SlowMotion {
         find_root(excess, time(place - 1), time(place)).ok()
     }
 
-    /// How long it is worth following, and why no longer.
+    /// The time for which the motion is worth following, and the reason for its end.
     pub(super) fn duration(&self) -> (f64, &'static str) {
         let longest = MOST_PERIODS * self.period;
         let start = self.start.abs();

@@ -1,4 +1,4 @@
-//! The same question with all that is small halved again and again, by which the order of an error
+//! The problem with all small quantities halved again and again, from which the order of an error
 //! is measured.
 //!
 //! ```text
@@ -34,7 +34,7 @@ pub(super) struct Smaller {
     pub(super) numbers: BTreeMap<Symbol, f64>,
 }
 
-/// All that is small halved so many times; `None` where that cannot be done.
+/// All that is small halved this many times; `None` if that cannot be done.
 pub(super) fn smaller(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -67,7 +67,8 @@ fn resonance(solution: &Solution) -> Option<&Resonance> {
     solution.modulation.as_ref()?.resonance.as_ref()
 }
 
-/// What counts as small beside the small parameters of a driven motion, the detuning aside.
+/// The quantities that are small beside the small parameters of a driven motion, the detuning
+/// aside.
 fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Expr> {
     let detuning = Expr::from(resonance.detuning.symbol);
     let notes = solution.validity.iter();
@@ -140,8 +141,8 @@ fn by_numbers(
     factor: f64,
 ) -> Option<Smaller> {
     let in_amplitude = is_small_in_amplitude(solution);
-    // What balances the nonlinear terms counts as a power of the amplitude, whose square is what is
-    // halved.
+    // The drive that balances the nonlinear terms scales with a power of the amplitude, and the
+    // square of the amplitude is halved.
     let power = if in_amplitude { power_of_balance(oscillator, solution.order) } else { 2 };
     let factor_of_balance = factor.powf(f64::from(power) / 2.0);
     let number = |value: f64| from_f64(value).map(Expr::number);
@@ -228,8 +229,8 @@ fn rate_of(term: &Expr) -> Option<f64> {
     Some(rate.abs())
 }
 
-/// What is left of a driven term in the smaller question: a force far from resonance counts as the
-/// amplitude does, any other as what it has to balance.
+/// The factor of a driven term in the smaller problem: a force far from resonance scales with the
+/// amplitude, any other with the terms that it has to balance.
 fn drive_left(
     term: &Expr,
     own: [Symbol; 2],
@@ -247,8 +248,8 @@ fn drive_left(
     Some(scale.powi(wanted - (degree - 1)))
 }
 
-/// The lowest power of the coordinate and the velocity together; `None` where they stand in what
-/// has no series.
+/// The lowest power of the coordinate and the velocity together; `None` if they stand in what has
+/// no series.
 fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
     /// The series of a function begins below.
     const HIGHEST: u32 = 4;

@@ -81,8 +81,8 @@ pub(super) fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let symbols = symbol_values(oscillator, solution, numbers, None);
-    let judged = Judged::of(oscillator, solution, modulation, numbers)?;
-    let Judged { slow, truth, until, reason, start } = &judged;
+    let judged = TransientPair::new(oscillator, solution, modulation, numbers)?;
+    let TransientPair { slow, truth, until, reason, start } = &judged;
     let crossings = slow.crossings(*until);
     let own: Vec<f64> = truth.crossings.iter().copied().filter(|t| t <= until).collect();
     let count = own.len().min(crossings.len());
@@ -143,7 +143,7 @@ pub(super) fn judge(
             ),
             true_tenth: truth.falls_to(start.abs() / 10.0),
         }),
-        verdict: Verdict::of(pass),
+        verdict: Verdict::from_passed(pass),
     })
 }
 
@@ -157,17 +157,17 @@ pub(super) fn motions(
     modulation: &Modulation,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Motions, VerificationError> {
-    let judged = Judged::of(oscillator, solution, modulation, numbers)?;
+    let judged = TransientPair::new(oscillator, solution, modulation, numbers)?;
     let rest = judged.slow.equilibrium;
     let count = samples(judged.until, judged.slow.period);
     let time = |k: usize| judged.until * k as f64 / count as f64;
-    let sample = |t: f64, (y, v): (f64, f64)| -> Sample { (t, rest + y, v) };
+    let sample = |t: f64, (y, v): (f64, f64)| -> TimedState { (t, rest + y, v) };
     let times = || (0..=count).map(time);
     let envelope = |t: f64| [0.0, PI].map(|phase| (t, rest + judged.slow.at_phase(t, phase)));
     let [upper, lower] = [0, 1].map(|side| times().map(|t| envelope(t)[side]).collect());
     Ok(Motions {
-        formula: times().map(|t| sample(t, judged.slow.at(t))).collect(),
-        truth: times().map(|t| sample(t, judged.truth.at(t))).collect(),
+        formula: times().map(|t| sample(t, judged.slow.phase_point_at(t))).collect(),
+        truth: times().map(|t| sample(t, judged.truth.phase_point_at(t))).collect(),
         envelope: Some([upper, lower]),
     })
 }
@@ -179,7 +179,7 @@ fn samples(until: f64, period: f64) -> usize {
     if count.is_finite() { (count as usize).clamp(64, 8192) } else { 64 }
 }
 
-/// The largest of numbers that are all finite; `None` where there is none.
+/// The largest of numbers that are all finite; `None` if there is none.
 fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     let found = values.fold(None, |largest: Option<f64>, value| {
         Some(match largest {
@@ -191,7 +191,7 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Formula and truth from one start.
-struct Judged {
+struct TransientPair {
     slow: SlowMotion,
     truth: FreeMotion,
     until: f64,
@@ -199,16 +199,16 @@ struct Judged {
     start: f64,
 }
 
-/// How far a formula is off, over the amplitude at the start.
+/// Errors of a formula, over the initial amplitude.
 struct Errors {
-    /// At the turning points.
+    /// The error at the turning points.
     amplitude: Option<f64>,
-    /// At any time.
+    /// The error at any time.
     deviation: Option<f64>,
 }
 
-impl Judged {
-    fn of(
+impl TransientPair {
+    fn new(
         oscillator: &Oscillator,
         solution: &Solution,
         modulation: &Modulation,
@@ -230,7 +230,7 @@ impl Judged {
         duration: f64,
     ) -> Result<Self, VerificationError> {
         let start = numbers.get(&AmplitudeConvention::Initial.symbol()).copied().unwrap_or(1.0);
-        let truth = FreeMotion::of(
+        let truth = FreeMotion::follow(
             oscillator,
             numbers,
             &Start {
@@ -252,11 +252,13 @@ impl Judged {
         let times = (0..=count).map(|k| until * k as f64 / count as f64);
         Errors {
             amplitude: largest(apart),
-            deviation: largest(times.map(|t| (slow.at(t).0 - truth.at(t).0).abs() / start)),
+            deviation: largest(
+                times.map(|t| (slow.phase_point_at(t).0 - truth.phase_point_at(t).0).abs() / start),
+            ),
         }
     }
 
-    /// What the formula leaves of the equation, over the force.
+    /// Root mean square residual of the formula in the equation, over that of the force.
     fn residual(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
         let known = numbers.iter();
         let known =
@@ -268,7 +270,7 @@ impl Judged {
         let (mut defects, mut forces) = (0.0, 0.0);
         for k in 0..count {
             let t = self.until * k as f64 / count as f64;
-            let (y, v) = self.slow.at(t);
+            let (y, v) = self.slow.phase_point_at(t);
             let force = force.call(&[self.slow.equilibrium + y, v]);
             let defect = self.slow.acceleration(t)? + force;
             defects += defect * defect;
@@ -284,15 +286,16 @@ struct Slopes {
     deviation: Option<f64>,
 }
 
-/// What is small is halved again and again, and the motion followed twice as long each time.
+/// Measures the exponents of the errors: the small quantities are halved again and again, and the
+/// motion is followed twice as long each time.
 fn slopes(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    judged: &Judged,
+    judged: &TransientPair,
 ) -> Slopes {
     const HALVINGS: i32 = 4;
-    /// How long the first motion is followed: the last one is as long as all before.
+    /// Duration of the first motion in periods; it is doubled with each halving.
     const PERIODS: f64 = 8.0;
     /// The truth is good to 1e-11, and a hundred times that is measured to a per cent.
     const FLOOR: f64 = 1e-9;
@@ -305,20 +308,25 @@ fn slopes(
         let slow =
             SlowMotion::new(&smaller.solution, smaller.solution.slow()?, &smaller.numbers).ok()?;
         let until = first * 2.0_f64.powi(halving);
-        let judged =
-            Judged::followed(&smaller.oscillator, &smaller.numbers, slow, (until, ""), until)
-                .ok()?;
+        let judged = TransientPair::followed(
+            &smaller.oscillator,
+            &smaller.numbers,
+            slow,
+            (until, ""),
+            until,
+        )
+        .ok()?;
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
-    // Where the first cannot be had no other is asked for.
+    // Without the first error the others are not needed.
     for halving in 0..HALVINGS {
         match error(halving) {
             Some(found) => errors.push(found),
             None => break,
         }
     }
-    // What is halved is the square of a small amplitude.
+    // The halved quantity is the square of a small amplitude.
     let power = if is_small_in_amplitude(solution) { 2.0 } else { 1.0 };
     let measured = |of: fn(&Errors) -> Option<f64>| {
         let errors: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Where a formula holds: the well of the true motion, the amplitude at which a law loses its
+//! The validity of a formula: the well of the true motion, the amplitude at which a law loses its
 //! frequency, the radius of convergence of its series, and the range in which its error stays
 //! small.
 
@@ -8,13 +8,13 @@ use super::backbone::TrueBackbone;
 use super::bounds::bounds;
 use super::convergence::convergence;
 use super::reach;
-use super::{VerificationError, force_of, meant};
-use crate::conservative::force::Force;
+use super::{VerificationError, force_of, orbit_target};
+use crate::conservative::force::CentredForce;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
 use crate::method::inertia;
 use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
-use crate::method::table::{Entry, Sees};
+use crate::method::table::{ForceRepresentation, MethodEntry};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -22,7 +22,7 @@ use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::of_frequency;
 
-pub use super::reach::Reach;
+pub use super::reach::AmplitudeReach;
 
 /// A place where the formula stops to hold, or another remark on its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Range {
     pub outside: bool,
 }
 
-/// What is known of where `solution` holds at these numbers.
+/// Collects the known limits of validity of `solution` at these numbers.
 pub(super) fn ranges(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -44,9 +44,10 @@ pub(super) fn ranges(
 ) -> Vec<Range> {
     let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
     if let Some(cycle) = &solution.limit_cycle {
-        let series =
-            Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
-        // Where nothing feeds the motion there is no cycle to expand from.
+        let series = MethodEntry::for_method(solution.method).sees
+            == ForceRepresentation::Derivatives
+            && cycle.small_with.is_empty();
+        // Without self-excitation there is no cycle to expand from.
         let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
         let found = (series && feeds).then(|| convergence(oscillator, solution, numbers)).flatten();
         ranges.extend(found.map(|range| {
@@ -77,10 +78,10 @@ pub(super) fn ranges(
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
         _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
     }
-    if Entry::of(solution.method).sees == Sees::Derivatives {
+    if MethodEntry::for_method(solution.method).sees == ForceRepresentation::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
-    if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {
+    if let Some(reach) = reach::amplitude_reach(oscillator, solution, &truth, tolerance) {
         ranges.push(Range {
             text: reach.in_words(tolerance, solution.amplitude.symbol()),
             outside: reach.leaves_out(amplitude),
@@ -113,7 +114,7 @@ pub(super) fn of_equation(
     })
 }
 
-/// How good the integral of a law by quadrature is.
+/// The error of the numerical integral of a law, as a remark.
 fn integral_error(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -133,7 +134,7 @@ pub(super) fn backbone<'a>(
     numbers: &'a BTreeMap<Symbol, f64>,
 ) -> TrueBackbone<'a> {
     let well = well_of(oscillator, solution, numbers);
-    TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
+    TrueBackbone::new(oscillator, &orbit_target(oscillator, solution, numbers), numbers, well)
 }
 
 /// Whether the motions that an answer is meant for do not begin at rest, but run over several
@@ -161,21 +162,21 @@ fn well_of(
     }
     let forces = inertia::forces(oscillator)?;
     let [weighted, force] = forces.map(|force| {
-        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude)
+        CentredForce::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude)
     });
     Well::with_inertia(&weighted?, &force?, amplitude)
 }
 
-/// Why there is no motion to judge by, with the amplitudes at which there is one where the inertia
-/// depends on the position: Runge-Kutta alone does not know them. Where energy is conserved as it
-/// stands the error says so already.
+/// The reason why there is no motion to judge by, with the amplitudes at which there is one where
+/// the inertia depends on the position: Runge-Kutta alone does not know them. Where energy is
+/// conserved as it stands the error says so already.
 pub(super) fn why_no_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     error: VerificationError,
 ) -> VerificationError {
-    /// As near to the end of the well, relatively, as its place is known.
+    /// Relative distance from the end of the well within which its position is known.
     const ON: f64 = 1e-9;
     let VerificationError::Period(lost) = error else {
         return error;
@@ -246,7 +247,7 @@ fn vanishing(
     limit: f64,
 ) -> Option<Range> {
     const STEPS: usize = 256;
-    /// How far the search goes, in amplitudes, where the motion has no escape.
+    /// Range of the search in amplitudes, if the motion has no escape.
     const FARTHEST: f64 = 100.0;
     let symbol = solution.amplitude.symbol();
     let amplitude = *numbers.get(&symbol)?;

@@ -4,7 +4,7 @@ use pulp::NullaryFnOnce;
 
 use super::Moduli;
 
-/// How many residues stand side by side.
+/// Number of residues side by side.
 pub const WIDTH: usize = 8;
 
 /// Eight residues, of one prime or of eight.
@@ -14,23 +14,22 @@ pub const WIDTH: usize = 8;
 pub struct Lanes(pub [u64; WIDTH]);
 
 impl Lanes {
-    /// The same eight times.
+    /// One value in all eight lanes.
     #[inline(always)]
     pub fn all(value: u64) -> Self {
         Self([value; WIDTH])
     }
 }
 
-/// How eight products at a time are summed. A sum is kept unreduced: that is where the speed comes
-/// from.
+/// Sums of products of eight residues at a time. A sum is kept unreduced, which makes it fast.
 pub trait Arithmetic: Copy + Send + Sync {
     /// The primes lie between half of `2^BITS` and `2^BITS`.
     const BITS: u32;
-    /// Of `Modulus::new`.
+    /// The radix of `Modulus::new`.
     const RADIX: u32;
     /// Digits that may be multiplied by a residue and summed as residues are.
     const DIGIT: u32;
-    /// After so many products a sum has to be [carried](Self::carry).
+    /// After this many products a sum has to be [carried](Self::carry).
     const RUN: usize;
     /// Eight sums of products.
     type Sum: Copy;

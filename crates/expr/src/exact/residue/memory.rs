@@ -6,7 +6,7 @@
 
 use super::Lanes;
 
-/// Room for so many lanes, all zero.
+/// Room for this many lanes, all zero.
 pub struct Memory {
     pages: Pages,
 }
@@ -14,14 +14,14 @@ pub struct Memory {
 enum Pages {
     Usual(Vec<Lanes>),
     #[cfg(target_os = "linux")]
-    Large(large::Large),
+    Large(large::HugePages),
 }
 
 impl Memory {
     /// As much as that.
     pub fn zeroed(count: usize) -> Self {
         #[cfg(target_os = "linux")]
-        if let Some(large) = large::Large::zeroed(count) {
+        if let Some(large) = large::HugePages::zeroed(count) {
             return Self { pages: Pages::Large(large) };
         }
         Self { pages: Pages::Usual(vec![Lanes::default(); count]) }
@@ -47,17 +47,17 @@ mod large {
 
     /// A large page, in bytes.
     const PAGE: usize = 2 << 20;
-    /// Below so many bytes the zeros of a whole large page cost more than it spares.
+    /// Number of bytes below which the zeros of a whole large page cost more than it spares.
     const LEAST: usize = PAGE / 2;
 
     /// A mapping with the bytes that are used, from the beginning of a large page on.
-    pub struct Large {
+    pub struct HugePages {
         mapping: MmapMut,
         used: Range<usize>,
     }
 
-    impl Large {
-        /// `None` where it is little, or where there is none.
+    impl HugePages {
+        /// `None` if it is little, or if there is none.
         pub fn zeroed(count: usize) -> Option<Self> {
             let bytes = count.checked_mul(size_of::<Lanes>())?;
             if bytes < LEAST {

@@ -40,24 +40,24 @@ use super::Integer;
 
 /// Work that is written once for every arithmetic.
 pub trait Work {
-    /// What comes out.
+    /// The result of the work.
     type Output;
 
     /// Does it.
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
 }
 
 /// Does the work by the widest arithmetic of this processor.
 pub fn by_widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(wide) = wide::Wide::try_new() {
-        return work.by(wide);
+        return work.run(wide);
     }
     #[cfg(target_arch = "x86_64")]
     if let Some(narrow) = narrow::Narrow::try_new() {
-        return work.by(narrow);
+        return work.run(narrow);
     }
-    work.by(portable::Portable)
+    work.run(portable::Portable)
 }
 
 /// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and
@@ -270,7 +270,7 @@ pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
 mod tests {
     use super::*;
 
-    /// By division alone.
+    /// Tests a prime by division alone.
     fn is_prime_by_division(number: u64) -> bool {
         number > 1 && (2..).take_while(|d| d * d <= number).all(|d| !number.is_multiple_of(d))
     }

@@ -1,7 +1,7 @@
 //! Residues modulo eight primes side by side, or eight modulo one.
 //!
-//! The same operations as those of a [`Modulus`], eight at a time: a whole computation runs modulo
-//! eight primes at once, and no number ever moves from one place to another. What is here is
+//! The operations of a [`Modulus`], eight at a time: a whole computation runs modulo eight primes
+//! at once, and no number ever moves from one lane to another. The functions of this module are
 //! inlined into functions that are compiled for the processor, in which closures are not: hence
 //! loops.
 
@@ -20,7 +20,7 @@ pub struct Moduli {
 }
 
 impl Moduli {
-    /// The same prime eight times.
+    /// One prime in all eight lanes.
     #[inline(always)]
     pub fn all(modulus: &Modulus) -> Self {
         Self {
@@ -32,12 +32,12 @@ impl Moduli {
         }
     }
 
-    /// Up to eight primes, the last one again in the places that are left.
+    /// Takes up to eight primes; the last one is repeated in the remaining lanes.
     ///
     /// # Panics
     ///
     /// Without any.
-    pub fn of(moduli: &[Modulus]) -> Self {
+    pub fn from_primes(moduli: &[Modulus]) -> Self {
         let last = moduli.len() - 1;
         let lanes = |part: fn(&Modulus) -> u64| {
             Lanes(std::array::from_fn(|lane| part(&moduli[lane.min(last)])))
@@ -55,7 +55,7 @@ impl Moduli {
 /// The arithmetic modulo eight primes; residues are in Montgomery's form.
 #[derive(Clone, Copy, Debug)]
 pub struct Residues<A> {
-    /// What sums products.
+    /// The arithmetic of sums of products.
     pub arithmetic: A,
     /// The primes.
     pub moduli: Moduli,
@@ -92,7 +92,7 @@ impl<A: Arithmetic> Residues<A> {
         self.arithmetic.product(&left, &right, &self.moduli)
     }
 
-    /// What stands in a sum of products.
+    /// Reduces a sum of products.
     #[inline(always)]
     pub fn reduce(&self, sum: A::Sum) -> Lanes {
         self.arithmetic.reduce(sum, &self.moduli)
@@ -194,7 +194,7 @@ impl<A: Arithmetic> Residues<A> {
         powers
     }
 
-    /// Residues whose powers run through `order` values before they are one again; `None` where
+    /// Residues whose powers run through `order` values before they are one again; `None` if
     /// `order` does not divide every prime minus one.
     #[inline(always)]
     pub fn root_of_unity(&self, order: u64) -> Option<Lanes> {
@@ -237,17 +237,17 @@ mod tests {
     use super::super::{Work, by_widest, primes_below};
     use super::*;
 
-    struct AsOneByOne;
+    struct LanesAgainstScalars;
 
-    impl Work for AsOneByOne {
+    impl Work for LanesAgainstScalars {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let moduli: Vec<Modulus> = primes_below(A::BITS, 48)
                 .take(WIDTH - 1)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = Residues { arithmetic, moduli: Moduli::of(&moduli) };
+            let residues = Residues { arithmetic, moduli: Moduli::from_primes(&moduli) };
             let modulus = |lane: usize| &moduli[lane.min(WIDTH - 2)];
             let mut own: Vec<Lanes> = (3..40).map(|k| residues.small(k * k + 1)).collect();
             let inverses = {
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn eight_primes_are_as_each_alone() {
-        AsOneByOne.by(Portable);
-        by_widest(AsOneByOne);
+        LanesAgainstScalars.run(Portable);
+        by_widest(LanesAgainstScalars);
     }
 }

@@ -14,11 +14,11 @@ use super::{Arithmetic, Lanes, Moduli};
 pub struct Narrow(V3);
 
 /// Eight words.
-type Words = [Register; 2];
+type EightWords = [Register; 2];
 
 /// Four primes, and what reduces modulo them.
 #[derive(Clone, Copy)]
-struct Four {
+struct FourPrimes {
     prime: Register,
     inverse: Register,
     quotient: Register,
@@ -26,14 +26,14 @@ struct Four {
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.
 #[derive(Clone, Copy)]
-pub struct Sum {
-    recent: Words,
-    low: Words,
-    high: Words,
+pub struct NarrowSum {
+    recent: EightWords,
+    low: EightWords,
+    high: EightWords,
 }
 
 impl Narrow {
-    /// `None` where the processor has no such vectors.
+    /// `None` if the processor has no such vectors.
     pub fn try_new() -> Option<Self> {
         V3::try_new().map(Self)
     }
@@ -44,52 +44,52 @@ impl Narrow {
     }
 
     #[inline(always)]
-    fn words(self, lanes: &Lanes) -> Words {
+    fn words(self, lanes: &Lanes) -> EightWords {
         pulp::cast(lanes.0)
     }
 
     /// Eight primes, four by four.
     #[inline(always)]
-    fn fours(self, moduli: &Moduli) -> [Four; 2] {
+    fn fours(self, moduli: &Moduli) -> [FourPrimes; 2] {
         let prime = self.words(&moduli.prime);
         let inverse = self.words(&moduli.inverse);
         let quotient = self.words(&moduli.quotient);
         [
-            Four { prime: prime[0], inverse: inverse[0], quotient: quotient[0] },
-            Four { prime: prime[1], inverse: inverse[1], quotient: quotient[1] },
+            FourPrimes { prime: prime[0], inverse: inverse[0], quotient: quotient[0] },
+            FourPrimes { prime: prime[1], inverse: inverse[1], quotient: quotient[1] },
         ]
     }
 
     #[inline(always)]
-    fn both(self, left: Words, right: Words) -> Words {
+    fn both(self, left: EightWords, right: EightWords) -> EightWords {
         let v = self.0.avx2;
         [v._mm256_add_epi64(left[0], right[0]), v._mm256_add_epi64(left[1], right[1])]
     }
 
     /// The products of the low halves.
     #[inline(always)]
-    fn multiply(self, left: Words, right: Words) -> Words {
+    fn multiply(self, left: EightWords, right: EightWords) -> EightWords {
         let v = self.0.avx2;
         [v._mm256_mul_epu32(left[0], right[0]), v._mm256_mul_epu32(left[1], right[1])]
     }
 
     /// The upper halves.
     #[inline(always)]
-    fn upper(self, words: Words) -> Words {
+    fn upper(self, words: EightWords) -> EightWords {
         let v = self.0.avx2;
         [v._mm256_srli_epi64::<32>(words[0]), v._mm256_srli_epi64::<32>(words[1])]
     }
 
     /// The lower halves.
     #[inline(always)]
-    fn lower(self, words: Words) -> Words {
+    fn lower(self, words: EightWords) -> EightWords {
         let (v, zero) = (self.0.avx2, self.all(0));
         [v._mm256_blend_epi32::<0xaa>(words[0], zero), v._mm256_blend_epi32::<0xaa>(words[1], zero)]
     }
 
     /// Four sums divided by `R`.
     #[inline(always)]
-    fn reduce_four(self, low: Register, high: Register, four: Four) -> Register {
+    fn reduce_four(self, low: Register, high: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;
         let prime = four.prime;
         // As in the wide arithmetic, with a high part below 2^42.
@@ -105,7 +105,7 @@ impl Narrow {
 
     /// Four products divided by `R`.
     #[inline(always)]
-    fn reduce_product(self, product: Register, four: Four) -> Register {
+    fn reduce_product(self, product: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;
         let residue =
             v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, four));
@@ -114,9 +114,9 @@ impl Narrow {
         v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
     }
 
-    /// What Montgomery's step takes away from the high part.
+    /// The number that Montgomery's step subtracts from the high part.
     #[inline(always)]
-    fn taken(self, low: Register, four: Four) -> Register {
+    fn taken(self, low: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;
         let multiple = v._mm256_mul_epu32(low, four.inverse);
         v._mm256_srli_epi64::<32>(v._mm256_mul_epu32(multiple, four.prime))
@@ -129,54 +129,54 @@ impl Arithmetic for Narrow {
     const DIGIT: u32 = 30;
     // Sixteen products of 60 digits fill a word.
     const RUN: usize = 16;
-    type Sum = Sum;
+    type Sum = NarrowSum;
 
     #[inline(always)]
-    fn none(self) -> Sum {
+    fn none(self) -> NarrowSum {
         let none = [self.all(0); 2];
-        Sum { recent: none, low: none, high: none }
+        NarrowSum { recent: none, low: none, high: none }
     }
     #[inline(always)]
-    fn add_product(self, sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
+    fn add_product(self, sum: NarrowSum, left: &Lanes, right: &Lanes) -> NarrowSum {
         let product = self.multiply(self.words(left), self.words(right));
-        Sum { recent: self.both(sum.recent, product), ..sum }
+        NarrowSum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
-    fn add_multiple(self, sum: Sum, left: u64, right: &Lanes) -> Sum {
+    fn add_multiple(self, sum: NarrowSum, left: u64, right: &Lanes) -> NarrowSum {
         let left = self.all(left);
         let product = self.multiply([left; 2], self.words(right));
-        Sum { recent: self.both(sum.recent, product), ..sum }
+        NarrowSum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
-    fn carry(self, sum: Sum) -> Sum {
-        Sum {
+    fn carry(self, sum: NarrowSum) -> NarrowSum {
+        NarrowSum {
             recent: [self.all(0); 2],
             low: self.both(sum.low, self.lower(sum.recent)),
             high: self.both(sum.high, self.upper(sum.recent)),
         }
     }
     #[inline(always)]
-    fn merge(self, left: Sum, right: Sum) -> Sum {
-        Sum {
+    fn merge(self, left: NarrowSum, right: NarrowSum) -> NarrowSum {
+        NarrowSum {
             recent: self.both(left.recent, right.recent),
             low: self.both(left.low, right.low),
             high: self.both(left.high, right.high),
         }
     }
     #[inline(always)]
-    fn join(self, left: Sum, right: Sum) -> Sum {
+    fn join(self, left: NarrowSum, right: NarrowSum) -> NarrowSum {
         self.merge(self.carry(left), self.carry(right))
     }
     #[inline(always)]
-    fn parts(self, sum: Sum) -> (Lanes, Lanes) {
+    fn parts(self, sum: NarrowSum) -> (Lanes, Lanes) {
         let sum = self.carry(sum);
         (Lanes(pulp::cast(sum.low)), Lanes(pulp::cast(sum.high)))
     }
     #[inline(always)]
-    fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
-        let Sum { low, high, .. } = self.carry(sum);
+    fn reduce(self, sum: NarrowSum, moduli: &Moduli) -> Lanes {
+        let NarrowSum { low, high, .. } = self.carry(sum);
         let [first, second] = self.fours(moduli);
-        let residues: Words =
+        let residues: EightWords =
             [self.reduce_four(low[0], high[0], first), self.reduce_four(low[1], high[1], second)];
         Lanes(pulp::cast(residues))
     }
@@ -184,7 +184,7 @@ impl Arithmetic for Narrow {
     fn product(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
         let products = self.multiply(self.words(left), self.words(right));
         let [first, second] = self.fours(moduli);
-        let residues: Words =
+        let residues: EightWords =
             [self.reduce_product(products[0], first), self.reduce_product(products[1], second)];
         Lanes(pulp::cast(residues))
     }
@@ -194,7 +194,7 @@ impl Arithmetic for Narrow {
         let [first, second] = self.both(self.words(left), self.words(right));
         let prime = self.words(&moduli.prime);
         // Half words are compared, as above.
-        let residues: Words = [
+        let residues: EightWords = [
             v._mm256_min_epu32(first, v._mm256_sub_epi64(first, prime[0])),
             v._mm256_min_epu32(second, v._mm256_sub_epi64(second, prime[1])),
         ];
@@ -206,7 +206,7 @@ impl Arithmetic for Narrow {
         let (left, right, prime) = (self.words(left), self.words(right), self.words(&moduli.prime));
         let first = v._mm256_sub_epi64(left[0], right[0]);
         let second = v._mm256_sub_epi64(left[1], right[1]);
-        let residues: Words = [
+        let residues: EightWords = [
             v._mm256_min_epu32(first, v._mm256_add_epi64(first, prime[0])),
             v._mm256_min_epu32(second, v._mm256_add_epi64(second, prime[1])),
         ];

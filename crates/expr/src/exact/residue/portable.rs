@@ -13,7 +13,7 @@ pub struct Portable;
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.
 #[derive(Clone, Copy)]
-pub struct Sum {
+pub struct PortableSum {
     recent: Lanes,
     low: Lanes,
     high: Lanes,
@@ -31,15 +31,15 @@ impl Arithmetic for Portable {
     const DIGIT: u32 = 30;
     // Sixteen products of 60 digits fill a word.
     const RUN: usize = 16;
-    type Sum = Sum;
+    type Sum = PortableSum;
 
     #[inline(always)]
-    fn none(self) -> Sum {
+    fn none(self) -> PortableSum {
         let none = Lanes([0; WIDTH]);
-        Sum { recent: none, low: none, high: none }
+        PortableSum { recent: none, low: none, high: none }
     }
     #[inline(always)]
-    fn add_product(self, mut sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
+    fn add_product(self, mut sum: PortableSum, left: &Lanes, right: &Lanes) -> PortableSum {
         for k in 0..WIDTH {
             sum.recent.0[k] =
                 sum.recent.0[k].wrapping_add(half(left.0[k]).wrapping_mul(half(right.0[k])));
@@ -47,7 +47,7 @@ impl Arithmetic for Portable {
         sum
     }
     #[inline(always)]
-    fn add_multiple(self, mut sum: Sum, left: u64, right: &Lanes) -> Sum {
+    fn add_multiple(self, mut sum: PortableSum, left: u64, right: &Lanes) -> PortableSum {
         for k in 0..WIDTH {
             sum.recent.0[k] =
                 sum.recent.0[k].wrapping_add(half(left).wrapping_mul(half(right.0[k])));
@@ -55,7 +55,7 @@ impl Arithmetic for Portable {
         sum
     }
     #[inline(always)]
-    fn carry(self, mut sum: Sum) -> Sum {
+    fn carry(self, mut sum: PortableSum) -> PortableSum {
         for k in 0..WIDTH {
             sum.low.0[k] = sum.low.0[k].wrapping_add(half(sum.recent.0[k]));
             sum.high.0[k] = sum.high.0[k].wrapping_add(sum.recent.0[k] >> 32);
@@ -64,7 +64,7 @@ impl Arithmetic for Portable {
         sum
     }
     #[inline(always)]
-    fn merge(self, mut sum: Sum, right: Sum) -> Sum {
+    fn merge(self, mut sum: PortableSum, right: PortableSum) -> PortableSum {
         for k in 0..WIDTH {
             sum.recent.0[k] = sum.recent.0[k].wrapping_add(right.recent.0[k]);
             sum.low.0[k] = sum.low.0[k].wrapping_add(right.low.0[k]);
@@ -73,16 +73,16 @@ impl Arithmetic for Portable {
         sum
     }
     #[inline(always)]
-    fn join(self, left: Sum, right: Sum) -> Sum {
+    fn join(self, left: PortableSum, right: PortableSum) -> PortableSum {
         self.merge(self.carry(left), self.carry(right))
     }
     #[inline(always)]
-    fn parts(self, sum: Sum) -> (Lanes, Lanes) {
+    fn parts(self, sum: PortableSum) -> (Lanes, Lanes) {
         let sum = self.carry(sum);
         (sum.low, sum.high)
     }
     #[inline(always)]
-    fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
+    fn reduce(self, sum: PortableSum, moduli: &Moduli) -> Lanes {
         let sum = self.carry(sum);
         let mut residues = Lanes::default();
         for k in 0..WIDTH {

@@ -28,7 +28,7 @@ pub struct Remainders<A> {
 }
 
 impl<A: Arithmetic> Remainders<A> {
-    /// For these primes, at most 2^13.
+    /// Prepares these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
         let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
         let blocks = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
@@ -59,7 +59,7 @@ impl<A: Arithmetic> Remainders<A> {
         }
     }
 
-    /// What plain residues are multiplied by before they are [lifted](Self::lift), times `factor`.
+    /// Weights of plain residues before they are [lifted](Self::lift), times `factor`.
     pub fn weights<'a>(
         &'a self,
         factor: impl Fn(&Modulus) -> u64 + 'a,
@@ -70,23 +70,33 @@ impl<A: Arithmetic> Remainders<A> {
 
     /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights);
     /// the residues are used up.
-    pub fn lift(&self, residues: &mut [Lanes], weights: &[u64], numbers: &mut Numbers) {
+    pub fn lift(
+        &self,
+        residues: &mut [Lanes],
+        weights: &[u64],
+        numbers: &mut ReconstructedIntegers,
+    ) {
         numbers.digits.resize(self.product.len(), Lanes::default());
-        self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
+        self.arithmetic.vectorize(LiftRemainders(self, residues, weights, numbers));
     }
 
     /// One number, from its plain residues.
     pub fn lift_one(&self, residues: impl Iterator<Item = u64>, weights: &[u64]) -> Integer {
         let mut residues: Vec<Lanes> = residues.map(Lanes::all).collect();
-        let mut numbers = Numbers::default();
+        let mut numbers = ReconstructedIntegers::default();
         self.lift(&mut residues, weights, &mut numbers);
         numbers.integer::<A>(0)
     }
 }
 
-struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut Numbers);
+struct LiftRemainders<'a, A>(
+    &'a Remainders<A>,
+    &'a mut [Lanes],
+    &'a [u64],
+    &'a mut ReconstructedIntegers,
+);
 
-impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -170,12 +180,12 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
 /// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum
 /// with a power of a digit.
 #[derive(Clone, Debug, Default)]
-pub struct Numbers {
+pub struct ReconstructedIntegers {
     digits: Vec<Lanes>,
     negative: [bool; WIDTH],
 }
 
-impl Numbers {
+impl ReconstructedIntegers {
     /// Their plain residues; `powers` are the residues of the powers of a
     /// [digit](Arithmetic::DIGIT), one more than there are digits.
     pub fn residues<A: Arithmetic>(
@@ -184,8 +194,8 @@ impl Numbers {
         modulus: &Modulus,
         powers: &[u64],
     ) -> [u64; WIDTH] {
-        struct Residues<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
-        impl<A: Arithmetic> NullaryFnOnce for Residues<'_, A> {
+        struct ReduceDigits<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
+        impl<A: Arithmetic> NullaryFnOnce for ReduceDigits<'_, A> {
             type Output = Lanes;
             #[inline(always)]
             fn call(self) -> Lanes {
@@ -194,8 +204,9 @@ impl Numbers {
             }
         }
         let count = self.digits.len();
-        let mut residues =
-            arithmetic.vectorize(Residues(arithmetic, modulus, &powers[..count], &self.digits)).0;
+        let mut residues = arithmetic
+            .vectorize(ReduceDigits(arithmetic, modulus, &powers[..count], &self.digits))
+            .0;
         let above = modulus.plain(powers[count]);
         for (residue, negative) in residues.iter_mut().zip(self.negative) {
             if negative {
@@ -259,12 +270,12 @@ mod tests {
     use super::super::{Work, by_widest, portable::Portable, primes_below};
     use super::*;
 
-    struct ThereAndBack;
+    struct RoundTrip;
 
-    impl Work for ThereAndBack {
+    impl Work for RoundTrip {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let primes: Vec<u64> = primes_below(A::BITS, 16).take(40).collect();
             let moduli: Vec<Modulus> =
                 primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
@@ -286,7 +297,7 @@ mod tests {
                 }
                 let first = remainders.lift_one(residues.iter().map(|own| own.0[0]), &weights);
                 assert_eq!(first, all[0]);
-                let mut numbers = Numbers::default();
+                let mut numbers = ReconstructedIntegers::default();
                 remainders.lift(&mut residues, &weights, &mut numbers);
                 let digit = check.residue(1 << A::DIGIT);
                 let powers: Vec<u64> = (0..60).map(|place| check.power(digit, place)).collect();
@@ -301,8 +312,8 @@ mod tests {
 
     #[test]
     fn a_number_is_what_its_residues_say() {
-        ThereAndBack.by(Portable);
-        by_widest(ThereAndBack);
+        RoundTrip.run(Portable);
+        by_widest(RoundTrip);
     }
 
     #[test]

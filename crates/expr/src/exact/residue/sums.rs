@@ -12,7 +12,7 @@ pub struct Product {
     pub left: usize,
     /// The other; the same for a square, which costs half.
     pub right: usize,
-    /// Where the product is written.
+    /// Index of the table of the product.
     pub to: usize,
     /// The highest order that is wanted.
     pub needed: usize,
@@ -25,9 +25,9 @@ pub const TOGETHER: usize = 8;
 /// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a
 /// factor of those after it. The orders come one after the other, from zero on.
 ///
-/// What is already there of a product at the orders that follow is kept in its own table, which may
-/// be one of the latest orders alone: [`TOGETHER`] of them and those that are asked for later.
-/// Cost: a multiplication for each pair of orders and each point, half of them for a square.
+/// The known part of a product at the orders that follow is kept in its own table, which may hold
+/// only the latest orders: [`TOGETHER`] of them and those that are asked for later. Cost: a
+/// multiplication for each pair of orders and each point, half of them for a square.
 #[inline(always)]
 pub fn convolve<A: Arithmetic>(
     residues: &Residues<A>,
@@ -73,11 +73,11 @@ pub fn convolve<A: Arithmetic>(
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
                         let before =
-                            &tables.row(product.to, point)[tables.place(product.to, order)];
+                            &tables.row(product.to, point)[tables.offset(product.to, order)];
                         let sum = arithmetic.carry(arithmetic.merge(first, last));
                         arithmetic.add_product(sum, &residues.moduli.one, before)
                     };
-                    let place = tables.place(product.to, order);
+                    let place = tables.offset(product.to, order);
                     *tables.entry(product.to, point, place) = residues.reduce(sum);
                 }
             }
@@ -97,7 +97,7 @@ fn prepare<A: Arithmetic>(
     start: usize,
 ) {
     let arithmetic = residues.arithmetic;
-    let (orders, place) = (tables.row(product.to, point).len(), tables.place(product.to, start));
+    let (orders, place) = (tables.row(product.to, point).len(), tables.offset(product.to, start));
     for first in [start, start + TOGETHER / 2] {
         let left = &tables.row(product.left, point)[..start];
         let right = &tables.row(product.right, point)[..start];
@@ -229,8 +229,8 @@ pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[La
 
 /// One series of a [mixture], at one order.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
-    /// What it is multiplied by.
+pub struct MixtureTerm {
+    /// The factor of the series.
     pub factor: Lanes,
     /// Its place among the tables.
     pub table: usize,
@@ -242,7 +242,7 @@ pub struct Part {
 #[inline(always)]
 pub fn mixture<A: Arithmetic>(
     residues: &Residues<A>,
-    parts: &[Part],
+    parts: &[MixtureTerm],
     tables: &Tables,
     out: &mut [Lanes],
 ) {
@@ -251,7 +251,7 @@ pub fn mixture<A: Arithmetic>(
         let mut sum = arithmetic.none();
         for parts in parts.chunks(A::RUN) {
             for part in parts {
-                let entry = &tables.row(part.table, point)[tables.place(part.table, part.order)];
+                let entry = &tables.row(part.table, point)[tables.offset(part.table, part.order)];
                 sum = arithmetic.add_product(sum, &part.factor, entry);
             }
             sum = arithmetic.carry(sum);
@@ -269,7 +269,7 @@ pub fn vary<A: Arithmetic>(
     factor: Lanes,
     change: &[Lanes],
 ) {
-    let place = tables.place(table, order);
+    let place = tables.offset(table, order);
     for (point, change) in change.iter().enumerate() {
         let entry = tables.entry(table, point, place);
         *entry = residues.sum(*entry, residues.product(factor, *change));

@@ -6,20 +6,20 @@ use super::Lanes;
 /// the other: what is formed of them at a point is formed of what lies together.
 pub struct Tables<'m> {
     rows: usize,
-    /// From a row to the next of the same table.
+    /// The distance of the rows of one table.
     stride: usize,
-    /// Where the rows of each table begin behind those of the tables before it, and their length.
+    /// Start of the rows of each table behind those of the tables before it, and their length.
     places: Vec<(usize, usize)>,
     entries: &'m mut [Lanes],
 }
 
 impl<'m> Tables<'m> {
-    /// How many entries tables with rows of these lengths have.
-    pub fn room(rows: usize, lengths: &[usize]) -> usize {
+    /// Number of entries of tables with rows of these lengths.
+    pub fn entry_count(rows: usize, lengths: &[usize]) -> usize {
         rows * lengths.iter().sum::<usize>()
     }
 
-    /// Tables with rows of these lengths, in that much [room](Self::room).
+    /// Tables with rows of these lengths, in that much [room](Self::entry_count).
     pub fn new(rows: usize, lengths: &[usize], entries: &'m mut [Lanes]) -> Self {
         let mut stride = 0;
         let mut places = Vec::with_capacity(lengths.len());
@@ -30,16 +30,16 @@ impl<'m> Tables<'m> {
         Self { rows, stride, places, entries }
     }
 
-    /// How many rows each table has.
+    /// Number of rows of each table.
     #[inline(always)]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Where an order stands in a table: in rows too short for all of them, instead of one before
-    /// it.
+    /// Index of an order in the rows of a table; in rows too short for all orders it replaces an
+    /// earlier one.
     #[inline(always)]
-    pub fn place(&self, table: usize, order: usize) -> usize {
+    pub fn offset(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;
         if order < length { order } else { order % length }
     }

@@ -7,10 +7,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::lexer::{Kind, Token};
+use super::lexer::{Token, TokenKind};
 use super::parse_expression;
 use crate::expr::Expr;
-use crate::expr::typed::{Around, TypedTerm};
+use crate::expr::typed::{BracketContext, TypedTerm};
 use crate::symbol::Symbol;
 
 /// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by
@@ -44,13 +44,13 @@ fn typed_term(
     value: Expr,
     tokens: &[Token],
     right: bool,
-    around: Option<Arc<Around>>,
+    around: Option<Arc<BracketContext>>,
 ) -> TypedTerm {
     let (negative, rest) = unsigned(tokens);
     TypedTerm { value, span: span(rest), negative, right, around }
 }
 
-/// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no
+/// The terms inside the one bracket of a term that the rest of it scales; `None` if there is no
 /// such bracket.
 fn opened<'a>(
     text: &str,
@@ -61,21 +61,21 @@ fn opened<'a>(
     let (negative, rest) = unsigned(tokens);
     let moves = |token: &Token| {
         let name = text[token.span()].trim_end_matches('\'');
-        token.kind == Kind::Name && (name == coordinate.name() || name == "t")
+        token.kind == TokenKind::Name && (name == coordinate.name() || name == "t")
     };
-    let factors = split(rest, |kind| matches!(kind, Kind::Times | Kind::Divide));
+    let factors = split(rest, |kind| matches!(kind, TokenKind::Times | TokenKind::Divide));
     let mut moving = factors.iter().filter(|factor| rest[(*factor).clone()].iter().any(moves));
     let (factor, None) = (moving.next()?, moving.next()) else {
         return None;
     };
-    let divides = factor.start > 0 && rest[factor.start - 1].kind == Kind::Divide;
+    let divides = factor.start > 0 && rest[factor.start - 1].kind == TokenKind::Divide;
     let (_, bracket) = unsigned(&rest[factor.clone()]);
     let [first, inner @ .., last] = bracket else {
         return None;
     };
     if divides
-        || first.kind != Kind::Open
-        || last.kind != Kind::Close
+        || first.kind != TokenKind::Open
+        || last.kind != TokenKind::Close
         || closes_before_its_end(bracket)
     {
         return None;
@@ -84,20 +84,20 @@ fn opened<'a>(
     let (before, after) = (&text[whole.start..first.start], &text[last.end..whole.end]);
     let scale = parse_expression(&format!("{before}1{after}")).ok()?;
     let scale = if negative { -scale } else { scale };
-    // What stands around the bracket multiplies it, and so does what stands around the term in its
+    // The factor around the bracket multiplies it, and so does the factor around the term in its
     // turn.
     let (scale, outer) = match &term.around {
         Some(outer) => (&scale * &outer.scale, (&*outer.opening, &*outer.closing, outer.negative)),
         None => (scale, ("", "", false)),
     };
     let bare = before.is_empty() && after.is_empty();
-    let around = Arc::new(Around {
+    let around = Arc::new(BracketContext {
         opening: format!("{}{before}{}", outer.0, if bare { "" } else { "(" }),
         closing: format!("{}{after}{}", if bare { "" } else { ")" }, outer.1),
         negative: outer.2 ^ negative,
         scale,
     });
-    let inner_terms = split(inner, |kind| matches!(kind, Kind::Plus | Kind::Minus));
+    let inner_terms = split(inner, |kind| matches!(kind, TokenKind::Plus | TokenKind::Minus));
     if inner_terms.len() > MOST_TERMS {
         return None;
     }
@@ -113,8 +113,9 @@ fn opened<'a>(
 
 /// The signs before a term or a factor, whether they are a minus together, and what follows them.
 fn unsigned(tokens: &[Token]) -> (bool, &[Token]) {
-    let signs = tokens.iter().take_while(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
-    let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
+    let signs =
+        tokens.iter().take_while(|token| matches!(token.kind, TokenKind::Plus | TokenKind::Minus));
+    let minuses = signs.clone().filter(|sign| sign.kind == TokenKind::Minus).count();
     (minuses % 2 == 1, &tokens[signs.count()..])
 }
 
@@ -124,13 +125,13 @@ fn span(tokens: &[Token]) -> Range<usize> {
 
 /// The ranges between the operators outside all brackets; a sign that stands where an operand is
 /// expected is none.
-fn split(tokens: &[Token], operator: impl Fn(Kind) -> bool) -> Vec<Range<usize>> {
+fn split(tokens: &[Token], operator: impl Fn(TokenKind) -> bool) -> Vec<Range<usize>> {
     let (mut depth, mut start) = (0_usize, 0);
     let mut ranges = Vec::new();
     for (number, token) in tokens.iter().enumerate() {
         match token.kind {
-            Kind::Open => depth += 1,
-            Kind::Close => depth = depth.saturating_sub(1),
+            TokenKind::Open => depth += 1,
+            TokenKind::Close => depth = depth.saturating_sub(1),
             kind if depth == 0
                 && operator(kind)
                 && number > 0
@@ -146,8 +147,8 @@ fn split(tokens: &[Token], operator: impl Fn(Kind) -> bool) -> Vec<Range<usize>>
     ranges
 }
 
-fn ends_operand(kind: Kind) -> bool {
-    matches!(kind, Kind::Number | Kind::Name | Kind::Close)
+fn ends_operand(kind: TokenKind) -> bool {
+    matches!(kind, TokenKind::Number | TokenKind::Name | TokenKind::Close)
 }
 
 /// Whether the bracket that the first token opens is closed before the last: `(1 + x)^(2)`.
@@ -155,8 +156,8 @@ fn closes_before_its_end(tokens: &[Token]) -> bool {
     let mut depth = 0_usize;
     tokens[..tokens.len() - 1].iter().any(|token| {
         match token.kind {
-            Kind::Open => depth += 1,
-            Kind::Close => depth = depth.saturating_sub(1),
+            TokenKind::Open => depth += 1,
+            TokenKind::Close => depth = depth.saturating_sub(1),
             _ => {}
         }
         depth == 0

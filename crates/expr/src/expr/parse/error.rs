@@ -3,9 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
-use super::lexer::visible;
+use super::lexer::printable;
 
-/// What is wrong with a text, where, and what to write instead.
+/// A syntax error: the message, the position, and the text to write instead.
 ///
 /// `Display` shows the line with a caret under the place:
 ///
@@ -16,11 +16,11 @@ use super::lexer::visible;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParseError {
-    /// What is wrong, in one line.
+    /// The error in one line.
     pub message: String,
     /// The bytes of the text that are meant.
     pub span: Range<usize>,
-    /// What to write instead.
+    /// Advice on what to write instead; `None` if there is none.
     pub help: Option<String>,
     /// What was meant, where it can be one thing only: a part of the text, and what the grammar has
     /// for it.
@@ -80,7 +80,7 @@ pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
     let length = text[span.start..span.end.min(end).max(span.start)].chars().count().max(1);
     // The place stands in the first third of a window that is cut on both sides.
     let skipped = if column > WIDTH * 2 / 3 { column - WIDTH / 3 } else { 0 };
-    let shown: String = line.chars().skip(skipped).take(WIDTH).map(visible).collect();
+    let shown: String = line.chars().skip(skipped).take(WIDTH).map(printable).collect();
     let cut = line.chars().nth(skipped + WIDTH).is_some();
     let (before, after) = (if skipped > 0 { "..." } else { "" }, if cut { "..." } else { "" });
     let indent = before.len() + column - skipped;
@@ -92,7 +92,7 @@ pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
 pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {
-        None => text.chars().map(visible).collect(),
-        Some((cut, _)) => text[..cut].chars().map(visible).chain("...".chars()).collect(),
+        None => text.chars().map(printable).collect(),
+        Some((cut, _)) => text[..cut].chars().map(printable).chain("...".chars()).collect(),
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ParseError> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     Number,
     Name,
     Plus,
@@ -33,7 +33,7 @@ pub(super) enum Kind {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token {
-    pub(super) kind: Kind,
+    pub(super) kind: TokenKind,
     pub(super) start: usize,
     pub(super) end: usize,
 }
@@ -70,11 +70,11 @@ impl<'a> Lexer<'a> {
             };
             tokens.push(Token { kind, start, end: self.position });
         }
-        tokens.push(Token { kind: Kind::End, start: self.position, end: self.position });
+        tokens.push(Token { kind: TokenKind::End, start: self.position, end: self.position });
         Ok(tokens)
     }
 
-    fn name(&mut self) -> Result<Kind, ParseError> {
+    fn name(&mut self) -> Result<TokenKind, ParseError> {
         let start = self.position;
         self.skip_while(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         self.skip_while(|letter| letter == '\'');
@@ -82,11 +82,11 @@ impl<'a> Lexer<'a> {
             true => {
                 Err(self.error(start, &format!("a name of more than {LONGEST_NAME} letters"), ""))
             }
-            false => Ok(Kind::Name),
+            false => Ok(TokenKind::Name),
         }
     }
 
-    fn number(&mut self) -> Result<Kind, ParseError> {
+    fn number(&mut self) -> Result<TokenKind, ParseError> {
         let start = self.position;
         let digit = |letter: char| letter.is_ascii_digit();
         self.skip_while(digit);
@@ -112,10 +112,10 @@ impl<'a> Lexer<'a> {
                 self.skip_while(digit);
             }
         }
-        Ok(Kind::Number)
+        Ok(TokenKind::Number)
     }
 
-    fn sign(&mut self, letter: char) -> Result<Kind, ParseError> {
+    fn sign(&mut self, letter: char) -> Result<TokenKind, ParseError> {
         let start = self.position;
         self.position += letter.len_utf8();
         let spelling = notation::help(letter);
@@ -130,9 +130,9 @@ impl<'a> Lexer<'a> {
             '=' => return Ok(Kind::Equals),
             '*' if self.rest().starts_with('*') => {
                 self.position += 1;
-                return Ok(Kind::Power);
+                return Ok(TokenKind::Power);
             }
-            '*' => return Ok(Kind::Times),
+            '*' => return Ok(TokenKind::Times),
             '\'' => ("a prime stands directly after its letter".into(), "try `x'`"),
             '"' => ("a double quote is no pair of primes".into(), "try `x''`"),
             '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),
@@ -154,7 +154,7 @@ impl<'a> Lexer<'a> {
                 (format!("a control character, U+{:04X}", u32::from(letter)), "")
             }
             _ => {
-                let name = match visible(letter) == letter && !letter.is_whitespace() {
+                let name = match printable(letter) == letter && !letter.is_whitespace() {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
                     false => format!("the character U+{:04X}", u32::from(letter)),
                 };
@@ -198,7 +198,7 @@ impl<'a> Lexer<'a> {
 }
 
 /// The character itself, or `?` for one that a terminal would not simply show.
-pub(super) fn visible(letter: char) -> char {
+pub(super) fn printable(letter: char) -> char {
     match letter {
         '\t' | '\r' | '\n' => ' ',
         ' '..='~' => letter,

@@ -1,4 +1,4 @@
-//! What people write by mistake, and what to write instead.
+//! Frequent mistakes, and the text to write instead.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use strsim::osa_distance;
 
 use super::Parser;
 use super::error::{ParseError, shortened};
-use super::lexer::{Kind, Token};
+use super::lexer::{Token, TokenKind};
 use crate::expr::Function;
 use crate::symbol::{GREEK, Symbol};
 
@@ -24,7 +24,7 @@ impl Parser<'_> {
     /// The letter that carries primes, after a look at every name.
     pub(super) fn coordinate(&self) -> Result<Symbol, ParseError> {
         let mut primed: Option<(Token, &str)> = None;
-        for token in self.tokens.iter().filter(|token| token.kind == Kind::Name) {
+        for token in self.tokens.iter().filter(|token| token.kind == TokenKind::Name) {
             let name = &self.text[token.span()];
             let bare = name.trim_end_matches('\'');
             if bare.len() == name.len()
@@ -53,7 +53,8 @@ impl Parser<'_> {
         let Some((_, letter)) = primed else {
             return Ok(Symbol::new("x"));
         };
-        let is_x = |token: &&Token| token.kind == Kind::Name && &self.text[token.span()] == "x";
+        let is_x =
+            |token: &&Token| token.kind == TokenKind::Name && &self.text[token.span()] == "x";
         match self.tokens.iter().find(is_x) {
             Some(token) if letter != "x" => {
                 let message = format!("`x` beside the coordinate `{letter}`");
@@ -71,11 +72,11 @@ impl Parser<'_> {
     pub(super) fn refuse_other_derivatives(&self) -> Result<(), ParseError> {
         let text = |token: &Token| &self.text[token.span()];
         for (index, token) in
-            self.tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::Name)
+            self.tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Name)
         {
             let name = text(token);
             let rest = &self.tokens[index..];
-            let called = rest.get(1).is_some_and(|next| next.kind == Kind::Open);
+            let called = rest.get(1).is_some_and(|next| next.kind == TokenKind::Open);
             if called
                 && ["diff", "D", "Diff", "Derivative", "derivative", "dot", "ddot"].contains(&name)
             {
@@ -85,30 +86,33 @@ impl Parser<'_> {
             if let Some((letter, order)) = dotted(name) {
                 return Err(self.derivative_error(token.span(), letter, Some(order)));
             }
-            let kinds: Vec<Kind> = rest.iter().take(8).map(|token| token.kind).collect();
+            let kinds: Vec<TokenKind> = rest.iter().take(8).map(|token| token.kind).collect();
             let is_time = |place: usize| {
                 rest.get(place).is_some_and(|token| ["dt", "dt2"].contains(&text(token)))
             };
             // d, d2x, dx over dt; then d^2 x over dt^2.
             let numerator = name.strip_prefix('d');
             let (quotient, letter, order) = match kinds.as_slice() {
-                [Kind::Name, Kind::Divide, Kind::Name, ..] if is_time(2) => {
+                [TokenKind::Name, TokenKind::Divide, TokenKind::Name, ..] if is_time(2) => {
                     (2, numerator, 1 + usize::from(name.starts_with("d2")))
                 }
                 [
-                    Kind::Name,
-                    Kind::Power,
-                    Kind::Number,
-                    Kind::Name,
-                    Kind::Divide,
-                    Kind::Name,
+                    TokenKind::Name,
+                    TokenKind::Power,
+                    TokenKind::Number,
+                    TokenKind::Name,
+                    TokenKind::Divide,
+                    TokenKind::Name,
                     ..,
                 ] if name == "d" && is_time(5) => (5, Some(text(&rest[3])), 2),
-                [Kind::Name, Kind::Power, Kind::Number, Kind::Divide, Kind::Name, ..]
-                    if name == "d" && is_time(4) =>
-                {
-                    (4, Some(""), 2)
-                }
+                [
+                    TokenKind::Name,
+                    TokenKind::Power,
+                    TokenKind::Number,
+                    TokenKind::Divide,
+                    TokenKind::Name,
+                    ..,
+                ] if name == "d" && is_time(4) => (4, Some(""), 2),
                 _ => continue,
             };
             let Some(letter) =
@@ -117,7 +121,8 @@ impl Parser<'_> {
                 continue;
             };
             let mut end = quotient;
-            if kinds.get(end + 1) == Some(&Kind::Power) && kinds.get(end + 2) == Some(&Kind::Number)
+            if kinds.get(end + 1) == Some(&TokenKind::Power)
+                && kinds.get(end + 2) == Some(&TokenKind::Number)
             {
                 end += 2;
             }
@@ -148,20 +153,20 @@ impl Parser<'_> {
             return self.unexpected();
         };
         let left = match previous.kind {
-            Kind::Close => match matching_open(&self.tokens, self.next - 1) {
+            TokenKind::Close => match matching_open(&self.tokens, self.next - 1) {
                 Some(0) => 0,
-                Some(open) => open - usize::from(self.tokens[open - 1].kind == Kind::Name),
+                Some(open) => open - usize::from(self.tokens[open - 1].kind == TokenKind::Name),
                 None => self.next - 1,
             },
             _ => self.next - 1,
         };
         let mut right = self.next;
-        if self.peek() == Kind::Name
-            && self.tokens.get(right + 1).is_some_and(|next| next.kind == Kind::Open)
+        if self.peek() == TokenKind::Name
+            && self.tokens.get(right + 1).is_some_and(|next| next.kind == TokenKind::Open)
         {
             right += 1;
         }
-        if self.tokens[right].kind == Kind::Open {
+        if self.tokens[right].kind == TokenKind::Open {
             right = matching_close(&self.tokens, right).unwrap_or(right);
         }
         let (left, right) =
@@ -314,7 +319,7 @@ impl Parser<'_> {
         let token = self.token();
         let previous = self.next.checked_sub(1).and_then(|place| self.tokens.get(place));
         match (previous, token.kind) {
-            (None, Kind::Close) => self.unexpected(),
+            (None, TokenKind::Close) => self.unexpected(),
             (Some(previous), _) => {
                 let message =
                     format!("something is missing after {}", self.quoted(previous.span()));
@@ -342,7 +347,7 @@ impl Parser<'_> {
                 "a `,` stands between the arguments of `max` and `min` alone",
                 "a decimal point is `.`",
             ),
-            Kind::Equals => self.error(token.span(), "an `=` where none can stand", ""),
+            TokenKind::Equals => self.error(token.span(), "an `=` where none can stand", ""),
             _ => self.error(
                 token.span(),
                 &format!("{} cannot stand here", self.quoted(token.span())),
@@ -365,9 +370,9 @@ fn matching_close(tokens: &[Token], open: usize) -> Option<usize> {
     let mut depth = 0_usize;
     for (place, token) in tokens.iter().enumerate().skip(open) {
         match token.kind {
-            Kind::Open => depth += 1,
-            Kind::Close if depth == 1 => return Some(place),
-            Kind::Close => depth = depth.checked_sub(1)?,
+            TokenKind::Open => depth += 1,
+            TokenKind::Close if depth == 1 => return Some(place),
+            TokenKind::Close => depth = depth.checked_sub(1)?,
             _ => {}
         }
     }
@@ -378,9 +383,9 @@ fn matching_open(tokens: &[Token], close: usize) -> Option<usize> {
     let mut depth = 0_usize;
     for (place, token) in tokens.iter().enumerate().take(close + 1).rev() {
         match token.kind {
-            Kind::Close => depth += 1,
-            Kind::Open if depth == 1 => return Some(place),
-            Kind::Open => depth = depth.checked_sub(1)?,
+            TokenKind::Close => depth += 1,
+            TokenKind::Open if depth == 1 => return Some(place),
+            TokenKind::Open => depth = depth.checked_sub(1)?,
             _ => {}
         }
     }

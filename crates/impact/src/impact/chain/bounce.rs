@@ -24,20 +24,20 @@ use std::sync::LazyLock;
 
 use spec_math::cephes64::gamma;
 
-use super::swing::Spot;
+use super::swing::SwingAngle;
 use crate::impact::contact::hunt_crossley;
 use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 
 /// Numbers of the law d^(3/2) that are the same for every contact.
-struct Numbers {
+struct ContactConstants {
     /// tau_0, tau_1, tau_2.
     duration: [f64; 3],
     /// int_0^1 sqrt(1 - y^(5/2)) dy: the area of half a contact in the phase plane in units of v D,
     /// p = 0.
     area: f64,
-    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p
-    /// = 0.
+    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p =
+    /// 0.
     loss: f64,
 }
 
@@ -50,12 +50,12 @@ const LOSS_OF_A_FALL: f64 = PI / 16.0;
 /// T v/D of a free fall, 2 int_0^1 dy/sqrt(1 - y).
 const DURATION_OF_A_FALL: f64 = 4.0;
 
-static NUMBERS: LazyLock<Numbers> = LazyLock::new(|| {
+static NUMBERS: LazyLock<ContactConstants> = LazyLock::new(|| {
     // B(a, -1/2).
     let beta = |a: f64| -2.0 * PI.sqrt() * gamma(a) / gamma(a - 0.5);
     let hertz = hertz::duration_factor();
     let slope = 0.4 * (beta(0.8) - beta(1.4));
-    Numbers {
+    ContactConstants {
         duration: [hertz, slope, DURATION_OF_A_FALL - hertz - slope],
         area: 0.2 * PI.sqrt() * gamma(0.4) / gamma(1.9),
         loss: 4.0 / 15.0,
@@ -71,11 +71,11 @@ const DEEPEST: f64 = 0.3;
 
 /// A barrier and what counts while it is touched.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Barrier {
-    /// Which.
+pub(super) struct ChainBarrier {
+    /// The side of the barrier.
     pub side: Side,
     /// Its place, positive towards it from the bottom.
-    pub spot: Spot,
+    pub spot: SwingAngle,
     gamma: f64,
     /// gamma^(-2/5).
     softness: f64,
@@ -87,7 +87,7 @@ pub(super) struct Barrier {
     alpha: f64,
 }
 
-/// What a contact makes of the motion.
+/// The change of the motion by one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounce {
     /// The greatest depth, rad.
@@ -98,11 +98,11 @@ pub(super) struct Bounce {
     pub speed_out: f64,
 }
 
-impl Barrier {
+impl ChainBarrier {
     /// The barrier of this side, where there is one.
-    pub fn of(model: &Model, side: Side) -> Option<Self> {
+    pub fn from_model(model: &Model, side: Side) -> Option<Self> {
         let x = model.barrier(side).filter(|_| model.gamma > 0.0)?;
-        let spot = Spot::at(side.sign() * x);
+        let spot = SwingAngle::new(side.sign() * x);
         Some(Self {
             side,
             spot,
@@ -115,7 +115,7 @@ impl Barrier {
         })
     }
 
-    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the
+    /// The contact that begins with this speed, positive; `None` if the pendulum leans on the
     /// barrier rather than leaves it, or goes deep.
     pub fn bounce(&self, speed: f64) -> Option<Bounce> {
         let product = self.damping * speed;
@@ -126,7 +126,7 @@ impl Barrier {
         if share.is_nan() || share < LEANS || depth > DEEPEST {
             return None;
         }
-        let Numbers { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
+        let ContactConstants { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
         // The less the barrier takes of the work, the less is lost in it.
         let loss = hunt_crossley::loss(
             product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),

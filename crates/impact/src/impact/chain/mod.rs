@@ -28,15 +28,15 @@ use thiserror::Error;
 
 use super::model::{Friction, Model, Side, Start};
 use super::simulation::{
-    ClosedForm, Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn,
-    first_swing, has_rested,
+    ClosedForm, ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation,
+    SimulationPath, SimulationStop, TurningPoint, first_swing, has_rested,
 };
 use super::taylor;
 use crate::decimal::decimal;
-use bounce::Barrier;
-use swing::{Spot, Stretch, Swing};
+use bounce::ChainBarrier;
+use swing::{Stretch, SwingAngle, UndampedSwing};
 
-/// Why a motion has no chain of closed forms.
+/// The reason why a motion has no chain of closed forms.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ChainError {
@@ -48,23 +48,23 @@ pub enum ChainError {
         "the chain takes dry friction by Coulomb's law: write friction = \"exact\", or leave out --chain"
     )]
     Arctangent,
-    /// Nothing that swings.
+    /// The damping is too strong for a slowly decaying swing.
     #[error(
         "zeta = {0} is too much for a swing that decays slowly: below {MOST_DAMPING} the chain holds, leave out --chain"
     )]
     Overdamped(f64),
-    /// Over the top.
+    /// The pendulum turns over the top.
     #[error(
         "the pendulum turns over with an energy of {} m g L: the chain is for swings, below 2 m g L; leave out --chain",
         decimal(*.0)
     )]
     TurnsOver(f64),
-    /// At the upright position or beyond it.
+    /// The motion starts at the upright position or beyond it.
     #[error(
         "the motion starts at x = {0}, not below the upright position: the chain begins with a swing, leave out --chain"
     )]
     Upright(f64),
-    /// In the barrier.
+    /// The motion starts inside a barrier.
     #[error("the motion starts inside the {} barrier: the chain begins with a swing, leave out --chain", .0.name())]
     Inside(Side),
 }
@@ -114,7 +114,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
     if let Some((side, _)) = model.depth(start.x) {
         return Err(ChainError::Inside(side));
     }
-    let barriers = [Side::Left, Side::Right].map(|side| Barrier::of(model, side));
+    let barriers = [Side::Left, Side::Right].map(|side| ChainBarrier::from_model(model, side));
     let mut chain = Chain {
         model,
         settings,
@@ -122,29 +122,29 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
         t: 0.0,
         state: [start.x, start.velocity],
         count: 0,
-        remembered: [Remembered { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
+        remembered: [EnergyRatio { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
             2],
         impacts: Vec::with_capacity(MANY),
         turns: Vec::with_capacity(2 * MANY),
-        path: Path::new(),
+        path: SimulationPath::new(),
         stop: None,
         level: REST_FRACTION * first_swing(model, start),
         integrated: None,
     };
     chain.run(start);
     let mut motion = chain.finish(start);
-    motion.fall = taylor::fall(&motion);
+    motion.fall = taylor::time_of_fall_by_series(&motion);
     Ok(motion)
 }
 
-/// Where the next stretch begins.
+/// The state at the start of the next stretch.
 #[derive(Debug, Clone, Copy)]
-enum Place {
-    /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
-    /// where they are known.
-    Turn(Side, Spot, Option<(Swing, Stretch)>),
-    /// At this spot, counted towards this side, with this energy, on the way there.
-    Leaving(Side, Spot, f64),
+enum StretchStart {
+    /// Rest on this side at this angle; the swing and its stretch to the barrier ahead, if they are
+    /// known.
+    Turn(Side, SwingAngle, Option<(UndampedSwing, Stretch)>),
+    /// Passage of this angle, counted towards this side, with this energy.
+    Leaving(Side, SwingAngle, f64),
 }
 
 /// A stretch from or to its reference energy.
@@ -153,8 +153,7 @@ struct Leg {
     time: f64,
     area: f64,
     length: f64,
-    /// How much later or earlier damping lets the motion arrive, for the same phase, to the first
-    /// order.
+    /// Delay of the arrival by damping at the same phase, to first order.
     lag: f64,
     /// The part of that which is dry friction's.
     rubbed: f64,
@@ -169,10 +168,10 @@ impl Leg {
     }
 }
 
-/// Which energies are alike from one swing to the next: of those that leave a barrier, and of free
-/// ones.
+/// The stretches whose energies are similar from one swing to the next: those that leave a barrier,
+/// and free ones.
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum StretchKind {
     FromPlace,
     FromTurn,
 }
@@ -180,7 +179,7 @@ enum Kind {
 /// The reference energy of the last stretch of a kind in parts of that before it, and by how much
 /// that changed: the next one is near.
 #[derive(Debug, Clone, Copy)]
-struct Remembered {
+struct EnergyRatio {
     ratio: f64,
     change: f64,
     guessed: bool,
@@ -189,19 +188,19 @@ struct Remembered {
 struct Chain<'a> {
     model: &'a Model,
     settings: &'a Settings,
-    barriers: &'a [Option<Barrier>; 2],
+    barriers: &'a [Option<ChainBarrier>; 2],
     t: f64,
     /// x and x' now.
     state: [f64; 2],
     count: usize,
-    remembered: [Remembered; 2],
-    impacts: Vec<Contact>,
-    turns: Vec<Turn>,
-    path: Path,
-    stop: Option<Stop>,
+    remembered: [EnergyRatio; 2],
+    impacts: Vec<ContactRecord>,
+    turns: Vec<TurningPoint>,
+    path: SimulationPath,
+    stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
     level: f64,
-    /// What of it was integrated, from now on.
+    /// The part of the motion that is integrated, from now on.
     integrated: Option<Simulation>,
 }
 
@@ -210,17 +209,17 @@ impl<'a> Chain<'a> {
         let Start { x, velocity } = start;
         let energy = self.model.swing_energy(x, velocity);
         let mut place = if velocity == 0.0 {
-            self.turns.push(Turn { t: 0.0, x });
+            self.turns.push(TurningPoint { t: 0.0, x });
             if x == 0.0 || self.sticks(x) {
-                return self.held(x);
+                return self.hold_at_rest(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
-            Place::Turn(side, Spot::at(x.abs()), None)
+            StretchStart::Turn(side, SwingAngle::new(x.abs()), None)
         } else {
             let to = if velocity > 0.0 { Side::Right } else { Side::Left };
-            let spot = Spot::at(to.sign() * x);
+            let spot = SwingAngle::new(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
-            let place = Place::Leaving(to, spot, energy);
+            let place = StretchStart::Leaving(to, spot, energy);
             touched
                 .map_or(Some(place), |barrier| self.contact(barrier, velocity.abs()))
                 .unwrap_or(place)
@@ -228,22 +227,22 @@ impl<'a> Chain<'a> {
         while self.stop.is_none() {
             self.count += 1;
             if self.count > self.settings.maximum_steps {
-                self.stop = Some(Stop::Steps { t: self.t });
+                self.stop = Some(SimulationStop::Steps { t: self.t });
             } else if self.settings.interrupt.is_requested() {
-                self.stop = Some(Stop::Interrupted { t: self.t });
+                self.stop = Some(SimulationStop::Interrupted { t: self.t });
             } else if self.t >= self.settings.duration {
-                self.stop = Some(Stop::Duration);
+                self.stop = Some(SimulationStop::Duration);
             } else {
                 let next = match place {
-                    Place::Turn(side, turn, known) => self.after_turn(side, turn, known),
-                    Place::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
+                    StretchStart::Turn(side, turn, known) => self.after_turn(side, turn, known),
+                    StretchStart::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
                 };
                 place = next.unwrap_or(place);
             }
         }
     }
 
-    fn barrier(&self, side: Side) -> Option<&'a Barrier> {
+    fn barrier(&self, side: Side) -> Option<&'a ChainBarrier> {
         match side {
             Side::Left => self.barriers[0].as_ref(),
             Side::Right => self.barriers[1].as_ref(),
@@ -256,13 +255,15 @@ impl<'a> Chain<'a> {
     }
 
     /// E_before - E of a leg, and how fast that grows with E.
-    fn above(&self, leg: &Leg, swing: &Swing) -> (f64, f64) {
+    fn above(&self, leg: &Leg, swing: &UndampedSwing) -> (f64, f64) {
         let Model { zeta, alpha, .. } = *self.model;
         let growth = (2.0 * zeta * (leg.time - leg.lag)).exp_m1();
         let loss = leg.area / leg.time * growth;
         match alpha == 0.0 || leg.length == 0.0 {
             true => (loss, growth),
-            false => (loss + alpha * leg.length, growth + alpha / Spot::turn(swing.energy).x.sin()),
+            false => {
+                (loss + alpha * leg.length, growth + alpha / SwingAngle::turn(swing.energy).x.sin())
+            }
         }
     }
 
@@ -277,17 +278,17 @@ impl<'a> Chain<'a> {
     fn reference(
         &mut self,
         energy: f64,
-        kind: Kind,
-        leg: impl Fn(&Swing) -> Leg,
-    ) -> Option<(Swing, Leg)> {
+        kind: StretchKind,
+        leg: impl Fn(&UndampedSwing) -> Leg,
+    ) -> Option<(UndampedSwing, Leg)> {
         if self.model.zeta == 0.0 && self.model.alpha == 0.0 {
-            let swing = Swing::new(energy);
+            let swing = UndampedSwing::new(energy);
             return Some((swing, leg(&swing))).filter(|(_, leg)| leg.time > 0.0);
         }
         let last = self.remembered[kind as usize];
         let mut reference = energy * (last.ratio + last.change);
         for _ in 0..MOST_NEWTON {
-            let mut swing = Swing::new(reference);
+            let mut swing = UndampedSwing::new(reference);
             let mut leg = leg(&swing);
             if !is_positive(leg.time) {
                 return None;
@@ -306,7 +307,7 @@ impl<'a> Chain<'a> {
                 swing.quarter.area -= swing.quarter.time * step;
                 leg.area -= leg.time * step;
                 let ratio = reference / energy;
-                self.remembered[kind as usize] = Remembered {
+                self.remembered[kind as usize] = EnergyRatio {
                     ratio,
                     change: if last.guessed { 0.0 } else { ratio - last.ratio },
                     guessed: false,
@@ -317,20 +318,25 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// How much later than at the energy of the swing, where its phase is this one, the spot is
-    /// passed with another energy.
-    fn later(swing: &Swing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
+    /// Delay of the passage of an angle with another energy, compared with the swing of the
+    /// reference energy at the given phase.
+    fn later(
+        swing: &UndampedSwing,
+        (sine, cosine): (f64, f64),
+        spot: &SwingAngle,
+        energy: f64,
+    ) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
         let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
     }
 
-    /// How much dry friction delays the passage of a spot with this energy on the way from a
-    /// turning point (direction 1), or hastens the way from there to one (-1), beside the free
-    /// swing of this energy. Friction moves the middle of a linear swing of amplitude a by alpha
-    /// against the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x +
-    /// alpha)/x') - arctan(x/x'); of the pendulum 1/a is [`slowness`].
-    fn rub_lag(&self, spot: &Spot, energy: f64, direction: f64) -> f64 {
+    /// Delay by dry friction of the passage of an angle with this energy on the way from a turning
+    /// point (direction 1), or its advance on the way to one (-1), relative to the free swing of
+    /// this energy. Friction shifts the centre of a linear swing of amplitude a by alpha against
+    /// the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x + alpha)/x')
+    /// - arctan(x/x'); for the pendulum 1/a is [`slowness`].
+    fn rub_lag(&self, spot: &SwingAngle, energy: f64, direction: f64) -> f64 {
         if self.model.alpha == 0.0 {
             return 0.0;
         }
@@ -339,20 +345,20 @@ impl<'a> Chain<'a> {
         (shift * cosine).atan2(1.0 + direction * shift * sine)
     }
 
-    /// From a turning point to the barrier ahead, or to the next turning point.
+    /// Continues from a turning point to the barrier ahead, or to the next turning point.
     fn after_turn(
         &mut self,
         side: Side,
-        turn: Spot,
-        known: Option<(Swing, Stretch)>,
-    ) -> Option<Place> {
+        turn: SwingAngle,
+        known: Option<(UndampedSwing, Stretch)>,
+    ) -> Option<StretchStart> {
         let (to, energy) = (side.opposite(), turn.energy);
         if let Some(ahead) = self.barrier(to)
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
         {
             let (swing, reach) = known.unwrap_or_else(|| {
-                let swing = Swing::new(energy);
-                (swing, swing.reach(&ahead.spot))
+                let swing = UndampedSwing::new(energy);
+                (swing, swing.stretch_to(&ahead.spot))
             });
             let leg = leg(self.model, &swing, &ahead.spot, reach);
             if !is_positive(leg.time) {
@@ -370,14 +376,14 @@ impl<'a> Chain<'a> {
         self.free(side, turn)
     }
 
-    /// From one turning point to the next, or the next two, where no barrier is in reach.
-    fn free(&mut self, side: Side, from: Spot) -> Option<Place> {
+    /// Continues from one turning point to the next, or the next two, if no barrier is in reach.
+    fn free(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let out_of_reach =
-            |barrier: &Barrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
+            |barrier: &ChainBarrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
         let turns =
             match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
                 true => self.undulate(side, from),
-                false => self.rub(side, from),
+                false => self.next_turn_with_friction(side, from),
             };
         turns.or_else(|| match self.stop {
             Some(_) => None,
@@ -385,16 +391,17 @@ impl<'a> Chain<'a> {
         })
     }
 
-    /// Two turning points under viscous damping, about the energy of the first; nothing where there
-    /// is none.
-    fn undulate(&mut self, side: Side, from: Spot) -> Option<Place> {
-        let half = |swing: &Swing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
-        let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
+    /// Two turning points under viscous damping, about the energy of the first; `None` if there is
+    /// none.
+    fn undulate(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
+        let half =
+            |swing: &UndampedSwing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
+        let (swing, leg) = self.reference(from.energy, StretchKind::FromTurn, half)?;
         let energy = swing.energy - self.below(&leg);
         if !is_positive(energy) {
             return None;
         }
-        let [first, second] = [swing.energy, energy].map(Spot::turn);
+        let [first, second] = [swing.energy, energy].map(SwingAngle::turn);
         // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 -
         // m)) with E = 2 m.
         let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
@@ -405,30 +412,30 @@ impl<'a> Chain<'a> {
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
             self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
-            self.turned(side, turn, None)?;
+            self.rest_at_turning_point(side, turn, None)?;
             if self.stop.is_some() {
                 return None;
             }
         }
-        Some(Place::Turn(side, second, None))
+        Some(StretchStart::Turn(side, second, None))
     }
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
-    /// it; nothing where there is none.
-    fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
+    /// it; `None` if there is none.
+    fn next_turn_with_friction(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let to = side.opposite();
-        let quarter = |swing: &Swing| Leg::free(swing.quarter.time, swing.quarter.area);
-        let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
+        let quarter = |swing: &UndampedSwing| Leg::free(swing.quarter.time, swing.quarter.area);
+        let (before, _) = self.reference(from.energy, StretchKind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
-            true => Spot::turn(before.energy).x,
-            false => rubbed(Spot::turn(before.energy).x, self.model.alpha),
+            true => SwingAngle::turn(before.energy).x,
+            false => turn_after_friction(SwingAngle::turn(before.energy).x, self.model.alpha),
         };
         if angle <= 0.0 {
             // It comes to rest before the bottom, where friction holds it.
             return None;
         }
-        let after = Swing::new(Spot::at(angle).energy);
-        let mut turn = Spot::turn(after.energy - self.below(&quarter(&after)));
+        let after = UndampedSwing::new(SwingAngle::new(angle).energy);
+        let mut turn = SwingAngle::turn(after.energy - self.below(&quarter(&after)));
         if let Some(ahead) = self.barrier(to)
             && turn.x > ahead.spot.x
         {
@@ -440,23 +447,23 @@ impl<'a> Chain<'a> {
         }
         let time = before.quarter.time + after.quarter.time;
         self.swing([from.energy, turn.energy], time, to, [-from.x, turn.x]);
-        self.turned(to, turn, None)
+        self.rest_at_turning_point(to, turn, None)
     }
 
-    /// From a spot on the way to a side: to the barrier there, or to the turning point.
-    fn after_leaving(&mut self, to: Side, spot: Spot, energy: f64) -> Option<Place> {
+    /// Continues from an angle on the way to a side: to the barrier there, or to the turning point.
+    fn after_leaving(&mut self, to: Side, spot: SwingAngle, energy: f64) -> Option<StretchStart> {
         let ahead = self.barrier(to);
         if let Some(ahead) = ahead
             && energy > ahead.spot.energy
         {
-            let crossing = |swing: &Swing| {
-                let (end, start) = (swing.reach(&ahead.spot), swing.reach(&spot));
+            let crossing = |swing: &UndampedSwing| {
+                let (end, start) = (swing.stretch_to(&ahead.spot), swing.stretch_to(&spot));
                 Leg {
                     length: 0.5 * (ahead.spot.x - spot.x),
                     ..Leg::free(0.5 * (end.time - start.time), 0.5 * (end.area - start.area))
                 }
             };
-            if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
+            if let Some((swing, leg)) = self.reference(energy, StretchKind::FromPlace, crossing) {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
                     self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
@@ -466,13 +473,13 @@ impl<'a> Chain<'a> {
         }
         let back = spot.mirrored();
         let model = self.model;
-        let found = self.reference(energy, Kind::FromPlace, |swing| {
-            leg(model, swing, &back, swing.reach(&back))
+        let found = self.reference(energy, StretchKind::FromPlace, |swing| {
+            leg(model, swing, &back, swing.stretch_to(&back))
         });
         let Some((swing, leg)) = found else {
             return self.integrate();
         };
-        let turn = Spot::turn(swing.energy);
+        let turn = SwingAngle::turn(swing.energy);
         if ahead.is_some_and(|ahead| turn.x > ahead.spot.x) || turn.x < spot.x {
             return self.integrate();
         }
@@ -481,7 +488,7 @@ impl<'a> Chain<'a> {
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
         // The way back to a barrier that was left is the way there; a start between the barriers is
         // not on one.
-        let leaves = |barrier: &Barrier| barrier.spot == back;
+        let leaves = |barrier: &ChainBarrier| barrier.spot == back;
         let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
             let reach = Stretch {
                 time: leg.time - swing.quarter.time,
@@ -489,46 +496,51 @@ impl<'a> Chain<'a> {
             };
             (swing, reach)
         });
-        self.turned(to, turn, known)
+        self.rest_at_turning_point(to, turn, known)
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
-    fn turned(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+    fn rest_at_turning_point(
+        &mut self,
+        side: Side,
+        turn: SwingAngle,
+        known: Option<(UndampedSwing, Stretch)>,
+    ) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
         let x = side.sign() * turn.x;
-        self.turns.push(Turn { t: self.t, x });
+        self.turns.push(TurningPoint { t: self.t, x });
         self.state = [x, 0.0];
         if self.sticks(x) {
-            self.held(x);
+            self.hold_at_rest(x);
             return None;
         }
         if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
-            self.stop = Some(Stop::RestEnergy);
+            self.stop = Some(SimulationStop::RestEnergy);
         } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
-            self.stop = Some(Stop::AtRest);
+            self.stop = Some(SimulationStop::AtRest);
         }
-        Some(Place::Turn(side, turn, known))
+        Some(StretchStart::Turn(side, turn, known))
     }
 
     /// A contact entered with this speed.
-    fn contact(&mut self, barrier: &Barrier, speed: f64) -> Option<Place> {
+    fn contact(&mut self, barrier: &ChainBarrier, speed: f64) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
-        let Barrier { side, spot, .. } = *barrier;
+        let ChainBarrier { side, spot, .. } = *barrier;
         let x = side.sign() * spot.x;
         self.state = [x, side.sign() * speed];
         let Some(bounce) = barrier.bounce(speed) else {
             return self.integrate();
         };
-        let mut contact = Contact::touched(side, self.t, speed);
+        let mut contact = ContactRecord::touched(side, self.t, speed);
         contact.penetration = bounce.depth;
         let deepest = self.t + 0.5 * bounce.duration;
         if deepest <= self.settings.duration {
             let x = x + side.sign() * bounce.depth;
-            self.turns.push(Turn { t: deepest, x });
+            self.turns.push(TurningPoint { t: deepest, x });
         }
         self.advance(bounce.duration, Regime::Contact(side), || {
             ClosedForm::contact(
@@ -543,19 +555,19 @@ impl<'a> Chain<'a> {
             contact.released(self.model, self.t, bounce.speed_out);
             self.state = [x, away.sign() * bounce.speed_out];
             if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
-                self.stop = Some(Stop::RestEnergy);
+                self.stop = Some(SimulationStop::RestEnergy);
             } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level)
             {
-                self.stop = Some(Stop::AtRest);
+                self.stop = Some(SimulationStop::AtRest);
             }
         }
         self.impacts.push(contact);
-        Some(Place::Leaving(away, spot.mirrored(), energy))
+        Some(StretchStart::Leaving(away, spot.mirrored(), energy))
     }
 
     /// A stretch of the swing between two energies and two places, towards a side.
     fn swing(&mut self, energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) {
-        self.advance(time, Regime::Free, || closed(energies, time, to, places));
+        self.advance(time, Regime::Free, || closed_form_between(energies, time, to, places));
     }
 
     /// The clock goes on by so much, or to the end of the duration.
@@ -565,32 +577,32 @@ impl<'a> Chain<'a> {
             self.path.push_closed([start, end], regime, form());
         }
         if self.t + time > self.settings.duration {
-            self.state = form().at(end - start).into();
-            self.stop = Some(Stop::Duration);
+            self.state = form().phase_point_at(end - start).into();
+            self.stop = Some(SimulationStop::Duration);
         }
         self.t = end;
     }
 
-    /// At rest to the end.
-    fn held(&mut self, x: f64) {
+    /// Ends the motion at rest.
+    fn hold_at_rest(&mut self, x: f64) {
         let end = self.settings.duration;
         if self.settings.keep_path && end > self.t {
             self.path.push_rest([self.t, end], x);
         }
         if end > self.t && self.model.sticks() {
-            self.turns.push(Turn { t: end, x });
+            self.turns.push(TurningPoint { t: end, x });
         }
         self.t = end;
         self.state = [x, 0.0];
-        self.stop = Some(Stop::Duration);
+        self.stop = Some(SimulationStop::Duration);
     }
 
-    /// What has no closed form: the rest of the motion is followed by Taylor series.
-    fn integrate(&mut self) -> Option<Place> {
+    /// Follows the rest of the motion, which has no closed form, by Taylor series.
+    fn integrate(&mut self) -> Option<StretchStart> {
         let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
-        let motion = taylor::alone(*self.model, Start { x, velocity }, left);
-        self.stop = Some(motion.stop.later(self.t));
+        let motion = taylor::simulate_one(*self.model, Start { x, velocity }, left);
+        self.stop = Some(motion.stop.delayed_by(self.t));
         self.integrated = Some(motion);
         None
     }
@@ -609,9 +621,9 @@ impl<'a> Chain<'a> {
                     .turns
                     .iter()
                     .filter(|turn| turn.t > 0.0)
-                    .map(|turn| Turn { t: from + turn.t, ..*turn }),
+                    .map(|turn| TurningPoint { t: from + turn.t, ..*turn }),
             );
-            self.impacts.extend(motion.impacts.iter().map(|impact| impact.later(from)));
+            self.impacts.extend(motion.impacts.iter().map(|impact| impact.delayed_by(from)));
             self.path.extend(&motion.path, from);
         }
         let [end_x, end_velocity] = self.state;
@@ -626,28 +638,28 @@ impl<'a> Chain<'a> {
             end_time,
             end_x,
             end_velocity,
-            stop: self.stop.unwrap_or(Stop::Duration),
+            stop: self.stop.unwrap_or(SimulationStop::Duration),
             steps,
             fall: None,
         }
     }
 }
 
-/// Not zero, not negative, and a number.
+/// Whether a number is positive and not NaN.
 fn is_positive(value: f64) -> bool {
     value > 0.0
 }
 
 /// The leg between the turning point of a swing and a spot, which is counted from the bottom away
 /// from the turning point.
-fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
+fn leg(model: &Model, swing: &UndampedSwing, spot: &SwingAngle, reach: Stretch) -> Leg {
     let Model { zeta, alpha, .. } = *model;
     let phase = spot.phase(swing.energy);
     let (_, cosine) = phase;
     let (length, rubbed) = match alpha == 0.0 {
         true => (0.0, 0.0),
         false => {
-            let turn = Spot::turn(swing.energy).x;
+            let turn = SwingAngle::turn(swing.energy).x;
             (turn + spot.x, alpha / turn.sin().max(alpha))
         }
     };
@@ -665,7 +677,7 @@ fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
 /// counted to the other side.
 ///
 /// With h = (a + a')/2: sin((a - a')/2) = alpha h/sin h, which has lost the root a' = -a.
-fn rubbed(turn: f64, alpha: f64) -> f64 {
+fn turn_after_friction(turn: f64, alpha: f64) -> f64 {
     let mut next = turn - 2.0 * alpha;
     for _ in 0..MOST_NEWTON {
         let half = 0.5 * (turn + next);
@@ -680,8 +692,8 @@ fn rubbed(turn: f64, alpha: f64) -> f64 {
     next
 }
 
-/// By how much a small constant force delays the quarter of a swing from its turning point to the
-/// bottom, in parts of the force: dJ/dE of J = int |x|/x' dx, which is 1/A of a linear swing.
+/// Delay by a small constant force of the quarter of a swing from its turning point to the bottom,
+/// per unit of the force: dJ/dE of J = int |x|/x' dx, which is 1/A for a linear swing.
 ///
 /// ```text
 /// J = 2 sum c_n^2 k^(2n + 1),   c_n = (2^n n!)^2/(2n + 1)!,   E = 2 k^2
@@ -701,25 +713,25 @@ fn slowness(energy: f64) -> f64 {
 /// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same
 /// between the barriers, units of m g L/omega.
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
-    let swing = Swing::new(Spot::at(amplitude).energy);
+    let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
-        Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
+        Some(x) => swing.stretch_to(&SwingAngle::new(side.sign() * x)).area,
         None => swing.quarter.area,
     };
     (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
 }
 
 /// The closed form of a stretch between two energies and two places, towards a side.
-fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedForm {
+fn closed_form_between(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedForm {
     let moduli = energies.map(|energy| (0.5 * energy).sqrt());
     let mean = (moduli[0] * moduli[1]).sqrt();
     let parameter = mean * mean;
-    let middle = Swing::new(2.0 * parameter);
+    let middle = UndampedSwing::new(2.0 * parameter);
     // The time from the bottom of the swing of mean energy to the phase that the place has in its
     // own.
     let phase = |energy: f64, place: f64| {
-        let (sine, _) = Spot::at(place).phase(energy);
-        middle.reach(&Spot::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
+        let (sine, _) = SwingAngle::new(place).phase(energy);
+        middle.stretch_to(&SwingAngle::new(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
     };
     let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
     ClosedForm::Swing {
@@ -735,8 +747,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
 /// Impacts that there is room for from the beginning.
 const MANY: usize = 32;
 
-/// How near the reference energy is to be, in parts of the energy, for one more step without
-/// another elliptic integral.
+/// Relative error of the reference energy up to which one more step needs no further elliptic
+/// integral.
 const NEAR: f64 = 5e-4;
 
 /// The most turns of an iteration that closes in within a few.
@@ -753,7 +765,7 @@ mod tests {
         for amplitude in [0.01, 1.5, 3.0] {
             let start = Start { x: -amplitude, velocity: 0.0 };
             let formulas = chain(&model, start, &settings).expect("a chain");
-            let truth = taylor::alone(model, start, settings);
+            let truth = taylor::simulate_one(model, start, settings);
             let difference = formulas.difference(&truth, 2001);
             assert!(difference.displacement < 1e-9 * amplitude, "{amplitude}: {difference:?}");
             assert!(difference.velocity < 1e-9 * amplitude, "{amplitude}: {difference:?}");
@@ -771,7 +783,7 @@ mod tests {
             assert!((after.cos() - before.cos() - 0.03 * (before + after)).abs() < 1e-14);
         }
         // Held where the weight is less than the friction, as by the integration, to the end.
-        let truth = taylor::alone(model, Start::default(), settings);
+        let truth = taylor::simulate_one(model, Start::default(), settings);
         assert!((formulas.end_x - truth.end_x).abs() < 1e-3, "{} {}", formulas.end_x, truth.end_x);
         assert_eq!(formulas.end_velocity, 0.0);
     }
@@ -791,14 +803,15 @@ mod tests {
         let motion = chain(&model, start, &settings).expect("a chain");
         let pieces = motion.path.pieces();
         assert!(pieces.len() > 10);
-        let (x, _) = motion.path.at(0.0).expect("the start");
+        let (x, _) = motion.path.phase_point_at(0.0).expect("the start");
         assert!((x - start.x).abs() < 1e-12);
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);
             let (Some(before), Some(after)) = (pair[0].closed_form(), pair[1].closed_form()) else {
                 continue;
             };
-            let (left, right) = (before.at(pair[0].end - pair[0].start).0, after.at(0.0).0);
+            let (left, right) =
+                (before.phase_point_at(pair[0].end - pair[0].start).0, after.phase_point_at(0.0).0);
             assert!((left - right).abs() < 1e-8, "{left} {right} at {}", pair[0].end);
         }
     }

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::{ellpe, ellpk};
 
-/// What a stretch of the swing takes: both counted from the bottom, negative on the left.
+/// Time and action of a stretch of the swing: both counted from the bottom, negative on the left.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Stretch {
     /// Time, in units of 1/omega.
@@ -27,7 +27,7 @@ pub(super) struct Stretch {
 
 /// An angle to be passed, counted from the bottom.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Spot {
+pub(super) struct SwingAngle {
     /// The angle, rad.
     pub x: f64,
     /// sin(x/2).
@@ -36,9 +36,9 @@ pub(super) struct Spot {
     pub energy: f64,
 }
 
-impl Spot {
+impl SwingAngle {
     /// The spot at this angle.
-    pub fn at(x: f64) -> Self {
+    pub fn new(x: f64) -> Self {
         let half = (0.5 * x).sin();
         Self { x, half, energy: 2.0 * half * half }
     }
@@ -49,7 +49,7 @@ impl Spot {
         Self { x: 2.0 * half.asin(), half, energy }
     }
 
-    /// The same on the other side.
+    /// The mirror image on the other side.
     pub fn mirrored(&self) -> Self {
         Self { x: -self.x, half: -self.half, ..*self }
     }
@@ -68,14 +68,14 @@ impl Spot {
 
 /// The undamped swing of one energy, between rest and the upright position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Swing {
+pub(super) struct UndampedSwing {
     /// E, in units of m g L, from 0 to less than 2.
     pub energy: f64,
     /// The quarter of the swing from the bottom to the turning point.
     pub quarter: Stretch,
 }
 
-impl Swing {
+impl UndampedSwing {
     /// The swing of this energy.
     pub fn new(energy: f64) -> Self {
         let parameter = 0.5 * energy;
@@ -93,9 +93,9 @@ impl Swing {
         Self { energy, quarter: Stretch { time, area } }
     }
 
-    /// From the bottom to this spot, on the way to the right; beyond the turning point as far as
-    /// that.
-    pub fn reach(&self, spot: &Spot) -> Stretch {
+    /// The stretch from the bottom to this angle, on the way to the right; at most to the turning
+    /// point.
+    pub fn stretch_to(&self, spot: &SwingAngle) -> Stretch {
         let (sine, cosine) = spot.phase(self.energy);
         if cosine == 0.0 {
             return Stretch {
@@ -151,11 +151,12 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
 /// m below which the area of a quarter is a series: its first term left out is 0.015 m^4.
 const SMALL: f64 = 1e-3;
 
-/// How near each other the arguments are, in parts of their sum, when the series take over: a
-/// deviation of 0.03 from their mean leaves an error of 1e-9.
+/// Relative distance of the arguments, over their sum, below which the series are used: a deviation
+/// of 0.03 from their mean leaves an error of 1e-9.
 const CLOSE: f64 = 0.015;
 
-/// Far more than any argument needs: 4^-40 is below the resolution of a double.
+/// Largest number of duplications, more than any argument needs: 4^-40 is below the resolution of a
+/// double.
 const MOST_DUPLICATIONS: usize = 40;
 
 #[cfg(test)]
@@ -166,7 +167,7 @@ mod tests {
     #[test]
     fn the_stretches_are_elliptic_integrals() {
         for amplitude in [1e-6, 0.01, 0.3, 1.0, 1.5, 2.5, 3.1, 3.13] {
-            let swing = Swing::new(Spot::at(amplitude).energy);
+            let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());
             assert!((swing.quarter.time / first - 1.0).abs() < 1e-13, "{amplitude}");
@@ -175,7 +176,7 @@ mod tests {
             for part in [-0.999_999, -0.6, -0.1, 1e-9, 0.2, 0.5, 0.9, 0.999] {
                 let x: f64 = part * amplitude;
                 let phi = ((0.5 * x).sin() / m.sqrt()).asin();
-                let found = swing.reach(&Spot::at(x));
+                let found = swing.stretch_to(&SwingAngle::new(x));
                 let time = ellipf(phi, m).unwrap();
                 let area = 4.0 * (ellipeinc(phi, m).unwrap() - (1.0 - m) * time);
                 assert!(
@@ -196,25 +197,26 @@ mod tests {
     #[test]
     fn a_small_swing_keeps_the_digits_of_its_area() {
         for amplitude in [1e-12, 1e-7, 1e-4] {
-            let swing = Swing::new(Spot::at(amplitude).energy);
+            let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
             let m = 0.5 * swing.energy;
             assert!(
                 (swing.quarter.area / (PI * m * (1.0 + 0.125 * m)) - 1.0).abs() < 1e-14,
                 "{amplitude}"
             );
         }
-        let [below, above] = [SMALL.next_down(), SMALL].map(|m| Swing::new(2.0 * m).quarter.area);
+        let [below, above] =
+            [SMALL.next_down(), SMALL].map(|m| UndampedSwing::new(2.0 * m).quarter.area);
         assert!((below / above - 1.0).abs() < 1e-12, "{below} {above}");
     }
 
     #[test]
     fn the_area_grows_with_the_energy_as_the_time() {
         for (amplitude, x) in [(1.5, 0.323), (0.5, -0.2), (2.9, 1.0), (1.0, 2.0)] {
-            let energy = Spot::at(amplitude).energy;
+            let energy = SwingAngle::new(amplitude).energy;
             let step = 1e-5 * energy;
             let [below, above] = [energy - step, energy + step]
-                .map(|energy| Swing::new(energy).reach(&Spot::at(x)).area);
-            let time = Swing::new(energy).reach(&Spot::at(x)).time;
+                .map(|energy| UndampedSwing::new(energy).stretch_to(&SwingAngle::new(x)).area);
+            let time = UndampedSwing::new(energy).stretch_to(&SwingAngle::new(x)).time;
             assert!(((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7, "{amplitude} {x}");
         }
     }

@@ -26,7 +26,7 @@
 //!
 //! // The paper's pendulum on a soft barrier: gravity is half of what turns it.
 //! let contact = ExactContact::new(|d| (0.323 + d).sin() + d.powf(1.5), 0.5)?;
-//! assert!((contact.at(contact.duration).1 + 0.5).abs() < 1e-12);
+//! assert!((contact.phase_point_at(contact.duration).1 + 0.5).abs() < 1e-12);
 //! let series = contact.sine_series(1e-6);
 //! assert!(series.deviation <= 1e-6 && series.harmonics.len() == 10);
 //! # Ok::<(), lindstedt::impact::contact::ContactError>(())
@@ -38,7 +38,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::super::hertz::positive;
-use super::time::{Panel, expand, invert, length};
+use super::time::{LegendrePanel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_part, nodes_and_weights};
@@ -66,9 +66,9 @@ pub struct ExactContact {
     /// The greatest force, per unit of mass.
     pub peak_force: f64,
     /// t(q), from the touch on.
-    first: Vec<Panel>,
+    first: Vec<LegendrePanel>,
     /// T/2 - t(w), from the deepest point back.
-    second: Vec<Panel>,
+    second: Vec<LegendrePanel>,
 }
 
 impl ExactContact {
@@ -78,7 +78,7 @@ impl ExactContact {
     /// Depth and duration are good to 1e-12 for a smooth force.
     ///
     /// # Errors
-    /// [`ContactError`]: a speed that is no positive number; a force that never turns the motion
+    /// [`ContactError`]: a speed that is not a positive number; a force that never turns the motion
     /// back, has no finite value on the way or is not smooth there; a depth or a duration beyond
     /// double precision.
     pub fn new(force: impl Fn(f64) -> f64, speed: f64) -> Result<Self, ContactError> {
@@ -131,7 +131,7 @@ impl ExactContact {
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     ///
     /// Good to 1e-12 of the depth and of the greatest speed.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let falling = time > 0.5 * self.duration;
         let since = if falling { self.duration - time } else { time };
@@ -148,18 +148,18 @@ impl ExactContact {
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
     /// The motion as a parabola and odd sines, as many as are needed to stay within `tolerance` of
     /// D, at most 64.
     ///
-    /// What is left is in [`SineSeries::deviation`]: ask it where the tolerance matters.
+    /// The remaining error is [`SineSeries::deviation`]: compare it with the tolerance.
     pub fn sine_series(&self, tolerance: f64) -> SineSeries {
         let duration = self.duration;
         let mut series = SineSeries {
@@ -199,7 +199,7 @@ impl ExactContact {
         // turns by no more than 6 rad in a piece.
         let mut elements: Vec<(f64, f64)> = Vec::new();
         let mut gather =
-            |panels: &[Panel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
+            |panels: &[LegendrePanel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
                 for panel in panels {
                     let pieces = 1 + (highest * wave * (panel.end - panel.start) / 6.0) as usize;
                     let width = (panel.to - panel.from) / pieces as f64;
@@ -237,7 +237,7 @@ pub struct SineSeries {
     pub parabola: f64,
     /// b_1, b_3, b_5, .., in the unit of x.
     pub harmonics: Vec<f64>,
-    /// b_2, b_4, b_6, .., in the unit of x; empty where nothing is lost.
+    /// b_2, b_4, b_6, .., in the unit of x; empty if nothing is lost.
     pub even: Vec<f64>,
     /// The largest difference from the motion that it was made of, relative to D.
     pub deviation: f64,
@@ -261,11 +261,11 @@ impl SineSeries {
     /// use lindstedt::impact::contact::{HuntCrossley, SineSeries};
     ///
     /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
-    /// let series = SineSeries::of(|s| contact.position(s), contact.duration, 0.0, contact.depth, 1e-6);
-    /// assert!(series.deviation <= 1e-6 && (series.at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
+    /// let series = SineSeries::from_motion(|s| contact.position(s), contact.duration, 0.0, contact.depth, 1e-6);
+    /// assert!(series.deviation <= 1e-6 && (series.phase_point_at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn of(
+    pub fn from_motion(
         position: impl Fn(f64) -> f64,
         duration: f64,
         parabola: f64,
@@ -317,7 +317,7 @@ impl SineSeries {
     }
 
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let mut depth = self.parabola * time * (self.duration - time);
         let mut velocity = self.parabola * (self.duration - 2.0 * time);
@@ -337,7 +337,7 @@ impl SineSeries {
         (depth, velocity)
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch.
+    /// The formula in the usual form, this many significant digits: s is the time since touch.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -403,8 +403,8 @@ fn work(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, Quadratu
     integrate_part(|q| 2.0 * q * force(q * q), [0.0, q], 1e-14, energy)
 }
 
-/// The same by pieces in the golden section, none of which ends where a panel that was halved does:
-/// a jump of the force beside such an end lies behind all points of a rule.
+/// The work by pieces in the golden section, none of which ends at the end of a panel that was
+/// halved: a jump of the force beside such an end lies behind all points of a rule.
 fn work_by_sections(
     force: impl Fn(f64) -> f64,
     q: f64,
@@ -504,7 +504,7 @@ mod tests {
                     for part in 0..=40 {
                         let time = law.duration * f64::from(part) / 40.0;
                         let ((depth, velocity), (expected, expected_velocity)) =
-                            (contact.at(time), law.at(time));
+                            (contact.phase_point_at(time), law.phase_point_at(time));
                         assert!(
                             (depth - expected).abs() < 1e-12 * law.depth,
                             "{law:?} at {part}/40: {depth}"
@@ -555,7 +555,7 @@ mod tests {
                     let time = before + beyond * f64::from(part) / 8.0;
                     let expected =
                         (depth + centre) * (omega * (before + beyond - time)).cos() - centre;
-                    let (found, _) = contact.at(time);
+                    let (found, _) = contact.phase_point_at(time);
                     assert!(
                         (found - expected).abs() < bound * depth,
                         "{jump} at {jump_at}, {part}/8: {found} for {expected}"
@@ -600,7 +600,7 @@ mod tests {
             let fastest =
                 path.samples(201).fold(0.0_f64, |fastest, state| fastest.max(state.v.abs()));
             for state in path.samples(201) {
-                let (depth, velocity) = contact.at(state.t);
+                let (depth, velocity) = contact.phase_point_at(state.t);
                 assert!(
                     (depth - state.x).abs() < 2e-9 * deepest,
                     "{case} at {}: {depth} against {}",
@@ -614,7 +614,7 @@ mod tests {
                     state.v
                 );
             }
-            let ends = (contact.at(0.0), contact.at(contact.duration));
+            let ends = (contact.phase_point_at(0.0), contact.phase_point_at(contact.duration));
             assert!(
                 ends.0.0.abs() < 1e-15 * deepest && (ends.0.1 / speed - 1.0).abs() < 1e-10,
                 "{case}: {ends:?}"
@@ -681,7 +681,7 @@ mod tests {
             let mut worst = 0.0_f64;
             for part in 0..=777 {
                 let time = contact.duration * f64::from(part) / 777.0;
-                worst = worst.max((series.at(time).0 - contact.position(time)).abs());
+                worst = worst.max((series.phase_point_at(time).0 - contact.position(time)).abs());
             }
             assert!(worst <= 1.1e-6 * contact.depth, "{case}: {}", worst / contact.depth);
             assert!(series.closed_form(9).starts_with("d(s) = "), "{}", series.closed_form(9));
@@ -736,7 +736,7 @@ mod tests {
         ) {
             for preload in [preload, -preload] {
                 if let Ok(contact) = ExactContact::new(|d| preload + stiffness * d.powf(exponent), speed) {
-                    let (depth, velocity) = contact.at(time);
+                    let (depth, velocity) = contact.phase_point_at(time);
                     prop_assert!(depth.is_finite() && velocity.is_finite(), "{depth} {velocity}");
                     prop_assert!(depth <= contact.depth * (1.0 + 1e-9) && depth >= 0.0, "{depth} of {}", contact.depth);
                     let energy = |d: f64| preload * d + stiffness / (exponent + 1.0) * d.powf(exponent + 1.0);

@@ -27,9 +27,9 @@ use crate::numeric::ode::root::find_root;
 /// Harmonics kept in the motion of iteration and homotopy: to k = 15.
 pub(super) const HARMONICS: usize = 8;
 
-/// What is taken of the perturbation.
+/// The order to which the perturbation is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
+pub(super) enum PerturbationOrder {
     /// Homotopy of the first order: one sine.
     First,
     /// One pass of iteration.
@@ -61,7 +61,7 @@ impl HalfOscillation<'_> {
 
     /// Omega^2 and the motion by homotopy or iteration, for the amplitude that begins with the
     /// speed of touch.
-    pub(super) fn perturbed(&self, order: Order) -> Result<SineSeries, ContactError> {
+    pub(super) fn perturbed(&self, order: PerturbationOrder) -> Result<SineSeries, ContactError> {
         // The square of d'(0), with the sign that tells on which side of an oscillation the
         // amplitude lies.
         let squared_speed = |amplitude: f64| {
@@ -79,10 +79,10 @@ impl HalfOscillation<'_> {
         ))
     }
 
-    fn perturbation(&self, amplitude: f64, order: Order) -> (f64, Vec<f64>) {
+    fn perturbation(&self, amplitude: f64, order: PerturbationOrder) -> (f64, Vec<f64>) {
         let coefficients = self.sine_coefficients(amplitude);
         let first = coefficients[0] / amplitude;
-        if order == Order::First {
+        if order == PerturbationOrder::First {
             return (first, vec![amplitude]);
         }
         // X by its sine coefficients.
@@ -94,7 +94,7 @@ impl HalfOscillation<'_> {
             correction[0] -= if number % 2 == 0 { part } else { -part };
         }
         let square = match order {
-            Order::Second => {
+            PerturbationOrder::Second => {
                 // g' X by the difference of the force along X.
                 let size = correction
                     .iter()
@@ -119,7 +119,7 @@ impl HalfOscillation<'_> {
 
     /// The balance of so many odd harmonics, by Newton from that of one.
     pub(super) fn balanced(&self, count: usize) -> Result<SineSeries, ContactError> {
-        let start = self.perturbed(Order::First)?;
+        let start = self.perturbed(PerturbationOrder::First)?;
         let (scale, frequency) = (start.harmonics[0], PI / start.duration);
         // Unknowns: harmonics in units of the amplitude of one, Omega in units of its own.
         let residual = |unknown: &DVector<f64>| {
@@ -194,7 +194,7 @@ fn sum_of_slopes(harmonics: &[f64]) -> f64 {
 /// halving from one.
 fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);
-    // What is no number lies too far.
+    // A point without a value lies too far.
     let value = |at: f64| {
         let value = function(at);
         if value.is_finite() { value } else { 1.0 }

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! with W Lambert's function. Neither branch is computed by W: near the deepest point, and all
-//! along where lambda v is small, its argument -exp(-1 - G) has lost the digits of z, and beyond G
-//! = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root instead, psi by its
+//! along where lambda v is small, its argument -exp(-1 - G) has lost the digits of z, and beyond
+//! G = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root instead, psi by its
 //! series near zero.
 //!
 //! ```text
@@ -30,7 +30,7 @@ use std::f64::consts::FRAC_PI_4;
 use spec_math::cephes64::log1pmx;
 
 use super::super::hertz::positive;
-use super::time::{Panel, expand, invert, length};
+use super::time::{LegendrePanel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::numeric::ode::root::find_root;
 
@@ -62,11 +62,11 @@ pub struct HuntCrossley {
     /// The energy lost, (1 - e^2) v^2/2, per unit of mass.
     pub energy_lost: f64,
     /// t(q) from the touch, q = sqrt(d/D), up to phi = pi/4.
-    loading: Vec<Panel>,
+    loading: Vec<LegendrePanel>,
     /// t(phi) from there to 3 pi/4.
-    turning: Vec<Panel>,
+    turning: Vec<LegendrePanel>,
     /// The time left to the release as a function of q.
-    unloading: Vec<Panel>,
+    unloading: Vec<LegendrePanel>,
 }
 
 impl HuntCrossley {
@@ -106,7 +106,7 @@ impl HuntCrossley {
             (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
         let depth = in_range("depth", undamped * (1.0 + excess(x)).powf(inverse))?;
         let loss = loss(x);
-        let motion = Motion { x, whole: signed_root(x) };
+        let motion = PhasePlaneMotion { x, whole: signed_root(x) };
 
         let scale = depth / speed;
         let half_way = 0.5_f64.powf(0.5 * inverse);
@@ -163,7 +163,7 @@ impl HuntCrossley {
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     ///
     /// Good to 1e-12 of D and v.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let m = self.exponent + 1.0;
         let left = self.duration - time;
@@ -182,12 +182,12 @@ impl HuntCrossley {
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
     /// Velocity and force, per unit of mass, at a depth on the way in; beyond the greatest depth
@@ -222,18 +222,18 @@ impl HuntCrossley {
         (self.speed * ratio, force)
     }
 
-    fn motion(&self) -> Motion {
+    fn motion(&self) -> PhasePlaneMotion {
         let x = self.damping * self.speed;
-        Motion { x, whole: signed_root(x) }
+        PhasePlaneMotion { x, whole: signed_root(x) }
     }
 }
 
 /// The coefficient of restitution e, by the product lambda v of damping and speed of touch.
 ///
-/// For small lambda v it is 1 - (2/3) lambda v: below lambda v = 0.15 to 1 %.
+/// For small lambda v the restitution is 1 - (2/3) lambda v: within 1 % below lambda v = 0.15.
 ///
 /// # Errors
-/// [`ContactError::Negative`] for a product that is no number or negative.
+/// [`ContactError::Negative`] for a product that is not a number or negative.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -279,7 +279,7 @@ pub fn damping_for(restitution: f64) -> Result<f64, ContactError> {
     }
 }
 
-/// Beyond it the squares of lambda v are no numbers.
+/// The argument beyond which the square of lambda v overflows.
 const LARGEST: f64 = 1e150;
 
 /// psi(z) = 2 (z - ln(1 + z))/z^2 - 1 = -(2/3) z + (1/2) z^2 - (2/5) z^3 + .., for z > -1.
@@ -337,7 +337,7 @@ pub(in crate::impact) fn loss(x: f64) -> f64 {
         let step =
             (e * e * excess(-e * x) - constant - loss * (2.0 - loss)) * (1.0 - e * x) / (2.0 * e);
         loss += step;
-        // What is left is of the order of its square.
+        // The remaining error is of the order of the square of the step.
         if step * step <= 1e-17 * loss {
             break;
         }
@@ -384,7 +384,7 @@ fn remaining(y: f64, m: f64) -> f64 {
 }
 
 /// The greatest force of a contact, per unit of mass, as of [`HuntCrossley::new`] but without its
-/// motion in time; nothing for quantities outside their domains.
+/// motion in time; `None` for quantities outside their domains.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -404,7 +404,7 @@ pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Op
     let undamped = (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
     let depth = undamped * (1.0 + excess(x)).powf(inverse);
     let whole = signed_root(x);
-    let (_, factor) = Motion { x, whole }.peak(exponent);
+    let (_, factor) = PhasePlaneMotion { x, whole }.peak(exponent);
     Some(0.5 * m * speed / depth * speed * (1.0 + excess(x)) * factor)
         .filter(|force| force.is_finite())
 }
@@ -412,14 +412,14 @@ pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Op
 /// The motion in the phase plane: u/v as a function of sigma, the part of S(lambda v) that is left,
 /// with its sign.
 #[derive(Debug, Clone, Copy)]
-struct Motion {
+struct PhasePlaneMotion {
     /// lambda v.
     x: f64,
     /// S(lambda v).
     whole: f64,
 }
 
-impl Motion {
+impl PhasePlaneMotion {
     fn speed_ratio(&self, sigma: f64) -> f64 {
         if self.x < 1e-9 {
             // z = S + S^2/3 with S = sigma x (1 - x/3).
@@ -472,7 +472,7 @@ mod tests {
         )
     }
 
-    /// From a loss of a thousandth to one of 95 %.
+    /// Restitutions from a loss of a thousandth to one of 95 %.
     const RESTITUTIONS: [f64; 8] = [0.999, 0.99, 0.9, 0.7, 0.5, 0.3, 0.1, 0.05];
 
     #[test]
@@ -570,7 +570,7 @@ mod tests {
                     );
                     let mut peak = 0.0_f64;
                     for state in path.samples(401) {
-                        let (depth, velocity) = contact.at(state.t);
+                        let (depth, velocity) = contact.phase_point_at(state.t);
                         assert!(
                             (depth - state.x).abs() < 1e-9 * deepest,
                             "{case} at {}: {depth}",
@@ -758,7 +758,7 @@ mod tests {
                 prop_assert!(x.is_finite() && x >= 0.0);
             }
             if let Ok(contact) = HuntCrossley::new(exponent, stiffness, damping, speed) {
-                let (depth, velocity) = contact.at(time);
+                let (depth, velocity) = contact.phase_point_at(time);
                 prop_assert!((0.0..=contact.depth * (1.0 + 1e-12)).contains(&depth), "{contact:?} at {time}");
                 prop_assert!(velocity.abs() <= speed * (1.0 + 1e-9), "{contact:?} at {time}: {velocity}");
                 prop_assert!((0.0..=1.0).contains(&contact.restitution) && contact.energy_lost >= 0.0);

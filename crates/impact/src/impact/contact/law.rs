@@ -19,14 +19,14 @@ use thiserror::Error;
 
 use super::super::hertz::{self, DEFAULT_STIFFNESS, positive};
 use super::super::linearisation::{self, Rule};
-use super::half_oscillation::{HalfOscillation, Order};
+use super::half_oscillation::{HalfOscillation, PerturbationOrder};
 use super::line::LineContact;
 use super::{
     ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within,
 };
 use crate::decimal::significant;
 
-/// How the motion in contact is computed. The names are those of tables and problem files.
+/// The method that computes the motion in contact. The names are those of tables and problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ContactLaw {
@@ -118,7 +118,7 @@ impl FromStr for ContactLaw {
     }
 }
 
-/// What meets: d'' + f(x_c + d) + gamma F(d) = 0, d(0) = 0, d'(0) = v.
+/// The contact problem: d'' + f(x_c + d) + gamma F(d) = 0, d(0) = 0, d'(0) = v.
 #[derive(Clone, Copy)]
 pub struct Touch<'a> {
     /// The speed v of touch, in the unit of x per time.
@@ -171,12 +171,12 @@ impl Touch<'_> {
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
-    /// let (exact, sines) = (touch.by(ContactLaw::Exact)?, touch.by(ContactLaw::TwoHarmonics)?);
+    /// let (exact, sines) = (touch.contact_by(ContactLaw::Exact)?, touch.contact_by(ContactLaw::TwoHarmonics)?);
     /// assert!((sines.duration / exact.duration - 1.0).abs() < 2e-3);
-    /// assert!((sines.at(0.0).1 - 1.0).abs() < 1e-10);
+    /// assert!((sines.phase_point_at(0.0).1 - 1.0).abs() < 1e-10);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn by(&self, law: ContactLaw) -> Result<ContactMotion, ContactError> {
+    pub fn contact_by(&self, law: ContactLaw) -> Result<ContactMotion, ContactError> {
         positive("speed of contact", self.speed)?;
         positive("stiffness gamma", self.stiffness)?;
         finite("position of the barrier", self.barrier)?;
@@ -185,9 +185,9 @@ impl Touch<'_> {
         let half = HalfOscillation { force: &force, speed: self.speed };
         let form = match law {
             ContactLaw::Line(rule) => Form::Line(self.line(rule)?),
-            ContactLaw::Homotopy => Form::Sines(half.perturbed(Order::First)?),
-            ContactLaw::Iteration => Form::Sines(half.perturbed(Order::Iterated)?),
-            ContactLaw::SecondHomotopy => Form::Sines(half.perturbed(Order::Second)?),
+            ContactLaw::Homotopy => Form::Sines(half.perturbed(PerturbationOrder::First)?),
+            ContactLaw::Iteration => Form::Sines(half.perturbed(PerturbationOrder::Iterated)?),
+            ContactLaw::SecondHomotopy => Form::Sines(half.perturbed(PerturbationOrder::Second)?),
             ContactLaw::TwoHarmonics => Form::Sines(half.balanced(2)?),
             ContactLaw::ThreeHarmonics => Form::Sines(half.balanced(3)?),
             ContactLaw::PowerLaw => Form::PowerLaw(self.power_law()?),
@@ -199,7 +199,7 @@ impl Touch<'_> {
         };
         let (depth, duration) = match &form {
             Form::Line(line) => (line.depth(), line.duration()),
-            Form::Sines(sines) => (sines.at(0.5 * sines.duration).0, sines.duration),
+            Form::Sines(sines) => (sines.phase_point_at(0.5 * sines.duration).0, sines.duration),
             Form::PowerLaw(contact) => (contact.depth, contact.duration),
             Form::Corrected(contact) => (contact.depth, contact.duration),
             Form::Exact(contact) => (contact.depth, contact.duration),
@@ -234,7 +234,7 @@ impl Touch<'_> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ContactMotion {
-    /// By which.
+    /// The law.
     pub law: ContactLaw,
     /// The greatest depth D, in the unit of x.
     pub depth: f64,
@@ -256,7 +256,7 @@ enum Form {
 }
 
 impl ContactMotion {
-    /// n of a law of the power d^n; nothing for the others.
+    /// n of a law of the power d^n; `None` for the others.
     pub fn exponent(&self) -> Option<f64> {
         match &self.form {
             Form::PowerLaw(contact) => Some(contact.exponent),
@@ -266,38 +266,38 @@ impl ContactMotion {
     }
 
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         match &self.form {
-            Form::Line(line) => line.at(time),
-            Form::Sines(sines) => sines.at(time),
-            Form::PowerLaw(contact) => contact.at(time),
-            Form::Corrected(contact) => contact.at(time),
-            Form::Exact(contact) => contact.at(time),
+            Form::Line(line) => line.phase_point_at(time),
+            Form::Sines(sines) => sines.phase_point_at(time),
+            Form::PowerLaw(contact) => contact.phase_point_at(time),
+            Form::Corrected(contact) => contact.phase_point_at(time),
+            Form::Exact(contact) => contact.phase_point_at(time),
         }
     }
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
-    /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do:
+    /// The motion as a parabola and sines within `tolerance` of D, as far as 64 of them suffice:
     /// elementary functions, whatever the law.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
-    /// let contact = Touch::default().by(ContactLaw::PowerLaw)?;
+    /// let contact = Touch::default().contact_by(ContactLaw::PowerLaw)?;
     /// let series = contact.sine_series(1e-6);
     /// let time = 0.3 * contact.duration;
-    /// assert!((series.at(time).0 - contact.position(time)).abs() <= 1e-6 * contact.depth);
+    /// assert!((series.phase_point_at(time).0 - contact.position(time)).abs() <= 1e-6 * contact.depth);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
     pub fn sine_series(&self, tolerance: f64) -> SineSeries {
@@ -308,10 +308,16 @@ impl ContactMotion {
             Form::Corrected(contact) => 0.5 * contact.preload,
             Form::PowerLaw(_) => 0.0,
         };
-        SineSeries::of(|time| self.position(time), self.duration, parabola, self.depth, tolerance)
+        SineSeries::from_motion(
+            |time| self.position(time),
+            self.duration,
+            parabola,
+            self.depth,
+            tolerance,
+        )
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch. The
+    /// The formula in the usual form, this many significant digits: s is the time since touch. The
     /// exact motion is written as sines that stay within `tolerance` of D, as far as 64 of them do;
     /// of the power law stands the time as a function of the depth, with I the regularised
     /// incomplete beta function, for the way in.
@@ -321,7 +327,7 @@ impl ContactMotion {
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
-    /// let formula = |law| touch.by(law).map(|motion| motion.closed_form(4, 1e-3));
+    /// let formula = |law| touch.contact_by(law).map(|motion| motion.closed_form(4, 1e-3));
     /// assert_eq!(formula(ContactLaw::Homotopy)?, "d(s) = 0.004122 sin(242.6 s)");
     /// assert_eq!(formula(ContactLaw::PowerLaw)?, "s = 0.006406 I(x; 0.4, 0.5), x = (d/0.004353)^2.5");
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
@@ -352,7 +358,7 @@ impl ContactMotion {
         }
     }
 
-    /// How far it is from another contact, the exact one: value over that value less one.
+    /// Errors relative to another contact, the exact one: value over exact value less one.
     pub fn errors(&self, exact: &Self) -> ContactErrors {
         let deviation = (0..=200).map(|part| {
             let time = exact.duration * f64::from(part) / 200.0;
@@ -371,11 +377,11 @@ impl ContactMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ContactErrors {
-    /// Of the duration, relative, signed.
+    /// Relative error of the duration, with its sign.
     pub duration: f64,
-    /// Of the greatest depth, relative, signed.
+    /// Relative error of the greatest depth, with its sign.
     pub depth: f64,
-    /// Of the greatest force, relative, signed.
+    /// Relative error of the greatest force, with its sign.
     pub peak_force: f64,
     /// The largest difference of depth at the same time since touch, relative to the greatest
     /// depth.
@@ -386,7 +392,7 @@ pub struct ContactErrors {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ContactRow {
-    /// Which law.
+    /// The law.
     pub law: ContactLaw,
     /// The contact by it and its errors, or why it has none.
     pub outcome: Result<(ContactMotion, ContactErrors), ContactError>,
@@ -408,9 +414,10 @@ pub struct ContactRow {
 /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
 /// ```
 pub fn comparison(touch: &Touch) -> Result<Vec<ContactRow>, ContactError> {
-    let exact = touch.by(ContactLaw::Exact)?;
+    let exact = touch.contact_by(ContactLaw::Exact)?;
     let row = |law| {
-        let motion = if law == ContactLaw::Exact { Ok(exact.clone()) } else { touch.by(law) };
+        let motion =
+            if law == ContactLaw::Exact { Ok(exact.clone()) } else { touch.contact_by(law) };
         ContactRow {
             law,
             outcome: motion.map(|motion| {
@@ -448,7 +455,8 @@ mod tests {
     fn percent(exponent: f64, stiffness: f64, speed: f64, law: ContactLaw) -> (f64, f64) {
         let force = move |d: f64| d.powf(exponent);
         let touch = alone(exponent, &force, stiffness, speed);
-        let errors = touch.by(law).unwrap().errors(&touch.by(ContactLaw::Exact).unwrap());
+        let errors =
+            touch.contact_by(law).unwrap().errors(&touch.contact_by(ContactLaw::Exact).unwrap());
         (100.0 * errors.duration, 100.0 * errors.depth)
     }
 
@@ -489,7 +497,7 @@ mod tests {
             for (stiffness, speed) in [(1.0, 1e-6), (1e6, 1.0), (1e9, 10.0)] {
                 let force = move |d: f64| d.powf(exponent);
                 let touch = alone(exponent, &force, stiffness, speed);
-                let motion = touch.by(ContactLaw::Homotopy).unwrap();
+                let motion = touch.contact_by(ContactLaw::Homotopy).unwrap();
                 let amplitude = (speed * speed / (stiffness * factor)).powf(1.0 / (exponent + 1.0));
                 assert!(
                     (motion.depth / amplitude - 1.0).abs() < 1e-12,
@@ -497,7 +505,7 @@ mod tests {
                     motion.depth
                 );
                 assert!((motion.duration / (PI * amplitude / speed) - 1.0).abs() < 1e-12);
-                let iterated = touch.by(ContactLaw::Iteration).unwrap();
+                let iterated = touch.contact_by(ContactLaw::Iteration).unwrap();
                 let square = (PI / iterated.duration).powi(2);
                 let law = stiffness * factor * iterated.depth.powf(exponent - 1.0);
                 assert!((square / law - 1.0).abs() < 1e-12, "{exponent}: {square} against {law}");
@@ -506,7 +514,7 @@ mod tests {
         // The cubic, to the last digit: s_3 = -A^3/4, x_1 = (A^3/32 Omega^2)(..), Omega^4 - (3/4)
         // A^2 Omega^2 + (3/128) A^4 = 0.
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::SecondHomotopy).unwrap();
+        let motion = alone(3.0, &cube, 1.0, 1.0).contact_by(ContactLaw::SecondHomotopy).unwrap();
         let square = (PI / motion.duration).powi(2) / (motion.depth * motion.depth);
         let expected = 0.5 * (0.75 + f64::sqrt(0.75 * 0.75 - 4.0 * 3.0 / 128.0));
         assert!((square / expected - 1.0).abs() < 1e-7, "{square} against {expected}");
@@ -515,7 +523,7 @@ mod tests {
     #[test]
     fn the_balance_of_two_harmonics_of_a_cube_is_that_of_its_equations() {
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::TwoHarmonics).unwrap();
+        let motion = alone(3.0, &cube, 1.0, 1.0).contact_by(ContactLaw::TwoHarmonics).unwrap();
         let Form::Sines(sines) = &motion.form else { panic!("sines") };
         // The cosines of the literature, cos 3 theta = -sin 3 phi.
         let (a1, a3, square) =
@@ -572,7 +580,7 @@ mod tests {
             let (motion, errors) = row.outcome.unwrap();
             let law = row.law;
             let [start, middle, end] =
-                [0.0, 0.5, 1.0].map(|part| motion.at(part * motion.duration));
+                [0.0, 0.5, 1.0].map(|part| motion.phase_point_at(part * motion.duration));
             assert!(
                 start.0.abs() < 1e-12 && end.0.abs() < 1e-12 * motion.depth.max(1.0),
                 "{law}: {start:?} {end:?}"
@@ -582,7 +590,7 @@ mod tests {
                 "{law}: {start:?} {middle:?} {end:?}"
             );
             assert!((middle.0 / motion.depth - 1.0).abs() < 1e-9, "{law}: {middle:?}");
-            assert!((motion.position(0.1), motion.velocity(0.1)) == motion.at(0.1));
+            assert!((motion.position(0.1), motion.velocity(0.1)) == motion.phase_point_at(0.1));
             let known = matches!(law, ContactLaw::CorrectedPowerLaw);
             assert!(
                 (start.1 / touch.speed - 1.0).abs() < if known { 1e-2 } else { 1e-9 },
@@ -590,9 +598,11 @@ mod tests {
             );
             assert!(errors.motion < 0.25 && errors.duration.abs() < 0.1, "{law}: {errors:?}");
         }
-        let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap();
-        let (exact, plain) =
-            (touch.by(ContactLaw::Exact).unwrap(), touch.by(ContactLaw::PowerLaw).unwrap());
+        let corrected = touch.contact_by(ContactLaw::CorrectedPowerLaw).unwrap();
+        let (exact, plain) = (
+            touch.contact_by(ContactLaw::Exact).unwrap(),
+            touch.contact_by(ContactLaw::PowerLaw).unwrap(),
+        );
         let (with, without) = (corrected.errors(&exact), plain.errors(&exact));
         assert!(
             with.duration.abs() < 1e-2 * without.duration.abs()
@@ -650,10 +660,11 @@ mod tests {
             assert_eq!(waves, expected, "{}: {formula}", row.law);
             assert!(!formula.contains("NaN") && formula.contains("s"), "{formula}");
         }
-        let line = touch.by(ContactLaw::Line(Rule::LeastSquares)).unwrap();
+        let line = touch.contact_by(ContactLaw::Line(Rule::LeastSquares)).unwrap();
         let Form::Line(turn) = &line.form else { panic!("a line") };
         assert!(turn.centre < 0.0 && line.closed_form(5, 1e-3).contains(" + "));
-        let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap().closed_form(4, 1e-3);
+        let corrected =
+            touch.contact_by(ContactLaw::CorrectedPowerLaw).unwrap().closed_form(4, 1e-3);
         assert!(
             corrected.starts_with("d(s) = 0.1587 s (0.0") && corrected.contains(" Y(s/0.0"),
             "{corrected}"
@@ -675,31 +686,31 @@ mod tests {
         for law in ContactLaw::ALL {
             for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
                 assert!(
-                    Touch { speed: bad, ..Touch::default() }.by(law).is_err(),
+                    Touch { speed: bad, ..Touch::default() }.contact_by(law).is_err(),
                     "{law} at {bad}"
                 );
                 assert!(
-                    Touch { stiffness: bad, ..Touch::default() }.by(law).is_err(),
+                    Touch { stiffness: bad, ..Touch::default() }.contact_by(law).is_err(),
                     "{law} at {bad}"
                 );
             }
             for bad in [f64::NAN, f64::INFINITY] {
                 assert!(
-                    Touch { barrier: bad, ..Touch::default() }.by(law).is_err(),
+                    Touch { barrier: bad, ..Touch::default() }.contact_by(law).is_err(),
                     "{law} at {bad}"
                 );
                 // Only a line and the correction ask for the slope.
                 let asks = matches!(law, ContactLaw::Line(_) | ContactLaw::CorrectedPowerLaw);
-                let found = Touch { slope: bad, ..Touch::default() }.by(law);
+                let found = Touch { slope: bad, ..Touch::default() }.contact_by(law);
                 assert_eq!(found.is_err(), asks, "{law} at {bad}");
             }
             let nowhere: &dyn Fn(f64) -> f64 = &|_| f64::NAN;
-            let refused = Touch { elastic_force: nowhere, ..Touch::default() }.by(law);
+            let refused = Touch { elastic_force: nowhere, ..Touch::default() }.contact_by(law);
             assert!(refused.is_err(), "{law}");
         }
         let unnamed = Touch { exponent: None, ..Touch::default() };
-        assert_eq!(unnamed.by(ContactLaw::PowerLaw), Err(ContactError::NoPowerLaw));
-        assert!(unnamed.by(ContactLaw::Exact).is_ok());
+        assert_eq!(unnamed.contact_by(ContactLaw::PowerLaw), Err(ContactError::NoPowerLaw));
+        assert!(unnamed.contact_by(ContactLaw::Exact).is_ok());
     }
 
     proptest! {
@@ -721,8 +732,8 @@ mod tests {
                 ..Touch::default()
             };
             for law in ContactLaw::ALL {
-                if let Ok(motion) = touch.by(law) {
-                    let (depth, velocity) = motion.at(time);
+                if let Ok(motion) = touch.contact_by(law) {
+                    let (depth, velocity) = motion.phase_point_at(time);
                     prop_assert!(depth.is_finite() && velocity.is_finite(), "{law}: {depth} {velocity}");
                     prop_assert!(motion.peak_force.is_finite() && motion.depth > 0.0 && motion.duration > 0.0);
                 }

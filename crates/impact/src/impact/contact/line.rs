@@ -8,7 +8,7 @@
 //! d = (v/w) sin w s - (b/w^2) (1 - cos w s)               D = hypot(v/w, b/w^2) - b/w^2
 //! ```
 
-use crate::impact::linearisation::Line;
+use crate::impact::linearisation::LinearContactForce;
 
 /// d'' + b + w^2 d = 0 from d = 0 with speed v until d = 0 again.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,10 +22,10 @@ pub(in crate::impact) struct LineContact {
 }
 
 impl LineContact {
-    /// What the line drives, per unit of this stiffness, beside a force `at_barrier` that grows
-    /// with `slope`; `None` where that does not oscillate.
+    /// The motion along this line, per unit of this stiffness, beside a force `at_barrier` that
+    /// grows with `slope`; `None` if it does not oscillate.
     pub(in crate::impact) fn new(
-        line: Line,
+        line: LinearContactForce,
         stiffness: f64,
         [at_barrier, slope]: [f64; 2],
         speed: f64,
@@ -39,7 +39,7 @@ impl LineContact {
         })
     }
 
-    /// How long it lasts, in the unit of time.
+    /// Duration of the contact, in the unit of time.
     pub(in crate::impact) fn duration(&self) -> f64 {
         2.0 / self.frequency * (self.speed / self.frequency).atan2(self.centre)
     }
@@ -57,7 +57,7 @@ impl LineContact {
     }
 
     /// Depth and velocity at a time since touch.
-    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let swing = self.speed / self.frequency;
         let (sine, cosine) = (0.5 * self.frequency * time).sin_cos();
         let depth = 2.0 * sine * (swing * cosine - self.centre * sine);

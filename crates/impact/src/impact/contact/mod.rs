@@ -46,17 +46,17 @@ pub use law::{
 };
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
-/// Why there is no contact to speak of.
+/// The reason why there is no contact to speak of.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A quantity outside its domain.
     #[error(transparent)]
     NotPositive(#[from] NotPositive),
-    /// A quantity that is no number.
+    /// A quantity that is not a number.
     #[error("the {quantity} must be a finite number, not {value}")]
     NotFinite {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -66,7 +66,7 @@ pub enum ContactError {
         "the {quantity} of this contact is beyond the range of double precision: measure length and time in units nearer to it"
     )]
     Range {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
     },
     /// A restitution outside its range.
@@ -79,7 +79,7 @@ pub enum ContactError {
         "the {quantity} must be a number and not negative, not {value}: 0 is a contact without loss"
     )]
     Negative {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -94,7 +94,7 @@ pub enum ContactError {
         /// The highest there is.
         highest: u32,
     },
-    /// What acts besides the contact is no small correction to it.
+    /// The forces beside the contact force are not a small correction to it.
     #[error(
         "the force at touch and its slope are no small correction: the last terms of the series are {depth_error:.1e} of the depth \
          and {duration_error:.1e} of the duration; take the exact contact"
@@ -111,7 +111,7 @@ pub enum ContactError {
          hard enough on the way"
     )]
     NeverTurns {
-        /// How deep the search went.
+        /// The depth that the search reached.
         searched: f64,
     },
     /// The force has corners, jumps or waves on the way.
@@ -138,7 +138,7 @@ pub enum ContactError {
         "no oscillation of this form begins with that speed: what acts beside the contact is too strong; take the exact contact"
     )]
     NotOscillating,
-    /// No line for the force.
+    /// The force has no line.
     #[error(transparent)]
     Linearisation(#[from] LinearisationError),
     /// An integral over the force failed.
@@ -178,8 +178,11 @@ fn by_runge_kutta(
     force: impl Fn(f64, f64) -> f64,
     [speed, depth, time]: [f64; 3],
 ) -> crate::numeric::ode::Trajectory {
-    use crate::numeric::ode::{Event, Options, State, integrate};
-    let options = Options { absolute_tolerance: 1e-14 * depth, ..Options::with_tolerance(1e-13) };
+    use crate::numeric::ode::{Event, IntegrationOptions, State, integrate};
+    let options = IntegrationOptions {
+        absolute_tolerance: 1e-14 * depth,
+        ..IntegrationOptions::with_tolerance(1e-13)
+    };
     let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
     let start = State { t: 0.0, x: 0.0, v: speed };
     integrate(|_, d, v| -force(d, v), start, time, &events, &options).expect("a path")
@@ -232,7 +235,7 @@ mod tests {
         let header = "| gamma | T, power law | T, first order | its estimate | T, second order | its estimate | D, second order |";
         let rows = [1e8, 1e6, 1e4, 1e2].map(|stiffness| {
             let touch = Touch { stiffness, ..Touch::default() };
-            let exact = touch.by(ContactLaw::Exact).unwrap();
+            let exact = touch.contact_by(ContactLaw::Exact).unwrap();
             let plain = PowerLaw::new(1.5, stiffness, touch.speed).unwrap();
             let preload = touch.barrier.sin();
             let [first, second] =

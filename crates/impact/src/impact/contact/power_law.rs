@@ -68,7 +68,7 @@ impl Default for PowerLaw {
     fn default() -> Self {
         let (exponent, speed) = (1.5, 1.0);
         let depth = greatest_depth(exponent, DEFAULT_STIFFNESS, speed);
-        Self::of(exponent, DEFAULT_STIFFNESS, speed, depth)
+        Self::with_depth(exponent, DEFAULT_STIFFNESS, speed, depth)
     }
 }
 
@@ -76,8 +76,8 @@ impl PowerLaw {
     /// The contact of this exponent and this stiffness gamma, touched at this speed.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity that is no positive number, a depth or a duration beyond double
-    /// precision.
+    /// [`ContactError`]: a quantity that is not a positive number, a depth or a duration beyond
+    /// double precision.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -85,7 +85,7 @@ impl PowerLaw {
     ///
     /// let hertz = PowerLaw::new(1.5, 1e6, 1.0)?;
     /// assert!((hertz.duration * hertz.speed / hertz.depth - 2.943_275_184_324_70).abs() < 1e-13);
-    /// assert!((hertz.at(hertz.duration / 2.0).0 - hertz.depth).abs() < 1e-15);
+    /// assert!((hertz.phase_point_at(hertz.duration / 2.0).0 - hertz.depth).abs() < 1e-15);
     /// assert!((hertz.velocity(hertz.duration) + 1.0).abs() < 1e-15); // it leaves as fast as it came
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
@@ -94,13 +94,13 @@ impl PowerLaw {
         let stiffness = positive("stiffness gamma", stiffness)?;
         let speed = positive("speed of contact", speed)?;
         let depth = in_range("depth", greatest_depth(exponent, stiffness, speed))?;
-        let contact = Self::of(exponent, stiffness, speed, depth);
+        let contact = Self::with_depth(exponent, stiffness, speed, depth);
         in_range("duration", contact.duration)?;
         in_range("peak force", contact.peak_force)?;
         Ok(contact)
     }
 
-    fn of(exponent: f64, stiffness: f64, speed: f64, depth: f64) -> Self {
+    fn with_depth(exponent: f64, stiffness: f64, speed: f64, depth: f64) -> Self {
         Self {
             exponent,
             stiffness,
@@ -114,22 +114,22 @@ impl PowerLaw {
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     ///
     /// Good to 1e-13 of D and v.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let (depth, velocity) = pulse(self.exponent, time / self.duration);
         (self.depth * depth, self.speed * velocity)
     }
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
-    /// The same contact with a force `preload` (a, either sign) at touch and of slope `slope` (k)
+    /// The contact with a force `preload` (a, of either sign) at touch and of slope `slope` (k)
     /// beside it, to this order in both together, at most [`HIGHEST_ORDER`].
     ///
     /// # Errors
@@ -239,7 +239,7 @@ impl CorrectedPowerLaw {
     }
 
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let PowerLaw { exponent, .. } = self.contact;
         let (depth, velocity) = pulse(exponent, time / self.duration);
@@ -253,16 +253,16 @@ impl CorrectedPowerLaw {
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch, Y the
-    /// motion of the power law.
+    /// The formula in the usual form, this many significant digits: s is the time since touch, Y
+    /// the motion of the power law.
     pub fn closed_form(&self, digits: usize) -> String {
         let duration = significant(self.duration, digits);
         let rest = self.depth - 0.125 * self.preload * self.duration * self.duration;
@@ -273,9 +273,8 @@ impl CorrectedPowerLaw {
         format!("d(s) = {} s ({duration} - s) + {shape}", significant(0.5 * self.preload, digits))
     }
 
-    /// By how much the motion misses the speed of touch, relative to it: a measure of how far its
-    /// shape is from the true one, whose depth differs by less than that times D (as long as |a| D
-    /// < v^2/10).
+    /// Relative error of the speed at touch: a measure of the error of the shape of the motion,
+    /// whose depth is off by less than that times D (as long as |a| D < v^2/10).
     pub fn shape_error(&self) -> f64 {
         (self.velocity(0.0) / self.contact.speed - 1.0).abs()
     }
@@ -527,7 +526,7 @@ mod tests {
                 let path = integrated(&contact, 0.0, 0.0);
                 assert!((path.end().t / contact.duration - 1.0).abs() < 1e-10);
                 for state in path.samples(101) {
-                    let (depth, velocity) = contact.at(state.t);
+                    let (depth, velocity) = contact.phase_point_at(state.t);
                     assert!(
                         (depth - state.x).abs() < 1e-10 * contact.depth,
                         "{contact:?} at {}",
@@ -647,12 +646,12 @@ mod tests {
                 let preload = part * contact.speed * contact.speed / contact.depth;
                 let corrected = contact.corrected(preload, 0.0, 4).unwrap();
                 let path = integrated(&contact, preload, 0.0);
-                let middle = corrected.at(0.5 * corrected.duration);
+                let middle = corrected.phase_point_at(0.5 * corrected.duration);
                 assert!((middle.0 / corrected.depth - 1.0).abs() < 1e-14 && middle.1.abs() < 1e-14);
                 assert!(corrected.position(corrected.duration).abs() < 1e-15);
                 let mut worst = (0.0_f64, 0.0_f64);
                 for state in path.samples(201) {
-                    let (depth, velocity) = corrected.at(state.t);
+                    let (depth, velocity) = corrected.phase_point_at(state.t);
                     worst.0 = worst.0.max((depth - state.x).abs() / contact.depth);
                     worst.1 = worst.1.max((velocity - state.v).abs() / contact.speed);
                 }
@@ -706,11 +705,11 @@ mod tests {
             order in 1..=HIGHEST_ORDER
         ) {
             if let Ok(contact) = PowerLaw::new(exponent, stiffness, speed) {
-                let (depth, velocity) = contact.at(time);
+                let (depth, velocity) = contact.phase_point_at(time);
                 prop_assert!((0.0..=contact.depth).contains(&depth) && velocity.abs() <= speed, "{contact:?} at {time}");
                 for (preload, slope) in [(preload, slope), (-preload, slope), (0.0, 0.0)] {
                     if let Ok(corrected) = contact.corrected(preload, slope, order) {
-                        let (depth, velocity) = corrected.at(time);
+                        let (depth, velocity) = corrected.phase_point_at(time);
                         prop_assert!(depth.is_finite() && velocity.is_finite(), "{corrected:?} at {time}");
                         prop_assert!(corrected.peak_force().is_finite() && corrected.duration > 0.0);
                     }

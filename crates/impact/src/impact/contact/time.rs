@@ -21,7 +21,7 @@ const MOST_PANELS: usize = 400;
 /// A smooth function on an interval as a Legendre series, and the time as the integral of it with a
 /// weight.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Panel {
+pub(super) struct LegendrePanel {
     pub(super) from: f64,
     pub(super) to: f64,
     /// Time at both ends.
@@ -32,7 +32,7 @@ pub(super) struct Panel {
     time: [f64; POINTS + 1],
 }
 
-impl Panel {
+impl LegendrePanel {
     fn coordinate(&self, at: f64) -> f64 {
         ((at - self.from) - (self.to - at)) / (self.to - self.from)
     }
@@ -53,8 +53,8 @@ pub(super) fn expand(
     weight: impl Fn(f64) -> f64,
     from: f64,
     to: f64,
-) -> Result<Vec<Panel>, ContactError> {
-    let mut panels: Vec<Panel> = Vec::new();
+) -> Result<Vec<LegendrePanel>, ContactError> {
+    let mut panels: Vec<LegendrePanel> = Vec::new();
     let mut waiting = vec![(from, to)];
     while let Some((from, to)) = waiting.pop() {
         let (mut values, mut rates) = ([0.0; POINTS], [0.0; POINTS + 1]);
@@ -85,7 +85,7 @@ pub(super) fn expand(
         }
         let start = panels.last().map_or(0.0, |panel| panel.end);
         let end = start + legendre_sum(&time, 1.0);
-        panels.push(Panel { from, to, start, end, function, time });
+        panels.push(LegendrePanel { from, to, start, end, function, time });
     }
     Ok(panels)
 }
@@ -117,12 +117,12 @@ fn legendre_sum(coefficients: &[f64], x: f64) -> f64 {
 }
 
 /// The time at the end of the last panel.
-pub(super) fn length(panels: &[Panel]) -> f64 {
+pub(super) fn length(panels: &[LegendrePanel]) -> f64 {
     panels.last().map_or(0.0, |panel| panel.end)
 }
 
 /// The place at which the time has this value, and the function there.
-pub(super) fn invert(panels: &[Panel], time: f64) -> (f64, f64) {
+pub(super) fn invert(panels: &[LegendrePanel], time: f64) -> (f64, f64) {
     let number =
         panels.partition_point(|panel| panel.end < time).min(panels.len().saturating_sub(1));
     let Some(panel) = panels.get(number) else {

@@ -50,10 +50,10 @@ impl SpeedRow {
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::friction::SpeedRow;
     ///
-    /// let row = SpeedRow::at(0.01);
+    /// let row = SpeedRow::new(0.01);
     /// assert!(row.sign == 1.0 && (row.error - 50.0).abs() < 1e-9);
     /// ```
-    pub fn at(speed: f64) -> Self {
+    pub fn new(speed: f64) -> Self {
         Self {
             speed,
             sign: if speed == 0.0 { 0.0 } else { speed.signum() },

@@ -45,7 +45,7 @@ impl Default for FrictionSetup {
     }
 }
 
-/// Why there is nothing to say of a friction.
+/// The reason why there is nothing to say of a friction.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FrictionError {
@@ -59,7 +59,7 @@ pub enum FrictionError {
         "the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A"
     )]
     Amplitude(f64),
-    /// A speed that is no number.
+    /// A speed that is not a number.
     #[error("a speed must be a finite number, not {0}")]
     Speed(f64),
     /// A release that is held.
@@ -123,7 +123,7 @@ pub fn study(setup: FrictionSetup) -> Result<FrictionStudy, FrictionError> {
         return Err(FrictionError::Speed(*speed));
     }
     Ok(FrictionStudy {
-        rows: speeds.iter().copied().map(SpeedRow::at).collect(),
+        rows: speeds.iter().copied().map(SpeedRow::new).collect(),
         near_rest: near_rest::near_rest(alpha, amplitude)?,
         setup,
     })

@@ -17,8 +17,10 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 use super::FrictionError;
 use crate::impact::model::{Friction, Model, STEEPNESS, Start};
 use crate::impact::simulate::simulate;
-use crate::impact::simulation::{Integrator, NoRest, Regime, Settings, Simulation, Stop, Turn};
-use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+use crate::impact::simulation::{
+    Integrator, NoRest, Regime, Settings, Simulation, SimulationStop, TurningPoint,
+};
+use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 
 /// The first cycle by the arctangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,11 +63,11 @@ pub struct Creep {
     pub damping: f64,
     /// Whether it creeps, c > 2; it swings about zero otherwise.
     pub creeps: bool,
-    /// The rate for c far above 2, pi/(200 alpha); nothing where it swings.
+    /// The rate for c far above 2, pi/(200 alpha); `None` if it swings.
     pub rate_overdamped: Option<f64>,
     /// The rate of the linear equation.
     pub rate_linear: f64,
-    /// The rate of the simulated motion, when it is small; nothing where there is no motion.
+    /// The rate of the simulated motion, when it is small; `None` if there is no motion.
     pub rate: Option<f64>,
     /// Some states.
     pub samples: Vec<CreepSample>,
@@ -76,23 +78,23 @@ pub struct Creep {
 
 impl Creep {
     /// The place by the formula of the creep, this long after rest, rad, up to the end of the
-    /// motion; nothing where it swings.
+    /// motion; `None` if it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
-        self.without_inertia.as_ref()?.at(t)
+        self.without_inertia.as_ref()?.position_at(t)
     }
 }
 
 /// Rest times of the default pendulum at its barrier, with friction alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestTimes {
-    /// By Coulomb's law.
+    /// The rest time by Coulomb's law.
     pub coulomb: Result<f64, NoRest>,
-    /// By the arctangent.
+    /// The rest time by the arctangent.
     pub arctangent: Result<f64, NoRest>,
 }
 
 impl RestTimes {
-    /// How much later the arctangent comes to rest, where both do.
+    /// Rest time by the arctangent less that by Coulomb's law; `None` if one of them has none.
     pub fn difference(&self) -> Option<f64> {
         Some(self.arctangent.ok()? - self.coulomb.ok()?)
     }
@@ -101,15 +103,15 @@ impl RestTimes {
 /// A swing with friction, by both laws.
 #[derive(Debug, Clone)]
 pub struct NearRest {
-    /// When and where Coulomb's law stops it for good.
-    pub stop: Turn,
+    /// Time and position at which Coulomb's law stops it for good.
+    pub stop: TurningPoint,
     /// The half swings until then.
     pub half_swings: usize,
     /// The state by the arctangent at that time: displacement and velocity.
     pub meanwhile: [f64; 2],
-    /// What the arctangent does to the first cycle.
+    /// The effect of the arctangent on the first cycle.
     pub first_cycle: FirstCycle,
-    /// What it does at rest.
+    /// The motion by the arctangent near rest.
     pub creep: Creep,
     /// Rest times of the default pendulum at its barrier.
     pub rest_times: RestTimes,
@@ -167,13 +169,13 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
     let settings = Settings { duration, ..Settings::default() };
     let motion = simulate(model, Start { x, velocity: 0.0 }, Integrator::Taylor, &settings)?;
     match motion.stop {
-        Stop::Duration => Ok(motion),
+        SimulationStop::Duration => Ok(motion),
         _ => Err(FrictionError::Restless(model.alpha)),
     }
 }
 
-/// Where Coulomb's law stops it for good, and after how many half swings.
-fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
+/// The final stop by Coulomb's law, and the number of half swings before it.
+fn final_stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionError> {
     let mut duration = 50.0;
     loop {
         let motion = swing(alpha, Friction::Exact, -amplitude, duration)?;
@@ -181,7 +183,7 @@ fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
         if let Some(held) = held {
             let half_swings =
                 motion.turns.iter().filter(|turn| turn.t > 0.0 && turn.t <= held.start).count();
-            let stop = Turn { t: held.start, x: motion.end_x };
+            let stop = TurningPoint { t: held.start, x: motion.end_x };
             return Ok((stop, half_swings));
         }
         duration *= 2.0;
@@ -189,12 +191,12 @@ fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
 }
 
 pub(super) fn near_rest(alpha: f64, amplitude: f64) -> Result<NearRest, FrictionError> {
-    let (stop, half_swings) = stop(alpha, amplitude)?;
+    let (stop, half_swings) = final_stop(alpha, amplitude)?;
     let creep = creep(alpha, stop.x)?;
     let until = (stop.t + (8.0 / creep.rate_linear).min(40.0)).max(TAU);
     let coulomb = swing(alpha, Friction::Exact, -amplitude, until)?;
     let arctangent = swing(alpha, Friction::Arctangent, -amplitude, until)?;
-    let (x, velocity) = arctangent.path.at(stop.t).unwrap_or((stop.x, 0.0));
+    let (x, velocity) = arctangent.path.phase_point_at(stop.t).unwrap_or((stop.x, 0.0));
     Ok(NearRest {
         stop,
         half_swings,
@@ -212,7 +214,9 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
     let until = turns.nth(1).map_or(TAU.min(motion.end_time), |turn| turn.t);
     // The middles of equal times.
     let speeds: Vec<f64> = (0..POINTS)
-        .filter_map(|index| motion.path.at(until * (index as f64 + 0.5) / POINTS as f64))
+        .filter_map(|index| {
+            motion.path.phase_point_at(until * (index as f64 + 0.5) / POINTS as f64)
+        })
         .map(|(_, velocity)| velocity.abs())
         .collect();
     let law = |speed: f64| FRAC_2_PI * (STEEPNESS * speed).atan();
@@ -222,7 +226,7 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
     };
     let way: f64 = speeds.iter().sum();
     let work: f64 = speeds.iter().map(|speed| law(*speed) * speed).sum();
-    let at_the_turn = motion.path.at(until).map_or(0.0, |(_, velocity)| velocity.abs());
+    let at_the_turn = motion.path.phase_point_at(until).map_or(0.0, |(_, velocity)| velocity.abs());
     let slowest = speeds.iter().copied().fold(at_the_turn, f64::min);
     FirstCycle {
         until,
@@ -239,7 +243,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
     let (creeps, rate_linear) = (damping > 2.0, slow_rate(damping));
     let duration = 10.0 / rate_linear;
     let motion = swing(alpha, Friction::Arctangent, x, duration)?;
-    let at = |t: f64| motion.path.at(t).map_or(f64::NAN, |(x, _)| x);
+    let at = |t: f64| motion.path.phase_point_at(t).map_or(f64::NAN, |(x, _)| x);
     // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear
     // equation.
     let step = (0.5 / rate_linear).min(1.0);
@@ -260,7 +264,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
             .map(|t| CreepSample {
                 t,
                 x: at(t),
-                formula: without_inertia.as_ref().and_then(|creep| creep.at(t)),
+                formula: without_inertia.as_ref().and_then(|creep| creep.position_at(t)),
             })
             .into(),
         without_inertia,
@@ -269,7 +273,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
 }
 
 /// The rate at which a linear motion dies, from four places at equal distances of time: the slow
-/// one of two, or that of both where it swings; nothing where there is no motion. (R. Prony, 1795:
+/// one of two, or that of both where it swings; `None` if there is no motion. (R. Prony, 1795:
 /// x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
 fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     let determinant = x1 * x1 - x0 * x2;
@@ -292,22 +296,22 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
 #[derive(Debug, Clone)]
 struct WithoutInertia {
     alpha: f64,
-    /// Which side of zero it is on, 1 or -1.
+    /// The side of zero, 1 or -1.
     side: f64,
     /// log y, y = sin(pi |sin x|/(2 alpha)), which falls at the rate pi cos(x)/(200 alpha).
     logarithm: Trajectory<Point<[f64; 1]>>,
 }
 
 impl WithoutInertia {
-    /// From rest at a place where friction holds, |sin x| <= alpha.
+    /// Follows the creep from rest at a position at which friction holds, |sin x| <= alpha.
     fn from_rest(alpha: f64, x: f64, duration: f64) -> Result<Self, FrictionError> {
         const TOLERANCE: f64 = 1e-10;
         let rate = 0.5 * PI / (STEEPNESS * alpha);
         let start = Point { t: 0.0, y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()] };
         let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| {
-            *rates = [-rate * place(alpha, *log).cos()]
+            *rates = [-rate * creep_position(alpha, *log).cos()]
         };
-        let options = Options::with_tolerance(TOLERANCE);
+        let options = IntegrationOptions::with_tolerance(TOLERANCE);
         let logarithm = integrate_first_order(falls, start, duration, &[], &options);
         Ok(Self {
             alpha,
@@ -317,14 +321,14 @@ impl WithoutInertia {
     }
 
     /// The place after this time, rad.
-    fn at(&self, t: f64) -> Option<f64> {
+    fn position_at(&self, t: f64) -> Option<f64> {
         let [log] = self.logarithm.state_at(t)?.y;
-        Some(self.side * place(self.alpha, log))
+        Some(self.side * creep_position(self.alpha, log))
     }
 }
 
 /// |x| of the creep without inertia from log y.
-fn place(alpha: f64, log: f64) -> f64 {
+fn creep_position(alpha: f64, log: f64) -> f64 {
     (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
 }
 
@@ -385,7 +389,7 @@ mod tests {
     fn the_creep_solves_its_equation() {
         for (alpha, start) in [(0.3, 0.2), (0.95, -1.058), (0.8, -0.479), (0.5, 0.5_f64.asin())] {
             let creep = WithoutInertia::from_rest(alpha, start, 100.0).expect("a creep");
-            let at = |t: f64| creep.at(t).expect("a place");
+            let at = |t: f64| creep.position_at(t).expect("a place");
             assert!((at(0.0) - start).abs() < 1e-13, "{alpha}: {}", at(0.0));
             let step = 1e-3;
             for t in [0.5, 5.0, 40.0] {

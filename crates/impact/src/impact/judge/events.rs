@@ -15,24 +15,25 @@
 use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::simulation::{
-    Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled,
+    ContactRecord, Integrator, Regime, Settings, Simulation, SimulationPath, SimulationStop,
+    TurningPoint, begin_contact, scaled,
 };
 use crate::numeric::ode::{
-    self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases,
+    self, Event, EventOccurrence, IntegrationError, StopReason, Trajectory, integrate_phases,
 };
 
-/// Where the pendulum is and which way dry friction acts: a phase of the run.
+/// The mode of the hybrid system: the region of the pendulum and the direction of dry friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
+struct HybridMode {
     region: Regime,
     /// 1 or -1 where Coulomb friction acts, in the direction of x; 0 at rest under it, and where
     /// there is none.
     direction: f64,
 }
 
-/// What an event means.
+/// The meaning of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Meaning {
+enum JudgeEvent {
     Touch(Side),
     Release,
     Turn,
@@ -56,7 +57,7 @@ const NUDGE: f64 = 1e-14;
 /// Each region moving without Coulomb friction, rising, falling, and stuck.
 const MOTIONS: usize = 4;
 
-fn index(place: Place, stuck: bool) -> usize {
+fn index(place: HybridMode, stuck: bool) -> usize {
     let region = REGIONS.iter().position(|region| *region == place.region).unwrap_or(0);
     let motion = match place.direction {
         _ if stuck => 3,
@@ -67,15 +68,15 @@ fn index(place: Place, stuck: bool) -> usize {
     region * MOTIONS + motion
 }
 
-fn place(index: usize) -> (Place, bool) {
+fn mode_and_sticking(index: usize) -> (HybridMode, bool) {
     let direction = [0.0, 1.0, -1.0, 0.0][index % MOTIONS];
     let region = REGIONS[(index / MOTIONS).min(REGIONS.len() - 1)];
-    (Place { region, direction }, index % MOTIONS == 3)
+    (HybridMode { region, direction }, index % MOTIONS == 3)
 }
 
 impl Coordinate {
     /// x itself, or the depth in the barrier of a region.
-    fn of(model: &Model, region: Regime) -> Self {
+    fn for_region(model: &Model, region: Regime) -> Self {
         match region {
             Regime::Contact(side) | Regime::Detached(side) => {
                 Self { sign: side.sign(), origin: model.barrier(side).unwrap_or_default() }
@@ -87,7 +88,7 @@ impl Coordinate {
 
 /// All but friction, at rest, in the direction of x.
 fn force_at_rest(model: &Model, region: Regime, t: f64, value: f64) -> f64 {
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let contact = match region {
         Regime::Contact(_) => model.contact(value, 0.0),
         _ => 0.0,
@@ -101,10 +102,10 @@ fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
     let direction = force.signum();
     let held = force.abs() <= model.alpha * (1.0 + 4.0 * f64::EPSILON);
     if held {
-        return index(Place { region, direction }, true);
+        return index(HybridMode { region, direction }, true);
     }
     let region = pushed_into(model, region, value, direction).unwrap_or(region);
-    index(Place { region, direction }, false)
+    index(HybridMode { region, direction }, false)
 }
 
 /// The contact that begins at rest on a barrier, where the motion sets off in this direction.
@@ -135,19 +136,19 @@ fn beginning(model: &Model, start: Start) -> Regime {
 }
 
 /// An event, and what it means.
-type Watched<'a> = (Event<'a>, Meaning);
+type Watched<'a> = (Event<'a>, JudgeEvent);
 
 /// A phase of the run, and what its events mean in turn.
 fn phase<'a>(
     model: &'a Model,
     settings: &Settings,
     number: usize,
-) -> (ode::Phase<'a>, Vec<Meaning>) {
-    let (place, stuck) = place(number);
-    let Place { region, direction } = place;
+) -> (ode::IntegrationPhase<'a>, Vec<JudgeEvent>) {
+    let (place, stuck) = mode_and_sticking(number);
+    let HybridMode { region, direction } = place;
     if stuck {
         let (event, meaning) = letting_go(model, place);
-        return (ode::Phase::new(|_, _, _| 0.0, vec![event]), vec![meaning]);
+        return (ode::IntegrationPhase::new(|_, _, _| 0.0, vec![event]), vec![meaning]);
     }
     let mut watched = match region {
         Regime::Free | Regime::Stuck => touches(model, direction),
@@ -156,37 +157,37 @@ fn phase<'a>(
     watched.push(turning(model, place));
     watched.extend(settings.rest_energy.map(|energy| fall_to_rest(model, region, energy)));
     let (events, meanings) = watched.into_iter().unzip();
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let swing =
         move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
     let phase = match region {
-        Regime::Contact(_) => ode::Phase::new(
+        Regime::Contact(_) => ode::IntegrationPhase::new(
             coordinate.contact(swing, |depth, speed| model.contact(depth, speed)),
             events,
         ),
-        _ => ode::Phase::new(coordinate.flight(swing), events),
+        _ => ode::IntegrationPhase::new(coordinate.flight(swing), events),
     };
     (phase, meanings)
 }
 
 /// Held by friction, until all the other forces together exceed it.
-fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
-    let sign = Coordinate::of(model, region).sign;
+fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'_> {
+    let sign = Coordinate::for_region(model, region).sign;
     let excess = move |t: f64, value: f64, _: f64| {
         force_at_rest(model, region, t, value).abs() - model.alpha
     };
     let next = move |state: ode::State| {
         let direction = force_at_rest(model, region, state.t, state.x).signum();
-        // The acceleration is still zero: without a sign of its own the velocity would be
-        // anybody's.
+        // The acceleration is still zero: without a sign of its own that of the velocity would be
+        // arbitrary.
         let v = NUDGE * direction * sign;
         let (region, state) = match pushed_into(model, region, state.x, direction) {
             Some(contact) => (contact, ode::State { x: 0.0, v: NUDGE, ..state }),
             None => (region, ode::State { v, ..state }),
         };
-        (index(Place { region, direction }, false), state)
+        (index(HybridMode { region, direction }, false), state)
     };
-    (Event::switch(excess, next).rising(), Meaning::LetGo)
+    (Event::switch(excess, next).rising(), JudgeEvent::LetGo)
 }
 
 /// In free flight: the barriers.
@@ -194,13 +195,13 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
     let touch = |side: Side| {
         let barrier = model.barrier(side)?;
         let next = move |state: ode::State| {
-            let contact = Place { region: Regime::Contact(side), direction };
+            let contact = HybridMode { region: Regime::Contact(side), direction };
             // It moves inwards, whatever rounding says of one that rests there.
             let v = (side.sign() * state.v).max(0.0);
             (index(contact, false), ode::State { x: 0.0, v, ..state })
         };
         let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
-        Some((Event::switch(depth, next).rising(), Meaning::Touch(side)))
+        Some((Event::switch(depth, next).rising(), JudgeEvent::Touch(side)))
     };
     [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
 }
@@ -209,27 +210,27 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
 /// than the barrier.
 fn ends_of_contact(
     model: &Model,
-    Place { region, direction }: Place,
+    HybridMode { region, direction }: HybridMode,
     side: Side,
 ) -> Vec<Watched<'_>> {
-    let Coordinate { sign, origin } = Coordinate::of(model, region);
-    let to = move |region: Regime| index(Place { region, direction }, false);
+    let Coordinate { sign, origin } = Coordinate::for_region(model, region);
+    let to = move |region: Regime| index(HybridMode { region, direction }, false);
     let release = move |state: ode::State| {
         let v = sign * state.v.min(0.0);
         (to(Regime::Free), ode::State { x: origin, v, ..state })
     };
     let mut watched =
-        vec![(Event::switch(|_, depth, _| depth, release).falling(), Meaning::Release)];
+        vec![(Event::switch(|_, depth, _| depth, release).falling(), JudgeEvent::Release)];
     if model.mu > 0.0 {
         let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
         watched.push(match region {
             Regime::Contact(_) => {
                 let next = move |state: ode::State| (to(Regime::Detached(side)), state);
-                (Event::switch(push, next).falling(), Meaning::Detach)
+                (Event::switch(push, next).falling(), JudgeEvent::Detach)
             }
             _ => {
                 let next = move |state: ode::State| (to(Regime::Contact(side)), state);
-                (Event::switch(push, next).rising(), Meaning::Reattach)
+                (Event::switch(push, next).rising(), JudgeEvent::Reattach)
             }
         });
     }
@@ -237,23 +238,23 @@ fn ends_of_contact(
 }
 
 /// The turning points: under Coulomb friction each decides how the motion goes on.
-fn turning(model: &Model, Place { region, direction }: Place) -> Watched<'_> {
+fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watched<'_> {
     if direction == 0.0 {
-        return (Event::record(|_, _, v| v), Meaning::Turn);
+        return (Event::record(|_, _, v| v), JudgeEvent::Turn);
     }
     let next = move |state: ode::State| {
         let state = ode::State { v: 0.0, ..state };
         (from_rest(model, region, state.t, state.x), state)
     };
     let turn = Event::switch(move |_, _, v| v, next);
-    let inwards = direction * Coordinate::of(model, region).sign > 0.0;
+    let inwards = direction * Coordinate::for_region(model, region).sign > 0.0;
     let turn = if inwards { turn.falling() } else { turn.rising() };
-    (turn, Meaning::Turn)
+    (turn, JudgeEvent::Turn)
 }
 
 /// The energy falls to that of rest, and the run ends.
 fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> {
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let energy = move |_: f64, value: f64, v: f64| {
         let stored = match region {
             Regime::Contact(_) => model.elastic_energy(value),
@@ -261,7 +262,7 @@ fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> 
         };
         model.swing_energy(coordinate.x(value), v) + stored - rest_energy
     };
-    (Event::stop(energy).falling(), Meaning::RestEnergy)
+    (Event::stop(energy).falling(), JudgeEvent::RestEnergy)
 }
 
 /// The motion by Runge-Kutta.
@@ -274,19 +275,19 @@ pub(in crate::impact) fn follow(
     let (phases, meanings): (Vec<_>, Vec<_>) =
         (0..REGIONS.len() * MOTIONS).map(|number| phase(model, settings, number)).unzip();
     let region = beginning(model, start);
-    let Coordinate { sign, origin } = Coordinate::of(model, region);
+    let Coordinate { sign, origin } = Coordinate::for_region(model, region);
     let first = match start.velocity {
-        _ if !model.sticks() => index(Place { region, direction: 0.0 }, false),
+        _ if !model.sticks() => index(HybridMode { region, direction: 0.0 }, false),
         0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
         velocity => {
             let direction = velocity.signum();
-            index(Place { region, direction }, false)
+            index(HybridMode { region, direction }, false)
         }
     };
-    // What lets go of a stuck pendulum varies with the excitation, not with the motion.
+    // The force that releases a stuck pendulum varies with the excitation, not with the motion.
     let watched = model.sticks() && model.beta != 0.0 && model.frequency_ratio > 0.0;
     let maximum_step = if watched { 1.0 / model.frequency_ratio } else { f64::INFINITY };
-    let options = ode::Options {
+    let options = ode::IntegrationOptions {
         relative_tolerance: settings.relative_tolerance,
         absolute_tolerance: settings.absolute_tolerance,
         maximum_steps: settings.maximum_steps,
@@ -294,13 +295,13 @@ pub(in crate::impact) fn follow(
         stiff: false,
         interrupt: settings.interrupt,
     };
-    let first_region = place(first).0.region;
+    let first_region = mode_and_sticking(first).0.region;
     let begin = ode::State {
         t: 0.0,
         x: match first_region {
             Regime::Free => start.x,
             first => {
-                let Coordinate { sign, origin } = Coordinate::of(model, first);
+                let Coordinate { sign, origin } = Coordinate::for_region(model, first);
                 sign * (start.x - origin)
             }
         },
@@ -328,45 +329,48 @@ pub(in crate::impact) fn follow(
     })
 }
 
-/// What the events of the run say of contacts and turning points.
+/// Contacts and turning points from the events of the run.
 fn contacts_and_turns(
     (model, settings): (&Model, &Settings),
     start: Start,
     first: Regime,
     trajectory: &Trajectory,
-    meanings: &[Vec<Meaning>],
-) -> (Vec<Contact>, Vec<Turn>) {
-    let mut impacts: Vec<Contact> = Vec::new();
+    meanings: &[Vec<JudgeEvent>],
+) -> (Vec<ContactRecord>, Vec<TurningPoint>) {
+    let mut impacts: Vec<ContactRecord> = Vec::new();
     if let Regime::Contact(side) | Regime::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
         let speed = side.sign() * start.velocity;
-        enter(&mut impacts, (model, settings), side, 0.0, [depth, speed]);
+        begin_contact(&mut impacts, (model, settings), side, 0.0, [depth, speed]);
     }
     let mut turns = Vec::new();
     if start.velocity == 0.0 {
-        turns.push(Turn { t: 0.0, x: start.x });
+        turns.push(TurningPoint { t: 0.0, x: start.x });
     }
-    for Occurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
-        let region = place(phase).0.region;
+    for EventOccurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
+        let region = mode_and_sticking(phase).0.region;
         match meanings.get(phase).and_then(|list| list.get(event)) {
-            Some(&Meaning::Touch(side)) => {
+            Some(&JudgeEvent::Touch(side)) => {
                 let speed = (side.sign() * state.v).max(0.0);
-                enter(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
+                begin_contact(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
             }
-            Some(Meaning::Release) => {
+            Some(JudgeEvent::Release) => {
                 if let Some(impact) = impacts.last_mut() {
                     impact.released(model, state.t, (-state.v).max(0.0));
                 }
             }
-            Some(meaning @ (Meaning::Turn | Meaning::LetGo)) => {
+            Some(meaning @ (JudgeEvent::Turn | JudgeEvent::LetGo)) => {
                 let direction = force_at_rest(model, region, state.t, state.x).signum();
-                if let Meaning::LetGo = meaning
+                if let JudgeEvent::LetGo = meaning
                     && let Some(Regime::Contact(side)) =
                         pushed_into(model, region, state.x, direction)
                 {
-                    enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
+                    begin_contact(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
-                turns.push(Turn { t: state.t, x: Coordinate::of(model, region).x(state.x) });
+                turns.push(TurningPoint {
+                    t: state.t,
+                    x: Coordinate::for_region(model, region).x(state.x),
+                });
                 if matches!(region, Regime::Contact(_))
                     && let Some(impact) = impacts.last_mut()
                 {
@@ -379,16 +383,16 @@ fn contacts_and_turns(
     (impacts, turns)
 }
 
-/// Why the run ended.
-fn stop_of(reason: StopReason) -> Stop {
+/// The reason why the run ended.
+fn stop_of(reason: StopReason) -> SimulationStop {
     match reason {
-        StopReason::EndReached => Stop::Duration,
-        StopReason::Event { .. } => Stop::RestEnergy,
-        StopReason::NonFinite { time } => Stop::NotFinite { t: time },
-        StopReason::MaximumSteps { time } => Stop::Steps { t: time },
-        StopReason::Interrupted { time } => Stop::Interrupted { t: time },
-        StopReason::StepTooSmall { time } => Stop::StepTooSmall { t: time },
-        StopReason::SwitchingStalled { time } => Stop::Stalled { t: time },
+        StopReason::EndReached => SimulationStop::Duration,
+        StopReason::Event { .. } => SimulationStop::RestEnergy,
+        StopReason::NonFinite { time } => SimulationStop::NotFinite { t: time },
+        StopReason::MaximumSteps { time } => SimulationStop::Steps { t: time },
+        StopReason::Interrupted { time } => SimulationStop::Interrupted { t: time },
+        StopReason::StepTooSmall { time } => SimulationStop::StepTooSmall { t: time },
+        StopReason::SwitchingStalled { time } => SimulationStop::Stalled { t: time },
     }
 }
 
@@ -401,21 +405,21 @@ fn end_in_x(model: &Model, trajectory: &Trajectory) -> (f64, f64) {
         .rev()
         .find_map(|pair| trajectory.phase_at(0.5 * (pair[0] + pair[1])))
         .unwrap_or(0);
-    let coordinate = Coordinate::of(model, place(last_phase).0.region);
+    let coordinate = Coordinate::for_region(model, mode_and_sticking(last_phase).0.region);
     let end = trajectory.end();
     (coordinate.x(end.x), coordinate.sign * end.v)
 }
 
 /// The run as a function of time, a piece for each step.
-fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> Path {
+fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> SimulationPath {
     let knots: Vec<f64> = trajectory.knots().map(|knot| knot.t).collect();
-    let mut path = Path::judged(trajectory);
+    let mut path = SimulationPath::judged(trajectory);
     if settings.keep_path {
         for pair in knots.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let phase = path.judged_phase(0.5 * (from + to)).unwrap_or(0);
-            let (Place { region, .. }, stuck) = place(phase);
-            let Coordinate { origin, sign } = Coordinate::of(model, region);
+            let (HybridMode { region, .. }, stuck) = mode_and_sticking(phase);
+            let Coordinate { origin, sign } = Coordinate::for_region(model, region);
             let regime = if stuck { Regime::Stuck } else { region };
             path.push_judged([from, to], regime, [origin, sign]);
         }

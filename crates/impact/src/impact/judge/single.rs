@@ -44,7 +44,7 @@ pub struct TrueImpact {
     /// The path in contact: depth and speed against the time since the touch.
     pub contact: Trajectory,
     /// The path from the exit to the turning point after it, place against the barrier and speed
-    /// out of it against the time since the exit; nothing where it is the approach run backwards.
+    /// out of it against the time since the exit; `None` if it is the approach run backwards.
     pub back: Option<Trajectory>,
     /// Largest change of the energy along the path, in flight alone where the contact is damped, as
     /// a part of the kinetic energy at touch: how good the path is.
@@ -91,7 +91,7 @@ pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
 /// ```
 /// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, hertz::elastic_force, true_impact};
-/// use lindstedt::numeric::ode::Options;
+/// use lindstedt::numeric::ode::IntegrationOptions;
 ///
 /// let pendulum = Collision {
 ///     release: -1.5,
@@ -101,7 +101,7 @@ pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
 /// };
-/// let truth = true_impact(&pendulum, &Options::with_tolerance(1e-12))?;
+/// let truth = true_impact(&pendulum, &IntegrationOptions::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
 /// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
 /// # Ok::<(), lindstedt::impact::ImpactError>(())
@@ -194,9 +194,9 @@ fn energy_drift(
     Ok(flight.max(rest) / released.abs())
 }
 
-/// The same, with what may be neglected beside this size.
-fn at_scale(options: &ode::Options, size: f64) -> ode::Options {
-    ode::Options {
+/// The options with an absolute tolerance in proportion to this size.
+fn at_scale(options: &ode::IntegrationOptions, size: f64) -> ode::IntegrationOptions {
+    ode::IntegrationOptions {
         absolute_tolerance: options
             .absolute_tolerance
             .min(options.relative_tolerance * size)
@@ -274,9 +274,9 @@ const ACCURACY: f64 = 5e-5;
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;
 
-/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by
-/// more than 5e-5 of itself. The first pair compared is that of `options` and a hundredth of it;
-/// where they differ the next one is closer.
+/// The true impact with assured digits: a tolerance a hundred times looser changes no quantity by
+/// more than 5e-5 of itself. The first pair compared is that of `options` and a hundredth of it; if
+/// they differ the next one is tighter.
 ///
 /// # Errors
 /// As [`true_impact`], and [`ImpactError::NotSettled`] where double precision does not know six
@@ -285,7 +285,7 @@ const TIGHTEST: f64 = 1e-14;
 /// ```
 /// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, assured_impact, hertz::elastic_force};
-/// use lindstedt::numeric::ode::Options;
+/// use lindstedt::numeric::ode::IntegrationOptions;
 ///
 /// let pendulum = Collision {
 ///     release: -1.5,
@@ -295,7 +295,7 @@ const TIGHTEST: f64 = 1e-14;
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
 /// };
-/// let truth = assured_impact(&pendulum, &Options::default())?;
+/// let truth = assured_impact(&pendulum, &IntegrationOptions::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
 /// # Ok::<(), lindstedt::impact::ImpactError>(())
 /// ```
@@ -304,7 +304,7 @@ pub fn assured_impact(
     options: &ode::Options,
 ) -> Result<TrueImpact, ImpactError> {
     let with = |tolerance: f64| {
-        let options = ode::Options {
+        let options = ode::IntegrationOptions {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             ..*options
@@ -346,19 +346,20 @@ impl TrueImpact {
 
     /// Displacement and velocity at a time between release and return, whose ends stand for all
     /// before and after.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let barrier = self.touch.x;
         let t = t.clamp(0.0, self.period);
         if t < self.touch.t {
             return self.flight(t);
         }
         if t < self.exit.t {
-            let (depth, v) = self.contact.at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
+            let (depth, v) =
+                self.contact.phase_point_at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
             return (barrier + depth, v);
         }
         if let Some(back) = &self.back {
             let end = back.end();
-            let (gone, v) = back.at(t - self.exit.t).unwrap_or((end.x, end.v));
+            let (gone, v) = back.phase_point_at(t - self.exit.t).unwrap_or((end.x, end.v));
             return (barrier - gone, -v);
         }
         let (x, v) = self.flight(self.period - t);
@@ -368,7 +369,7 @@ impl TrueImpact {
     /// Displacement and velocity on the approach.
     fn flight(&self, t: f64) -> (f64, f64) {
         let way = self.approach.end().x;
-        match self.approach.at(t) {
+        match self.approach.phase_point_at(t) {
             Some((gone, v)) => (self.touch.x - (way - gone), v),
             None => (self.touch.x, self.touch.v),
         }
@@ -379,16 +380,16 @@ impl TrueImpact {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{Reading, Setup, deviation, solve};
+/// use lindstedt::impact::{PhaseReading, Setup, deviation, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let derived = impact.column(Reading::Derived).ok_or("none")?;
+/// let derived = impact.column(PhaseReading::Derived).ok_or("none")?;
 /// assert_eq!(deviation(&derived.phases, &impact.truth), derived.deviation);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     let true_limits = [0.0, truth.touch.t, truth.exit.t, truth.period];
-    let true_position = |t: f64| truth.at(t).0;
+    let true_position = |t: f64| truth.phase_point_at(t).0;
     let mut phases = [0.0; 3];
     let mut aligned = [0.0; 3];
     for (index, phase) in closed_form.phases.iter().enumerate() {
@@ -397,7 +398,7 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
         // As long as both last.
         let common = (to - from).min(phase.end - phase.start);
         aligned[index] = largest(0.0, common, |elapsed| {
-            phase.at(phase.start + elapsed).0 - true_position(from + elapsed)
+            phase.phase_point_at(phase.start + elapsed).0 - true_position(from + elapsed)
         });
     }
     // The contact of the closed form falls into another true phase and is short: seen there with a
@@ -431,14 +432,14 @@ mod tests {
     use crate::impact::error::ImpactError;
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
-    use crate::impact::phases::{ContactSpeed, Swing, three_phases};
-    use crate::numeric::ode::Options;
+    use crate::impact::phases::{ContactSpeed, ImpactProblem, three_phases};
+    use crate::numeric::ode::IntegrationOptions;
     use crate::numeric::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
 
-    fn swing(barrier: f64, stiffness: f64) -> Swing<'static> {
-        Swing {
+    fn swing(barrier: f64, stiffness: f64) -> ImpactProblem<'static> {
+        ImpactProblem {
             amplitude: 1.5,
             barrier,
             stiffness,
@@ -462,7 +463,8 @@ mod tests {
     }
 
     fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
-        true_impact(&collision(1.5, barrier, stiffness), &Options::with_tolerance(1e-13)).unwrap()
+        true_impact(&collision(1.5, barrier, stiffness), &IntegrationOptions::with_tolerance(1e-13))
+            .unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
@@ -506,7 +508,7 @@ mod tests {
             near(truth.penetration, depth, 1e-12);
             near(truth.duration, duration, 2e-12);
             near(truth.period, 2.0 * approach + duration, 1e-11);
-            near(truth.at(truth.period).0, -1.5, 1e-11);
+            near(truth.phase_point_at(truth.period).0, -1.5, 1e-11);
             assert!(truth.energy_drift < 1e-10, "drift {}", truth.energy_drift);
         }
     }
@@ -523,7 +525,7 @@ mod tests {
     #[test]
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
-            let options = Options::with_tolerance(tolerance);
+            let options = IntegrationOptions::with_tolerance(tolerance);
             true_impact(&collision(1.5, 0.323, 1e6), &options).unwrap().energy_drift
         };
         assert!(run(1e-5) > 1e3 * run(1e-11));
@@ -531,7 +533,7 @@ mod tests {
 
     #[test]
     fn the_closed_form_beside_the_true_motion() {
-        let stiffness = Design::default().stiffness().unwrap();
+        let stiffness = StiffnessDesign::default().stiffness().unwrap();
         let truth = pendulum(0.323, stiffness);
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&swing(0.323, stiffness), column).unwrap();
@@ -567,13 +569,14 @@ mod tests {
         // contact, 0 at x_c = 0 where the spring k = 1 acts from.
         let spring = |depth: f64| depth;
         let linear = |x: f64| x;
-        let exact = Swing {
+        let exact = ImpactProblem {
             frequency_squared: 1.0,
             restoring_force: &linear,
             elastic_force: &spring,
             ..swing(0.4, 1e4)
         };
-        let truth = true_impact(&exact.collision(), &Options::with_tolerance(1e-13)).unwrap();
+        let truth =
+            true_impact(&exact.collision(), &IntegrationOptions::with_tolerance(1e-13)).unwrap();
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&exact, column).unwrap();
             let found = deviation(&motion, &truth);
@@ -588,7 +591,8 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_is_refused() {
         let run = |amplitude, barrier| {
-            true_impact(&collision(amplitude, barrier, 1e6), &Options::default()).unwrap_err()
+            true_impact(&collision(amplitude, barrier, 1e6), &IntegrationOptions::default())
+                .unwrap_err()
         };
         let refused = run(0.3, 0.323);
         assert!(

@@ -29,8 +29,8 @@ pub(in crate::impact) fn values<const L: usize>(
     values
 }
 
-/// Those of several polynomials of the same length: each to the last bit what it is alone, and
-/// sooner, for none waits for another.
+/// Values of several polynomials of the same length: bit for bit those of each alone, and faster,
+/// because none waits for another.
 #[inline(always)]
 pub(in crate::impact) fn values_of<const N: usize, const L: usize>(
     polynomials: [&[[f64; L]]; N],
@@ -132,7 +132,7 @@ fn neighbours<const FIRST: usize, const L: usize>(form: &mut [[f64; L]; DEGREE +
     }
 }
 
-/// How often p, which is not zero at 0, changes its sign in (0, h): 0 or 1, more where that is not
+/// Number of sign changes of p, which is not zero at 0, in (0, h): 0 or 1, more if that is not
 /// certain.
 #[inline(always)]
 pub(in crate::impact) fn changes_of_sign<const L: usize>(
@@ -180,9 +180,9 @@ pub(in crate::impact) fn changes_of_sign<const L: usize>(
     changes
 }
 
-/// Where in each active lane p - level changes its sign, which it does once between two places
-/// where its values are known and of opposite sign: Newton's method, halving the interval where
-/// that would leave it. Nothing of note in the other lanes.
+/// The point in each active lane at which p - level changes its sign, once between two points with
+/// known values of opposite sign: Newton's method with bisection as a safeguard. The other lanes
+/// have no meaning.
 #[inline(always)]
 pub(in crate::impact) fn crossings<const L: usize>(
     coefficients: &[[f64; L]],
@@ -288,7 +288,7 @@ mod tests {
         let changes = changes_of_sign(&several, &[1.0; 8]);
         for (lane, roots) in roots.iter().enumerate() {
             let inside = roots.iter().filter(|root| (0.0..1.0).contains(*root)).count() as f64;
-            // What is not certain is called two, and is looked at.
+            // An uncertain number is counted as two, and is examined.
             assert!(changes[lane] == inside || changes[lane] >= 2.0, "{roots:?}: {changes:?}");
         }
         assert_eq!(changes[..5], [0.0, 1.0, 1.0, 0.0, 1.0]);

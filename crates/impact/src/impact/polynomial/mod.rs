@@ -7,18 +7,18 @@
 //! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
 //! ```
 //!
-//! Where Bernstein's form says that there is no change of sign, or one, nothing is searched
-//! (`lanes`, for several polynomials side by side). Otherwise an interval on which the line through
-//! the middle stays further from zero than the second bound holds no root; one on which the slope
-//! stays further from zero than the first bound on p'' holds at most one; any other is halved. So
-//! no root is missed, however close two of them lie, down to the rounding of the polynomial itself.
+//! If Bernstein's form shows no change of sign, or one, nothing is searched (`lanes`, for several
+//! polynomials side by side). Otherwise an interval on which the line through the middle stays
+//! further from zero than the second bound holds no root; one on which the slope stays further from
+//! zero than the first bound on p'' holds at most one; any other is halved. So no root is missed,
+//! however close two of them lie, down to the rounding of the polynomial itself.
 
 pub(super) mod lanes;
 
 use crate::numeric::ode::root::find_root;
 use lanes::{changes_of_sign, crossings, values, values_and_slopes, variations};
 
-/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series
+/// At most [`Roots::LIMIT`] roots in ascending order, without allocation; a step of a Taylor series
 /// never has more.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Roots {
@@ -51,24 +51,24 @@ impl Roots {
 
 /// p(u).
 pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
-    let [value] = values(alone(coefficients), &[u]);
+    let [value] = values(as_lane(coefficients), &[u]);
     value
 }
 
 /// p(u) and p'(u).
 pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
-    let ([value], [slope]) = values_and_slopes(alone(coefficients), &[u]);
+    let ([value], [slope]) = values_and_slopes(as_lane(coefficients), &[u]);
     (value, slope)
 }
 
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
 pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
-    let [sum] = variations(alone(coefficients), &[h]);
+    let [sum] = variations(as_lane(coefficients), &[h]);
     sum
 }
 
 /// One polynomial as one lane.
-fn alone(coefficients: &[f64]) -> &[[f64; 1]] {
+fn as_lane(coefficients: &[f64]) -> &[[f64; 1]] {
     coefficients.as_chunks().0
 }
 
@@ -90,7 +90,7 @@ pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
     near_sign_changes(coefficients, h, value(coefficients, h))
 }
 
-/// The same where it is known that p may vanish, and what it is at h.
+/// The roots of a polynomial that may vanish in the interval, with its value at h given.
 pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots {
     let mut found = Roots::new();
     // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
@@ -99,9 +99,9 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
     let Some(&first) = coefficients.first() else {
         return found;
     };
-    // Where it leaves zero its value at the end is that of p/u^k.
+    // If it leaves zero, its value at the end is that of p/u^k.
     let end = if zeros == 0 { end } else { value(coefficients, h) };
-    let [changes] = changes_of_sign(alone(coefficients), &[h]);
+    let [changes] = changes_of_sign(as_lane(coefficients), &[h]);
     if changes == 0.0 && first * end > 0.0 {
         return found;
     }
@@ -109,7 +109,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
         return found;
     }
-    let mut search = Search {
+    let mut search = RootSearch {
         coefficients,
         curvature: curvature(coefficients, h),
         sign: first.signum(),
@@ -128,7 +128,7 @@ const DEEPEST: usize = 56;
 const MOST_LOOKS: usize = 400;
 
 /// A search from left to right.
-struct Search<'a> {
+struct RootSearch<'a> {
     coefficients: &'a [f64],
     /// A bound on |p''|.
     curvature: f64,
@@ -138,7 +138,7 @@ struct Search<'a> {
     found: Roots,
 }
 
-impl Search<'_> {
+impl RootSearch<'_> {
     /// Looks at the interval between two places with their values.
     fn between(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
         if self.found.is_full() {
@@ -185,7 +185,7 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
     bracketed(coefficients, level, (from, start), (to, end))
 }
 
-/// The same where the values of p - level at both ends are known, and of opposite sign.
+/// The root of p - level between two points with known values of opposite sign.
 pub(super) fn bracketed(
     coefficients: &[f64],
     level: f64,
@@ -193,11 +193,11 @@ pub(super) fn bracketed(
     (to, end): (f64, f64),
 ) -> f64 {
     let [place] =
-        crossings(alone(coefficients), &[level], (&[from], &[start]), (&[to], &[end]), &[true]);
+        crossings(as_lane(coefficients), &[level], (&[from], &[start]), (&[to], &[end]), &[true]);
     place
 }
 
-/// The same for any function with one change of sign.
+/// The root of any function with one change of sign.
 pub(super) fn crossing_of(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     match find_root(&function, from, to) {
         Ok(root) => root,

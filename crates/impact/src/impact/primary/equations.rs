@@ -24,7 +24,7 @@ use crate::system::System;
 /// The energies that run beside the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
 
-/// What the energies say of every case.
+/// The equations of motion of every case, from the energies.
 struct Accelerations {
     /// x'', y'' with `P` for the torque of a contact and `G` for that of friction.
     free: [Expr; 2],
@@ -36,27 +36,27 @@ struct Accelerations {
 static DERIVED: LazyLock<Result<Accelerations, MechanicsError>> = LazyLock::new(derive);
 
 /// The equations of one case.
-pub(super) struct Equations {
+pub(super) struct PrimaryEquations {
     accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
     /// The phases that there were: a motion goes through the same ones again and again.
-    built: RefCell<Vec<(Phase, Rc<Followed>)>>,
+    built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
 }
 
 /// A phase with equations of its own: in the barrier of a side or in none, and the direction in
 /// which dry friction acts.
-type Phase = (Option<Side>, f64);
+type PhaseKey = (Option<Side>, f64);
 
 /// The system of a phase: its states, and behind them the accounts that change in it.
-pub(super) struct Followed {
+pub(super) struct PhaseSystem {
     pub(super) system: System,
-    /// Which accounts those are.
+    /// Indices of these accounts.
     pub(super) accounts: Vec<usize>,
 }
 
 /// An expression of this file.
-fn own(text: &str) -> Expr {
+fn parsed(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
@@ -66,9 +66,9 @@ fn derive() -> Result<Accelerations, MechanicsError> {
         "R*y'^2/2 + ((y' + x'*cos(x))^2 + (x'*sin(x))^2)/2",
         "kappa*y^2/2 + 1 - cos(x)",
     )?;
-    mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
+    mechanism.dissipation = parsed("delta*y'^2/2 + zeta*x'^2");
     mechanism.forces =
-        [(Symbol::new("x"), own("P + G")), (Symbol::new("y"), own("f*sin(eta*t)"))].into();
+        [(Symbol::new("x"), parsed("P + G")), (Symbol::new("y"), parsed("f*sin(eta*t)"))].into();
     let equations = mechanism.equations()?;
     let accelerations = equations.accelerations()?;
     let [x, y] = accelerations.as_slice() else {
@@ -84,7 +84,7 @@ fn derive() -> Result<Accelerations, MechanicsError> {
     Ok(Accelerations { free: [x.clone(), y.clone()], held })
 }
 
-impl Equations {
+impl PrimaryEquations {
     pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
         let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
@@ -108,11 +108,11 @@ impl Equations {
     }
 
     /// The system of a phase, built when it is first met.
-    fn once(
+    fn cached_system(
         &self,
-        phase: Phase,
-        build: impl FnOnce() -> Result<Followed, PrimaryError>,
-    ) -> Result<Rc<Followed>, PrimaryError> {
+        phase: PhaseKey,
+        build: impl FnOnce() -> Result<PhaseSystem, PrimaryError>,
+    ) -> Result<Rc<PhaseSystem>, PrimaryError> {
         let known = self.built.borrow().iter().find(|own| own.0 == phase).map(|own| own.1.clone());
         if let Some(known) = known {
             return Ok(known);
@@ -126,19 +126,23 @@ impl Equations {
     fn friction(&self, direction: f64) -> [Expr; 2] {
         let torque = match self.case.model.friction {
             _ if self.case.model.alpha == 0.0 => Expr::zero(),
-            Friction::Exact => own("alpha") * Expr::from(direction as i64),
-            Friction::Arctangent => own(&format!("alpha*2/pi*atan({STEEPNESS}*x')")),
+            Friction::Exact => parsed("alpha") * Expr::from(direction as i64),
+            Friction::Arctangent => parsed(&format!("alpha*2/pi*atan({STEEPNESS}*x')")),
         };
-        let power = &torque * &own("x'");
+        let power = &torque * &parsed("x'");
         [-torque, power]
     }
 
-    /// What the accounts grow by: viscous, friction, contact, dashpot, force.
+    /// Rates of the accounts: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
-        [own("2*zeta*x'^2"), friction, contact, own("delta*y'^2"), own("f*sin(eta*t)*y'")]
+        [parsed("2*zeta*x'^2"), friction, contact, parsed("delta*y'^2"), parsed("f*sin(eta*t)*y'")]
     }
 
-    fn put(&self, expression: &Expr, values: &[(&str, Expr)]) -> Result<Expr, PrimaryError> {
+    fn substitute_values(
+        &self,
+        expression: &Expr,
+        values: &[(&str, Expr)],
+    ) -> Result<Expr, PrimaryError> {
         let values: BTreeMap<Symbol, Expr> =
             values.iter().map(|(name, value)| (Symbol::new(name), value.clone())).collect();
         Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
@@ -152,9 +156,9 @@ impl Equations {
         time: &str,
         right: &[Expr],
         more: &[(&str, f64)],
-    ) -> Result<Followed, PrimaryError> {
-        // What is not there costs nothing: no product with zero is followed, and no account that
-        // stands still.
+    ) -> Result<PhaseSystem, PrimaryError> {
+        // Terms with a zero factor and accounts that stand still are left out: they would cost
+        // time.
         let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
         let absent: BTreeMap<Symbol, Expr> =
             absent.map(|(name, _)| (*name, Expr::zero())).collect();
@@ -170,7 +174,7 @@ impl Equations {
         let rates = accounts.iter().map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
-        Ok(Followed { system, accounts })
+        Ok(PhaseSystem { system, accounts })
     }
 
     /// The numbers of the case, and these beside them.
@@ -183,34 +187,35 @@ impl Equations {
     /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G
     /// with x'' = 0.
     fn torque_at_rest(&self) -> Expr {
-        own("P") - own("sin(x)") - own("cos(x)") * self.accelerations.held.clone()
+        parsed("P") - parsed("sin(x)") - parsed("cos(x)") * self.accelerations.held.clone()
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
-    pub(super) fn flight(&self, direction: f64) -> Result<Rc<Followed>, PrimaryError> {
-        self.once((None, direction), || self.flight_system(direction))
+    pub(super) fn flight(&self, direction: f64) -> Result<Rc<PhaseSystem>, PrimaryError> {
+        self.cached_system((None, direction), || self.flight_system(direction))
     }
 
-    fn flight_system(&self, direction: f64) -> Result<Followed, PrimaryError> {
+    fn flight_system(&self, direction: f64) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
-        let mut right = vec![own("x'")];
+        let mut right = vec![parsed("x'")];
         let put = |acceleration: &Expr| {
-            self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
+            self.substitute_values(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
         };
         let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
-        right.extend([x, own("y'"), y]);
+        right.extend([x, parsed("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
         self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
-    /// In the barrier of a side, at its place, in s; it pushes as Hertz and Hunt and Crossley say.
+    /// The system in the barrier of a side, at its position, in s; the force is that of Hertz and
+    /// of Hunt and Crossley.
     pub(super) fn contact(
         &self,
         side: Side,
         place: f64,
         direction: f64,
-    ) -> Result<Rc<Followed>, PrimaryError> {
-        self.once((Some(side), direction), || self.contact_system(side, place, direction))
+    ) -> Result<Rc<PhaseSystem>, PrimaryError> {
+        self.cached_system((Some(side), direction), || self.contact_system(side, place, direction))
     }
 
     fn contact_system(
@@ -218,23 +223,28 @@ impl Equations {
         side: Side,
         place: f64,
         direction: f64,
-    ) -> Result<Followed, PrimaryError> {
+    ) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
-        let put = |acceleration: &Expr| self.put(acceleration, &[("G", torque.clone())]);
+        let put =
+            |acceleration: &Expr| self.substitute_values(acceleration, &[("G", torque.clone())]);
         let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
-        let mut rates = vec![x, own("y'"), y, Expr::one()];
-        rates.extend(self.accounts(power, own("mu*x'^2*w^3")));
+        let mut rates = vec![x, parsed("y'"), y, Expr::one()];
+        rates.extend(self.accounts(power, parsed("mu*x'^2*w^3")));
         let right = regularised(&rates, side).map_err(MechanicsError::from)?;
         self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("x_c", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
     /// must hold.
-    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(Followed, Expr), PrimaryError> {
+    pub(super) fn equations_when_held(
+        &self,
+        x: f64,
+        contact: f64,
+    ) -> Result<(PhaseSystem, Expr), PrimaryError> {
         let still = [("x'", Expr::zero())];
-        let mut right = vec![own("y'"), self.accelerations.held.clone()];
+        let mut right = vec![parsed("y'"), self.accelerations.held.clone()];
         for account in self.accounts(Expr::zero(), Expr::zero()) {
-            right.push(self.put(&account, &still)?);
+            right.push(self.substitute_values(&account, &still)?);
         }
         let followed = self.followed(&["y", "y'"], "t", &right, &[("x", x), ("P", contact)])?;
         Ok((followed, self.torque_at_rest()))
@@ -248,7 +258,10 @@ impl Equations {
         direction: f64,
     ) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
-        let rate = self.put(&self.accelerations.free[0], &[("P", Expr::zero()), ("G", torque)])?;
+        let rate = self.substitute_values(
+            &self.accelerations.free[0],
+            &[("P", Expr::zero()), ("G", torque)],
+        )?;
         let [x, velocity, y, speed] = state;
         let values =
             self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);

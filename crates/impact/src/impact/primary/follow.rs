@@ -16,15 +16,15 @@
 
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
-use super::equations::{ACCOUNTS, Equations, Followed};
-use super::path::{Piece, PrimaryPath, PrimaryState};
+use super::equations::{ACCOUNTS, PhaseSystem, PrimaryEquations};
+use super::path::{PrimaryPath, PrimarySegment, PrimaryState};
 use super::{
     PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings,
     PrimaryStop,
 };
 use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
-use crate::system::{End, Event, Options, Path};
+use crate::system::{Event, Path, PathEnd, SystemOptions};
 
 /// Both bodies from their start until the duration is over.
 ///
@@ -41,7 +41,7 @@ use crate::system::{End, Event, Options, Path};
 /// let model = Model { left: None, right: None, ..Model::default() };
 /// let case = PrimaryCase { primary, model, start: [0.0, 0.0, 0.1, 0.0] };
 /// let motion = simulate_primary(case, &PrimarySettings { duration: 10.0, ..PrimarySettings::default() })?;
-/// assert!((motion.at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
+/// assert!((motion.state_at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn simulate_primary(
@@ -52,7 +52,7 @@ pub fn simulate_primary(
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
     }
-    let mut run = Run::new(case, settings)?;
+    let mut run = PrimaryRun::new(case, settings)?;
     let stop = loop {
         if run.t >= settings.duration {
             break PrimaryStop::Duration;
@@ -69,16 +69,16 @@ pub fn simulate_primary(
         }
         let before = run.t;
         let reason = match run.regime {
-            Regime::Free(direction) => run.fly(direction)?,
-            Regime::Contact(side, direction) => run.touch(side, direction)?,
-            Regime::LetGo(side, direction) => run.let_go(side, direction)?,
-            Regime::Held => run.hold()?,
+            PrimaryRegime::Free(direction) => run.fly(direction)?,
+            PrimaryRegime::Contact(side, direction) => run.touch(side, direction)?,
+            PrimaryRegime::LetGo(side, direction) => run.let_go(side, direction)?,
+            PrimaryRegime::Held => run.follow_held()?,
         };
-        run.settle();
+        run.close_accounts();
         match reason {
-            End::Interrupted => break PrimaryStop::Interrupted,
-            End::Reached | End::Event(_) => {}
-            End::StepLimit | End::Singular | End::Overflow | End::Sticks => {
+            PathEnd::Interrupted => break PrimaryStop::Interrupted,
+            PathEnd::Reached | PathEnd::Event(_) => {}
+            PathEnd::StepLimit | PathEnd::Singular | PathEnd::Overflow | PathEnd::Sticks => {
                 break PrimaryStop::Singular;
             }
         }
@@ -91,15 +91,15 @@ pub fn simulate_primary(
     Ok(run.finish(stop))
 }
 
-/// So many phases without length in a row are one too many.
+/// Largest number of consecutive phases of length zero.
 const IDLE: usize = 8;
 
 /// The torque or the speed that rounding leaves of zero, in parts of the friction.
 const ROUNDING: f64 = 1e-12;
 
-/// What the pendulum is doing; the direction is that of dry friction.
+/// The state of the pendulum as a mode; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Regime {
+enum PrimaryRegime {
     Free(f64),
     Contact(Side, f64),
     /// In a barrier that would have to pull.
@@ -108,11 +108,11 @@ enum Regime {
 }
 
 /// A motion in the making.
-struct Run<'a> {
+struct PrimaryRun<'a> {
     case: PrimaryCase,
     settings: &'a PrimarySettings,
-    equations: Equations,
-    regime: Regime,
+    equations: PrimaryEquations,
+    regime: PrimaryRegime,
     t: f64,
     state: PrimaryState,
     accounts: [f64; ACCOUNTS],
@@ -120,7 +120,7 @@ struct Run<'a> {
     idle: usize,
     path: PrimaryPath,
     impacts: Vec<PrimaryImpact>,
-    /// What the contacts had taken when the open impact began.
+    /// Energy taken by the contacts when the open impact began.
     taken: f64,
     turns: Vec<(f64, f64)>,
     swings: Vec<(f64, f64)>,
@@ -129,7 +129,7 @@ struct Run<'a> {
     astray: f64,
 }
 
-fn own(text: &str) -> Expr {
+fn parsed(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
@@ -139,10 +139,10 @@ fn number(value: f64) -> Expr {
 }
 
 fn offset(name: &str, place: f64) -> Expr {
-    own(name) - number(place)
+    parsed(name) - number(place)
 }
 
-impl<'a> Run<'a> {
+impl<'a> PrimaryRun<'a> {
     fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
         let state = PrimaryState { x, velocity, y, speed };
@@ -150,8 +150,8 @@ impl<'a> Run<'a> {
         let mut run = Self {
             case,
             settings,
-            equations: Equations::new(case)?,
-            regime: Regime::Free(0.0),
+            equations: PrimaryEquations::new(case)?,
+            regime: PrimaryRegime::Free(0.0),
             t: 0.0,
             state,
             accounts: [0.0; ACCOUNTS],
@@ -174,18 +174,18 @@ impl<'a> Run<'a> {
             run.begin_impact(side, depth);
         }
         run.regime = match (direction, inside) {
-            (None, _) => Regime::Held,
+            (None, _) => PrimaryRegime::Held,
             (Some(direction), None) => return run.set_off(direction).map(|()| run),
             (Some(direction), Some((side, _))) if case.model.would_pull(side.sign() * velocity) => {
-                Regime::LetGo(side, direction)
+                PrimaryRegime::LetGo(side, direction)
             }
-            (Some(direction), Some((side, _))) => Regime::Contact(side, direction),
+            (Some(direction), Some((side, _))) => PrimaryRegime::Contact(side, direction),
         };
         Ok(run)
     }
 
     /// The direction of dry friction: that of the motion, or of the torque on what is at rest;
-    /// nothing where friction holds it. A contact pushes with `contact`.
+    /// `None` if friction holds it. A contact pushes with `contact`.
     fn direction(&self, contact: f64) -> Option<f64> {
         if !self.case.sticks() {
             return Some(0.0);
@@ -201,10 +201,10 @@ impl<'a> Run<'a> {
     /// On in this direction: into the barrier on whose surface it stands, where it moves or is
     /// pushed that way, else free.
     fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
-        self.regime = Regime::Free(direction);
+        self.regime = PrimaryRegime::Free(direction);
         let PrimaryState { x, velocity, y, speed } = self.state;
         for side in [Side::Left, Side::Right] {
-            if x != self.place(side) {
+            if x != self.barrier_position(side) {
                 continue;
             }
             let push = match velocity == 0.0 {
@@ -215,40 +215,40 @@ impl<'a> Run<'a> {
                 false => velocity,
             };
             if side.sign() * push > 0.0 {
-                self.enter(side, direction);
+                self.begin_contact(side, direction);
             }
         }
         Ok(())
     }
 
-    fn options(&self) -> Options {
-        Options {
+    fn options(&self) -> SystemOptions {
+        SystemOptions {
             tolerance: self.settings.tolerance,
             interrupt: self.settings.interrupt,
-            ..Options::default()
+            ..SystemOptions::default()
         }
     }
 
     /// A barrier's place.
-    fn place(&self, side: Side) -> f64 {
+    fn barrier_position(&self, side: Side) -> f64 {
         self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
     /// The states, and behind them the accounts that change in this phase.
-    fn with_accounts(&self, states: &[f64], followed: &Followed) -> Vec<f64> {
+    fn with_accounts(&self, states: &[f64], followed: &PhaseSystem) -> Vec<f64> {
         let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
         states.iter().copied().chain(accounts).collect()
     }
 
     /// Takes back what stands behind the states.
-    fn keep_accounts(&mut self, values: &[f64], followed: &Followed) {
+    fn keep_accounts(&mut self, values: &[f64], followed: &PhaseSystem) {
         for (account, value) in followed.accounts.iter().zip(values) {
             self.accounts[*account] = *value;
         }
     }
 
-    fn fly(&mut self, direction: f64) -> Result<End, PrimaryError> {
-        let mut events = vec![Event::record(own("y'"))];
+    fn fly(&mut self, direction: f64) -> Result<PathEnd, PrimaryError> {
+        let mut events = vec![Event::record(parsed("y'"))];
         let mut sides = Vec::new();
         for side in [Side::Left, Side::Right] {
             if let Some(place) = self.case.model.barrier(side) {
@@ -259,12 +259,12 @@ impl<'a> Run<'a> {
         let turning = events.len();
         match self.case.sticks() {
             true => events.extend(self.end_of_slip(direction)),
-            false => events.push(Event::record(own("x'"))),
+            false => events.push(Event::record(parsed("x'"))),
         }
-        let reason = self.glide(direction, &events, Some(turning))?;
-        if let End::Event(event) = reason {
+        let reason = self.follow_free(direction, &events, Some(turning))?;
+        if let PathEnd::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
-                Some(side) => self.enter(*side, direction),
+                Some(side) => self.begin_contact(*side, direction),
                 None => self.turn_back(0.0)?,
             }
         }
@@ -273,7 +273,7 @@ impl<'a> Run<'a> {
 
     /// The events that end a slip in this direction: it comes to rest, or turns out to be none.
     fn end_of_slip(&self, direction: f64) -> [Event; 2] {
-        let forward = Expr::from(direction as i64) * own("x'");
+        let forward = Expr::from(direction as i64) * parsed("x'");
         let unseen = number(ROUNDING * self.case.model.alpha);
         [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
@@ -281,12 +281,12 @@ impl<'a> Run<'a> {
     /// Away from every force of a barrier until one of these events; the first of them are the
     /// turning points of the main mass, those of the pendulum have this number where they are
     /// looked for.
-    fn glide(
+    fn follow_free(
         &mut self,
         direction: f64,
         events: &[Event],
         swings: Option<usize>,
-    ) -> Result<End, PrimaryError> {
+    ) -> Result<PathEnd, PrimaryError> {
         let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
@@ -299,33 +299,33 @@ impl<'a> Run<'a> {
         )?;
         self.turns_of(&path, |state| state[2], |time| time);
         for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
-            self.swings.extend(path.at(met.time).map(|state| (met.time, state[0])));
+            self.swings.extend(path.states_at(met.time).map(|state| (met.time, state[0])));
         }
         let (reason, end) = (path.reason(), path.end());
-        let last = path.at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or(start);
         self.state = PrimaryState { x: last[0], velocity: last[1], y: last[2], speed: last[3] };
         self.keep_accounts(&last[4..], &followed);
-        self.path.push(self.t, end, Piece::Flight(path));
+        self.path.push(self.t, end, PrimarySegment::Flight(path));
         self.t = end;
         Ok(reason)
     }
 
-    /// At rest for a moment: on in the other direction, or held.
+    /// Decides at a moment of rest whether the pendulum turns back or is held.
     fn turn_back(&mut self, contact: f64) -> Result<(), PrimaryError> {
         self.state.velocity = 0.0;
         match self.direction(contact) {
             Some(direction) => self.set_off(direction),
             None => {
-                self.regime = Regime::Held;
+                self.regime = PrimaryRegime::Held;
                 Ok(())
             }
         }
     }
 
-    fn enter(&mut self, side: Side, direction: f64) {
-        self.state.x = self.place(side);
+    fn begin_contact(&mut self, side: Side, direction: f64) {
+        self.state.x = self.barrier_position(side);
         self.begin_impact(side, 0.0);
-        self.regime = Regime::Contact(side, direction);
+        self.regime = PrimaryRegime::Contact(side, direction);
     }
 
     /// An impact that begins now, this deep in the barrier.
@@ -342,48 +342,48 @@ impl<'a> Run<'a> {
         });
     }
 
-    fn leave(&mut self, side: Side, direction: f64) {
-        self.state.x = self.place(side);
+    fn end_contact(&mut self, side: Side, direction: f64) {
+        self.state.x = self.barrier_position(side);
         let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
         if let Some(impact) = self.impacts.last_mut() {
             impact.exit_time = Some(t);
             impact.speed_out = Some(-side.sign() * velocity);
             impact.energy_lost = self.accounts[2] - taken;
         }
-        self.regime = Regime::Free(direction);
+        self.regime = PrimaryRegime::Free(direction);
     }
 
-    fn touch(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
-        let place = self.place(side);
+    fn touch(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
+        let place = self.barrier_position(side);
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
         // From a touch without speed the variable w would never leave its zero.
         let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
         let mut events = vec![
-            Event::record(own("y'")),
-            Event::stop(own("w")),
+            Event::record(parsed("y'")),
+            Event::stop(parsed("w")),
             Event::stop(offset("t", self.settings.duration)),
         ];
         match self.case.sticks() {
             true => events.extend(self.end_of_slip(direction)),
-            false => events.push(Event::record(own("x'"))),
+            false => events.push(Event::record(parsed("x'"))),
         }
         let pulls = events.len();
         if self.case.model.mu > 0.0 {
             let sign = Expr::from(side.sign() as i64);
-            events.push(Event::stop(own("gamma") + sign * own("mu*x'")).falling());
+            events.push(Event::stop(parsed("gamma") + sign * parsed("mu*x'")).falling());
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
         let path = followed.system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
-        let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.at(met.time)).collect();
+        let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.states_at(met.time)).collect();
         let deepest = turns.iter().map(|state| state[0] * state[0]).fold(depth, f64::max);
         let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
         self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
-        let last = path.at(path.end()).unwrap_or(start);
+        let last = path.states_at(path.end()).unwrap_or(start);
         let w = last[0].max(0.0);
         self.state = PrimaryState {
             x: place + side.sign() * w * w,
@@ -396,17 +396,19 @@ impl<'a> Run<'a> {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
         }
-        self.path.push(self.t, end, Piece::Contact { path, side, place });
+        self.path.push(self.t, end, PrimarySegment::Contact { path, side, place });
         self.t = end;
         match reason {
-            End::Event(1) => self.leave(side, direction),
-            End::Event(2) => self.t = self.settings.duration,
-            End::Event(event) if event == pulls => self.regime = Regime::LetGo(side, direction),
-            End::Event(_) => {
+            PathEnd::Event(1) => self.end_contact(side, direction),
+            PathEnd::Event(2) => self.t = self.settings.duration,
+            PathEnd::Event(event) if event == pulls => {
+                self.regime = PrimaryRegime::LetGo(side, direction)
+            }
+            PathEnd::Event(_) => {
                 let push = -side.sign() * self.case.model.contact(w * w, 0.0);
                 self.turn_back(push)?;
-                if let Regime::Free(direction) = self.regime {
-                    self.regime = Regime::Contact(side, direction);
+                if let PrimaryRegime::Free(direction) = self.regime {
+                    self.regime = PrimaryRegime::Contact(side, direction);
                 }
             }
             _ => {}
@@ -416,38 +418,38 @@ impl<'a> Run<'a> {
 
     /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until
     /// it is out, or slow enough to be pushed again.
-    fn let_go(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
-        let place = self.place(side);
+    fn let_go(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
+        let place = self.barrier_position(side);
         let sign = Expr::from(side.sign() as i64);
         let events = [
-            Event::record(own("y'")),
+            Event::record(parsed("y'")),
             Event::stop(offset("x", place)),
-            Event::stop(own("gamma") + sign * own("mu*x'")).rising(),
+            Event::stop(parsed("gamma") + sign * parsed("mu*x'")).rising(),
         ];
         let before = self.state.x;
-        let reason = self.glide(direction, &events, None)?;
-        // What the barrier stores on this way it does not give back.
+        let reason = self.follow_free(direction, &events, None)?;
+        // The elastic energy that the barrier stores on this way is not returned.
         let stored = |x: f64| {
             let depth = (side.sign() * (x - place)).max(0.0);
             self.case.model.elastic_energy(depth)
         };
         self.accounts[2] += stored(before) - stored(self.state.x);
         match reason {
-            End::Event(1) => self.leave(side, direction),
-            End::Event(2) => self.regime = Regime::Contact(side, direction),
+            PathEnd::Event(1) => self.end_contact(side, direction),
+            PathEnd::Event(2) => self.regime = PrimaryRegime::Contact(side, direction),
             _ => {}
         }
         Ok(reason)
     }
 
-    fn hold(&mut self) -> Result<End, PrimaryError> {
+    fn follow_held(&mut self) -> Result<PathEnd, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
         let contact =
             inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
-        let (followed, torque) = self.equations.held(x, contact)?;
+        let (followed, torque) = self.equations.equations_when_held(x, contact)?;
         let bound = self.case.model.alpha;
-        let mut events = vec![Event::record(own("y'"))];
+        let mut events = vec![Event::record(parsed("y'"))];
         for bound in [bound, (1.0 + ROUNDING) * bound].map(number) {
             events.push(Event::stop(&torque - &bound).rising());
             events.push(Event::stop(&torque + &bound).falling());
@@ -462,15 +464,15 @@ impl<'a> Run<'a> {
         )?;
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
-        let last = path.at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or(start);
         self.state = PrimaryState { x, velocity: 0.0, y: last[0], speed: last[1] };
         self.keep_accounts(&last[2..], &followed);
-        self.path.push(self.t, end, Piece::Held { path, x });
+        self.path.push(self.t, end, PrimarySegment::Held { path, x });
         self.t = end;
-        if let End::Event(event) = reason {
+        if let PathEnd::Event(event) = reason {
             let direction = if event % 2 == 1 { 1.0 } else { -1.0 };
             match inside {
-                Some((side, _)) => self.regime = Regime::Contact(side, direction),
+                Some((side, _)) => self.regime = PrimaryRegime::Contact(side, direction),
                 None => self.set_off(direction)?,
             }
         }
@@ -480,7 +482,7 @@ impl<'a> Run<'a> {
     /// The turning points of the main mass in this piece.
     fn turns_of(&mut self, path: &Path, y: impl Fn(&[f64]) -> f64, time: impl Fn(f64) -> f64) {
         for met in path.occurrences().iter().filter(|met| met.event == 0) {
-            if let Some(state) = path.at(met.time) {
+            if let Some(state) = path.states_at(met.time) {
                 let t = time(met.time);
                 // In a contact the time is a state of its own.
                 let t = if t.is_nan() { state.get(4).copied().unwrap_or(self.t) } else { t };
@@ -503,7 +505,7 @@ impl<'a> Run<'a> {
     }
 
     /// The account at the end of a phase.
-    fn settle(&mut self) {
+    fn close_accounts(&mut self) {
         let energy = self.case.energy(self.state);
         let [viscous, friction, contact, dashpot, force] = self.accounts;
         let astray = energy - self.start_energy + viscous + friction + contact + dashpot - force;

@@ -27,8 +27,8 @@ pub struct Alone {
 
 /// The main mass without its damper and with the damper locked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Others {
-    /// Without.
+pub struct UndampedAndLocked {
+    /// Without the damper.
     pub without: Alone,
     /// Locked.
     pub locked: Alone,
@@ -36,17 +36,21 @@ pub struct Others {
 
 impl Primary {
     /// The two linear cases beside the damper.
-    pub fn others(&self) -> Others {
-        Others { without: self.alone(self.mass), locked: self.alone(self.mass + 1.0) }
+    pub fn undamped_and_locked(&self) -> UndampedAndLocked {
+        UndampedAndLocked {
+            without: self.single_mass(self.mass),
+            locked: self.single_mass(self.mass + 1.0),
+        }
     }
 
-    fn alone(&self, mass: f64) -> Alone {
+    fn single_mass(&self, mass: f64) -> Alone {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
         let driven = self.force != 0.0;
         let inertia = mass * self.frequency * self.frequency;
         let reactance = self.stiffness - inertia;
-        // What is left of two equal numbers is rounding: resonance without damping has no long run.
+        // The difference of two equal numbers is rounding: resonance without damping has no steady
+        // state.
         let reactance = match reactance.abs() <= 8.0 * f64::EPSILON * inertia {
             true => 0.0,
             false => reactance,
@@ -65,7 +69,7 @@ impl Primary {
         }
     }
 
-    /// The envelope of the mass alone from this start, not driven; nothing where it creeps.
+    /// The envelope of the mass alone from this start, not driven; `None` if it creeps.
     pub fn alone_envelope(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> Option<f64> {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
@@ -96,11 +100,12 @@ impl Primary {
 }
 
 impl PrimaryMotion {
-    /// When the envelope of the main mass has fallen to a tenth of its first swing, for good: the
-    /// larger of every two successive turning points, joined by straight lines of log|y|.
+    /// The time at which the envelope of the main mass has fallen to a tenth of its first swing,
+    /// for good: the larger of every two successive turning points, joined by straight lines of
+    /// log|y|.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub fn rest_time(&self) -> Result<f64, NoRest> {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
@@ -127,7 +132,7 @@ impl PrimaryMotion {
     /// a level.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The reason why it does not.
     pub(super) fn falls_to(&self, level: f64, envelope: &[(f64, f64)]) -> Result<f64, NoRest> {
         let Some(index) = envelope.iter().rposition(|(_, height)| *height > level) else {
             return Err(NoRest::StaysAbove);

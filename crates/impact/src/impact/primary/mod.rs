@@ -71,10 +71,10 @@ pub struct PrimaryCase {
     pub start: [f64; 4],
 }
 
-/// How closely and how long to follow.
+/// Duration and accuracy of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimarySettings {
-    /// How long, in units of 1/omega.
+    /// Duration, in units of 1/omega.
     pub duration: f64,
     /// Relative error of a step.
     pub tolerance: f64,
@@ -83,7 +83,7 @@ pub struct PrimarySettings {
     /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its
     /// start.
     pub stop_at_rest: bool,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -150,14 +150,14 @@ pub struct PrimaryEnergy {
     pub residual: f64,
 }
 
-/// Why a motion ended.
+/// The reason why a motion ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PrimaryStop {
-    /// At the time asked for.
+    /// The end of the duration.
     #[error("at the end of the duration")]
     Duration,
-    /// At rest, where that was to be the end.
+    /// Rest, if that was to be the end.
     #[error("at rest")]
     AtRest,
     /// After as many phases as were allowed.
@@ -166,7 +166,7 @@ pub enum PrimaryStop {
     /// A step that could not be made.
     #[error("where no next step could be made")]
     Singular,
-    /// Somebody asked for it.
+    /// An interrupt.
     #[error("interrupted")]
     Interrupted,
 }
@@ -174,11 +174,11 @@ pub enum PrimaryStop {
 /// Two bodies in motion.
 #[derive(Clone, Debug)]
 pub struct PrimaryMotion {
-    /// What was followed.
+    /// The case.
     pub case: PrimaryCase,
-    /// When it ended.
+    /// The time at which it ended.
     pub end: f64,
-    /// Why.
+    /// The reason.
     pub stop: PrimaryStop,
     /// Every impact.
     pub impacts: Vec<PrimaryImpact>,
@@ -186,7 +186,7 @@ pub struct PrimaryMotion {
     pub turns: Vec<(f64, f64)>,
     /// Turning points of the pendulum: time and angle.
     pub swings: Vec<(f64, f64)>,
-    /// What became of the energy.
+    /// The energy balance.
     pub energy: PrimaryEnergy,
     path: PrimaryPath,
 }
@@ -198,9 +198,9 @@ pub enum PrimaryError {
     /// A number of the main mass that it cannot have.
     #[error("the {name} of the main mass must be {wanted}, not {value}")]
     Number {
-        /// Which.
+        /// The name of the parameter.
         name: &'static str,
-        /// What it may be.
+        /// The admissible values.
         wanted: &'static str,
         /// The value given.
         value: f64,
@@ -219,7 +219,7 @@ pub enum PrimaryError {
     /// A phase that cannot begin.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// No time to follow it.
+    /// The duration is not positive.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
     /// No parameter that a sweep may vary has this name.
@@ -302,7 +302,7 @@ impl PrimaryCase {
 }
 
 impl PrimaryMotion {
-    /// Both states at a time; nothing outside of the motion.
+    /// Both states at a time; `None` outside of the motion.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -315,12 +315,12 @@ impl PrimaryMotion {
     /// let settings = PrimarySettings { duration: 20.0, ..PrimarySettings::default() };
     /// let motion = simulate_primary(case, &settings)?;
     /// assert!(motion.energy.residual < 1e-9 && !motion.impacts.is_empty());
-    /// let state = motion.at(20.0).ok_or("a state")?;
+    /// let state = motion.state_at(20.0).ok_or("a state")?;
     /// assert!((case.energy(state) / motion.energy.start - 1.0).abs() < 1e-9); // nothing damps
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn at(&self, time: f64) -> Option<PrimaryState> {
-        self.path.at(time)
+    pub fn state_at(&self, time: f64) -> Option<PrimaryState> {
+        self.path.state_at(time)
     }
 
     /// Whether it was followed as long as asked.
@@ -336,7 +336,7 @@ impl PrimaryMotion {
     /// The largest |y| from this time on, by its turning points and the end.
     pub fn largest_since(&self, time: f64) -> f64 {
         let turns = self.turns.iter().filter(|(at, _)| *at >= time).map(|(_, y)| y.abs());
-        let end = self.at(self.end).map_or(0.0, |state| state.y.abs());
+        let end = self.state_at(self.end).map_or(0.0, |state| state.y.abs());
         turns.fold(end, f64::max)
     }
 }

@@ -82,7 +82,7 @@ impl PrimaryParameter {
         }
     }
 
-    /// Its SI unit, or rad and rad*omega; empty where it is dimensionless.
+    /// Its SI unit, or rad and rad*omega; empty if it is dimensionless.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Mass => "kg",

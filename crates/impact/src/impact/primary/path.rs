@@ -2,7 +2,7 @@
 //! which they are analytic.
 
 use super::super::model::Side;
-use crate::numeric::ode::root::{Until, try_bisect};
+use crate::numeric::ode::root::{BisectionStop, try_bisect};
 use crate::system::Path;
 
 /// Angle and velocity of the pendulum, displacement and speed of the main mass.
@@ -18,9 +18,9 @@ pub struct PrimaryState {
     pub speed: f64,
 }
 
-/// What the states of a piece are.
+/// The states of a segment of the motion.
 #[derive(Clone, Debug)]
-pub(super) enum Piece {
+pub(super) enum PrimarySegment {
     /// (x, x', y, y') in t.
     Flight(Path),
     /// (w, x', y, y', t) in s: x = place + side w^2.
@@ -29,16 +29,16 @@ pub(super) enum Piece {
     Held { path: Path, x: f64 },
 }
 
-impl Piece {
+impl PrimarySegment {
     /// The state at a time within the piece.
-    fn at(&self, time: f64) -> Option<PrimaryState> {
+    fn state_at(&self, time: f64) -> Option<PrimaryState> {
         match self {
             Self::Flight(path) => {
-                let state = path.at(time.min(path.end()))?;
+                let state = path.states_at(time.min(path.end()))?;
                 Some(PrimaryState { x: state[0], velocity: state[1], y: state[2], speed: state[3] })
             }
             Self::Contact { path, side, place } => {
-                let state = path.at(own_time(path, time)?)?;
+                let state = path.states_at(own_time(path, time)?)?;
                 Some(PrimaryState {
                     x: place + side.sign() * state[0] * state[0],
                     velocity: state[1],
@@ -47,7 +47,7 @@ impl Piece {
                 })
             }
             Self::Held { path, x } => {
-                let state = path.at(time.min(path.end()))?;
+                let state = path.states_at(time.min(path.end()))?;
                 Some(PrimaryState { x: *x, velocity: 0.0, y: state[0], speed: state[1] })
             }
         }
@@ -56,13 +56,13 @@ impl Piece {
 
 /// s at this t: the last of its states grows with it.
 fn own_time(path: &Path, time: f64) -> Option<f64> {
-    let clock = |s: f64| path.at(s).map(|state| state[4]);
+    let clock = |s: f64| path.states_at(s).map(|state| state[4]);
     let end = path.end();
     if time >= clock(end)? {
         return Some(end);
     }
     let is_before = |s: f64| clock(s).map(|t| t < time).ok_or(());
-    let [last, _] = try_bisect(is_before, 0.0, end, Until::Halvings(200)).ok()?;
+    let [last, _] = try_bisect(is_before, 0.0, end, BisectionStop::Halvings(200)).ok()?;
     Some(last)
 }
 
@@ -70,22 +70,22 @@ fn own_time(path: &Path, time: f64) -> Option<f64> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct PrimaryPath {
     /// Each with the time at which it begins.
-    pieces: Vec<(f64, Piece)>,
+    pieces: Vec<(f64, PrimarySegment)>,
     end: f64,
 }
 
 impl PrimaryPath {
-    pub(super) fn push(&mut self, start: f64, end: f64, piece: Piece) {
+    pub(super) fn push(&mut self, start: f64, end: f64, piece: PrimarySegment) {
         self.pieces.push((start, piece));
         self.end = end;
     }
 
-    pub(super) fn at(&self, time: f64) -> Option<PrimaryState> {
+    pub(super) fn state_at(&self, time: f64) -> Option<PrimaryState> {
         if !(0.0..=self.end).contains(&time) {
             return None;
         }
         let after = self.pieces.partition_point(|(start, _)| *start <= time);
-        self.pieces.get(after.checked_sub(1)?)?.1.at(time)
+        self.pieces.get(after.checked_sub(1)?)?.1.state_at(time)
     }
 
     /// The contacts that begin in this interval of time: their paths in s, and the sides of their
@@ -93,8 +93,8 @@ impl PrimaryPath {
     pub(super) fn contacts(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = (&Path, Side)> {
         let within = self.pieces.iter().filter(move |(start, _)| (from..=until).contains(start));
         within.filter_map(|(_, piece)| match piece {
-            Piece::Contact { path, side, .. } => Some((path, *side)),
-            Piece::Flight(_) | Piece::Held { .. } => None,
+            PrimarySegment::Contact { path, side, .. } => Some((path, *side)),
+            PrimarySegment::Flight(_) | PrimarySegment::Held { .. } => None,
         })
     }
 

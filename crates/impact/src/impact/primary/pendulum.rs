@@ -2,7 +2,7 @@
 
 use super::super::hertz;
 use super::super::si::greatest;
-use super::super::simulation::place::Place;
+use super::super::simulation::place::RestPoint;
 use super::super::simulation::rest::first_swing;
 use super::super::simulation::{NoRest, REST_FRACTION};
 use super::{PrimaryImpact, PrimaryMotion};
@@ -34,7 +34,7 @@ impl PrimaryMotion {
     pub fn pendulum_rest_time(&self) -> Result<f64, NoRest> {
         let [x, velocity, ..] = self.case.start;
         let model = &self.case.model;
-        let place = Place::near(model, self.at(self.end).map_or(x, |state| state.x));
+        let place = RestPoint::near(model, self.state_at(self.end).map_or(x, |state| state.x));
         let free = place.free_side(model);
         let turns = self.swings.iter().filter(|(t, _)| *t > 0.0);
         let turns: Vec<(f64, f64)> = turns.map(|(t, x)| (*t, x - place.x)).collect();
@@ -65,7 +65,7 @@ impl PrimaryMotion {
         let contacts =
             self.path.contacts([impact.entry_time, impact.exit_time.unwrap_or(self.end)]);
         let peaks = contacts.map(|(path, side)| {
-            let force = |s: f64| match path.at(s) {
+            let force = |s: f64| match path.states_at(s) {
                 Some(state) => hertz::force(
                     (model.gamma + side.sign() * model.mu * state[1]).max(0.0),
                     state[0] * state[0],

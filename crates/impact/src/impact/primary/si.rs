@@ -17,9 +17,9 @@ pub struct MainMass {
     pub stiffness: f64,
     /// The coefficient of its dashpot, N s/m.
     pub damping: f64,
-    /// Where it begins, m.
+    /// The initial displacement, m.
     pub displacement: f64,
-    /// How fast it begins, m/s.
+    /// The initial speed, m/s.
     pub speed: f64,
     /// The amplitude of the force on it, N.
     pub force: f64,

@@ -2,10 +2,11 @@
 //! rest, with its damper, with the damper locked and without.
 
 use super::{
-    Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary,
+    Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked,
+    simulate_primary,
 };
 use crate::impact::NoRest;
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
@@ -15,7 +16,7 @@ const LAST: f64 = 0.25;
 pub struct PrimaryRow {
     /// The main mass.
     pub primary: Primary,
-    /// When the run ended; 0 for one that was asked to end before it had begun.
+    /// The time at which the run ended; 0 for one that was asked to end before it had begun.
     pub end: f64,
     /// The largest |y| in the last quarter of the run, over L.
     pub amplitude: f64,
@@ -23,12 +24,12 @@ pub struct PrimaryRow {
     pub impacts: usize,
     /// The number of impacts in the whole run.
     pub all_impacts: usize,
-    /// When the main mass comes to rest, as
+    /// The time at which the main mass comes to rest, as
     /// [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
     pub rest_time: Result<f64, NoRest>,
     /// The main mass without its damper and with the damper locked, in closed form.
-    pub others: Others,
-    /// Why the run ended.
+    pub others: UndampedAndLocked,
+    /// The reason why the run ended.
     pub stop: PrimaryStop,
 }
 
@@ -45,8 +46,8 @@ impl PrimaryRow {
     }
 }
 
-/// A row for every motion, on all threads of the current pool; `progress` hears of each that is
-/// done. The result is the same for any number of threads.
+/// A row for every motion, on all threads of the current pool; `progress` is called after each of
+/// them. The result is the same for any number of threads.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot be followed, and why.
@@ -76,7 +77,7 @@ pub fn sweep_primary(
         progress(1);
         row
     };
-    each(&numbered, one).into_iter().collect()
+    par_map(&numbered, one).into_iter().collect()
 }
 
 fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {
@@ -89,7 +90,7 @@ fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, Prim
         impacts: motion.impacts.iter().filter(|impact| impact.entry_time >= since).count(),
         all_impacts: motion.impacts.len(),
         rest_time: motion.rest_time(),
-        others: case.primary.others(),
+        others: case.primary.undamped_and_locked(),
         stop: motion.stop,
     })
 }

@@ -68,7 +68,7 @@ impl ClosedForm {
     }
 
     /// Displacement (rad) and velocity at this time since the beginning.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         match *self {
             Self::Swing { sign, modulus, rate, speed, phase, parameter } => {
                 let (sn, cn, dn, _) = ellpj(speed * t + phase, parameter);

@@ -1,4 +1,4 @@
-//! Where the energy goes: the work of each force that is not conservative, integrated along the
+//! The energy balance: the work of each force that is not conservative, integrated along the
 //! motion.
 //!
 //! ```text
@@ -12,7 +12,7 @@
 //! lets go because it would have to pull, the energy still in it is lost to its damping.
 
 use super::Simulation;
-use super::path::{Node, Regime};
+use super::path::{QuadratureNode, Regime};
 use crate::impact::hertz;
 use crate::impact::model::{Friction, Side};
 
@@ -22,9 +22,9 @@ const MOST_PARTS: f64 = 1e4;
 /// Energies and works, in units of m g L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBook {
-    /// At the start.
+    /// The energy at the start.
     pub start: f64,
-    /// At the end.
+    /// The energy at the end.
     pub end: f64,
     /// Work of viscous damping, never positive.
     pub viscous: f64,
@@ -70,8 +70,8 @@ impl Simulation {
         total
     }
 
-    /// The same, knot by knot, and between knots that lie further apart than `longest`, in units of
-    /// 1/omega, at points that do not.
+    /// Energy and works knot by knot, and, between knots that lie further apart than `longest`, in
+    /// units of 1/omega, at points in between.
     pub fn energy_points(&self, longest: f64, mut each: impl FnMut(EnergyPoint)) {
         let model = &self.model;
         let start = model.energy(self.start.x, self.start.velocity);
@@ -116,7 +116,7 @@ impl Simulation {
         }
     }
 
-    fn depth(&self, regime: Regime, node: &Node) -> f64 {
+    fn depth(&self, regime: Regime, node: &QuadratureNode) -> f64 {
         let inside = |side: Side| {
             let barrier = self.model.barrier(side).unwrap_or(node.x);
             (side.sign() * (node.x - barrier)).max(0.0)

@@ -20,7 +20,7 @@ use std::fmt;
 
 pub use closed::ClosedForm;
 pub use energy::{EnergyBook, EnergyPoint};
-pub use path::{Path, Piece, Regime};
+pub use path::{PathSegment, Regime, SimulationPath};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 pub(super) use rest::{first_swing, has_rested};
 
@@ -29,7 +29,7 @@ use super::si::greatest;
 use crate::decimal::significant;
 use crate::interrupt::Interrupt;
 
-/// By which method a motion is followed.
+/// The integration method of a motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// Power series, the contact in its regularised variable: the fast one.
@@ -37,7 +37,7 @@ pub enum Integrator {
     Taylor,
     /// The library's Runge-Kutta in phases: the judge.
     RungeKutta,
-    /// Not integrated: swing and contact in closed form, one after the other.
+    /// A chain of closed forms: swing and contact, one after the other, without integration.
     Chain,
 }
 
@@ -51,7 +51,7 @@ impl Integrator {
     }
 }
 
-/// How long and how closely to follow a motion.
+/// Duration and accuracy of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Time to follow it for, in units of 1/omega.
@@ -65,7 +65,7 @@ pub struct Settings {
     pub maximum_steps: usize,
     /// Stop as soon as the energy (units of m g L) is no more than this.
     pub rest_energy: Option<f64>,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
     /// Stop as soon as the rest time is known, but for Runge-Kutta, which goes on to the end.
     pub stop_at_rest: bool,
@@ -89,10 +89,10 @@ impl Default for Settings {
     }
 }
 
-/// Why a run ended. Everything before is kept.
+/// The reason why a run ended. Everything before is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stop {
-    /// At the end of the duration.
+pub enum SimulationStop {
+    /// The end of the duration.
     Duration,
     /// The energy fell to [`Settings::rest_energy`].
     RestEnergy,
@@ -108,7 +108,7 @@ pub enum Stop {
         /// The last time reached.
         t: f64,
     },
-    /// Somebody asked it to.
+    /// An interrupt.
     Interrupted {
         /// The last time reached.
         t: f64,
@@ -125,16 +125,16 @@ pub enum Stop {
     },
 }
 
-impl Stop {
+impl SimulationStop {
     /// Whether the run got where it was to get.
     pub fn is_complete(self) -> bool {
         matches!(self, Self::Duration | Self::RestEnergy | Self::AtRest)
     }
 }
 
-impl Stop {
-    /// The same so much later.
-    pub(super) fn later(self, time: f64) -> Self {
+impl SimulationStop {
+    /// The reason with its time shifted.
+    pub(super) fn delayed_by(self, time: f64) -> Self {
         match self {
             Self::Duration | Self::RestEnergy | Self::AtRest => self,
             Self::NotFinite { t } => Self::NotFinite { t: time + t },
@@ -160,7 +160,7 @@ impl Stop {
     }
 }
 
-impl fmt::Display for Stop {
+impl fmt::Display for SimulationStop {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = |t: &f64| significant(*t, 12);
         match self {
@@ -199,12 +199,12 @@ impl fmt::Display for Stop {
 /// One contact with a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Contact {
-    /// Which barrier.
+pub struct ContactRecord {
+    /// The side of the barrier.
     pub side: Side,
-    /// When it is touched.
+    /// The time at which it is touched.
     pub entry_time: f64,
-    /// When it is left; nothing where the run ended before.
+    /// The time at which it is left; `None` if the run ended before.
     pub exit_time: Option<f64>,
     /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then,
     /// negative if it leaves.
@@ -215,13 +215,13 @@ pub struct Contact {
     pub speed_out: Option<f64>,
     /// Greatest depth, rad.
     pub penetration: f64,
-    /// Speed out over speed in; nothing for a contact that did not begin with a touch.
+    /// Speed out over speed in; `None` for a contact that did not begin with a touch.
     pub restitution: Option<f64>,
     /// Energy that the motion has lost between touch and release, units of m g L.
     pub energy_lost: Option<f64>,
 }
 
-impl Contact {
+impl ContactRecord {
     /// A contact that begins with a touch at this speed.
     pub(super) fn touched(side: Side, t: f64, speed: f64) -> Self {
         Self {
@@ -237,8 +237,8 @@ impl Contact {
         }
     }
 
-    /// The same so much later.
-    pub(super) fn later(&self, time: f64) -> Self {
+    /// The contact with its times shifted.
+    pub(super) fn delayed_by(&self, time: f64) -> Self {
         Self {
             entry_time: self.entry_time + time,
             exit_time: self.exit_time.map(|exit| exit + time),
@@ -265,15 +265,15 @@ impl Contact {
     }
 }
 
-/// How far or how fast a motion goes, about; zero for one that hangs at rest.
+/// The size of a motion, about, in displacement or speed; zero for a pendulum that hangs at rest.
 pub(super) fn size(model: &Model, start: Start) -> f64 {
     let stored = model.depth(start.x).map_or(0.0, |(_, depth)| model.elastic_energy(depth));
     let released = (2.0 * stored).sqrt();
     start.x.abs().max(start.velocity.abs()).max(released).max(model.beta.abs())
 }
 
-/// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size
-/// 1, and a tiny one would be lost in it.
+/// Settings of the same accuracy for a motion of this size: the absolute tolerance is that of a
+/// motion of size 1, and a tiny one would be lost in it.
 pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settings {
     let size = size(model, start);
     let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
@@ -288,8 +288,8 @@ pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settin
 ///
 /// A contact left and entered again before x has changed by more than a step may err goes on: the
 /// pendulum is pressed against the barrier and rests there.
-pub(super) fn enter(
-    impacts: &mut Vec<Contact>,
+pub(super) fn begin_contact(
+    impacts: &mut Vec<ContactRecord>,
     (model, settings): (&Model, &Settings),
     side: Side,
     t: f64,
@@ -302,7 +302,7 @@ pub(super) fn enter(
         && let (Some(exit), Some(left)) = (last.exit_time, last.speed_out)
         && left.max(speed) * (t - exit) <= visible
     {
-        *last = Contact {
+        *last = ContactRecord {
             exit_time: None,
             speed_out: None,
             restitution: None,
@@ -311,19 +311,19 @@ pub(super) fn enter(
         };
         return;
     }
-    impacts.push(Contact {
+    impacts.push(ContactRecord {
         start_depth: depth,
         penetration: depth,
-        ..Contact::touched(side, t, speed)
+        ..ContactRecord::touched(side, t, speed)
     });
 }
 
 /// A moment of rest: x is largest or smallest there, or friction begins or ceases to hold it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
-    /// When.
+pub struct TurningPoint {
+    /// The time.
     pub t: f64,
-    /// Where, rad.
+    /// The position, rad.
     pub x: f64,
 }
 
@@ -331,32 +331,32 @@ pub struct Turn {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Simulation {
-    /// What was followed.
+    /// The model.
     pub model: Model,
-    /// From where.
+    /// The initial state.
     pub start: Start,
-    /// How.
+    /// The settings of the run.
     pub settings: Settings,
-    /// By which method.
+    /// The integration method.
     pub integrator: Integrator,
     /// The motion as a function of time; empty without [`Settings::keep_path`].
-    pub path: Path,
+    pub path: SimulationPath,
     /// Every contact, in order.
-    pub impacts: Vec<Contact>,
+    pub impacts: Vec<ContactRecord>,
     /// Every turning point, in order; the start where it is one.
-    pub turns: Vec<Turn>,
+    pub turns: Vec<TurningPoint>,
     /// Time at the end.
     pub end_time: f64,
     /// Displacement there, rad.
     pub end_x: f64,
     /// Velocity there.
     pub end_velocity: f64,
-    /// Why it ended there.
-    pub stop: Stop,
+    /// The reason why it ended there.
+    pub stop: SimulationStop,
     /// Steps taken.
     pub steps: usize,
-    /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has
-    /// fallen to a tenth of the first swing.
+    /// The time at which |x| has fallen to a tenth of the first swing, if the envelope does not
+    /// determine the rest and there is no path or that of a chain.
     pub(super) fall: Option<f64>,
 }
 
@@ -377,14 +377,14 @@ pub struct ContactDeviation {
     pub speed_out: Option<f64>,
 }
 
-/// How two motions differ.
+/// The differences of two motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Difference {
+pub struct MotionDifference {
     /// The largest difference in x, rad.
     pub displacement: f64,
     /// The largest difference in x'.
     pub velocity: f64,
-    /// Until when they were compared.
+    /// The end of the comparison.
     pub until: f64,
 }
 
@@ -394,8 +394,8 @@ pub(super) const CLOCK: f64 = 1e-6;
 
 impl Simulation {
     /// The greatest force of the barrier in a contact, its damping included, in units of m g,
-    /// looked for on the path. `None` where no path is kept, where that of a chain is only near the
-    /// motion, and where the contact did not end or is too short for the clock.
+    /// looked for on the path. `None` if no path is kept, where that of a chain is only near the
+    /// motion, and if the contact did not end or is too short for the clock.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -408,27 +408,29 @@ impl Simulation {
     /// assert!((force / (1e4 * first.penetration.powf(1.5)) - 1.0).abs() < 1e-9); // without damping that of the greatest depth
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn peak_force(&self, impact: &Contact) -> Option<f64> {
+    pub fn peak_force(&self, impact: &ContactRecord) -> Option<f64> {
         let (exit, barrier) = (impact.exit_time?, self.model.barrier(impact.side)?);
         let is_known = self.integrator != Integrator::Chain && !self.path.pieces().is_empty();
         if !is_known || exit - impact.entry_time < CLOCK * exit {
             return None;
         }
         let sign = impact.side.sign();
-        let force = |t: f64| match self.path.at(t) {
+        let force = |t: f64| match self.path.phase_point_at(t) {
             Some((x, velocity)) => self.model.contact(sign * (x - barrier), sign * velocity),
             None => 0.0,
         };
         Some(greatest(force, impact.entry_time, exit))
     }
 
-    /// Compares the paths at so many times, as far as both go.
-    pub fn difference(&self, other: &Self, count: usize) -> Difference {
+    /// Compares the paths at this many times, as far as both go.
+    pub fn difference(&self, other: &Self, count: usize) -> MotionDifference {
         let until = self.end_time.min(other.end_time);
-        let mut difference = Difference { displacement: 0.0, velocity: 0.0, until };
+        let mut difference = MotionDifference { displacement: 0.0, velocity: 0.0, until };
         for index in 0..count {
             let t = until * (index as f64 / (count.max(2) - 1) as f64);
-            if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
+            if let (Some((x, v)), Some((other_x, other_v))) =
+                (self.path.phase_point_at(t), other.path.phase_point_at(t))
+            {
                 difference.displacement = difference.displacement.max((x - other_x).abs());
                 difference.velocity = difference.velocity.max((v - other_v).abs());
             }
@@ -441,11 +443,11 @@ impl Simulation {
     pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
         let relative =
             |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
-        let error = |(index, found): (usize, &Contact)| {
+        let error = |(index, found): (usize, &ContactRecord)| {
             let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
-            let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
+            let duration = |contact: &ContactRecord| Some(contact.exit_time? - contact.entry_time);
             let both = |found: Option<f64>, truth: Option<f64>| relative(found?, truth?);
-            let depth = |contact: &Contact| contact.exit_time.map(|_| contact.penetration);
+            let depth = |contact: &ContactRecord| contact.exit_time.map(|_| contact.penetration);
             Some(ContactDeviation {
                 entry_time: found.entry_time - truth.entry_time,
                 speed_in: relative(found.speed_in, truth.speed_in),

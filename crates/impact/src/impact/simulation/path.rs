@@ -11,7 +11,7 @@ use crate::impact::polynomial::{crossing_of, value, value_and_slope};
 use crate::numeric::ode::Trajectory;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 
-/// What the pendulum is doing.
+/// The mode of the pendulum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
     /// Swinging freely.
@@ -38,17 +38,17 @@ impl Regime {
 
 /// A stretch of time in one regime, from knot to knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
-    /// Where it begins.
+pub struct PathSegment {
+    /// Time of its start.
     pub start: f64,
-    /// Where it ends.
+    /// Time of its end.
     pub end: f64,
-    /// What happens there.
+    /// The mode of the pendulum in it.
     pub regime: Regime,
     form: Representation,
 }
 
-impl Piece {
+impl PathSegment {
     /// The formula of this stretch, where it has one: in a chain.
     pub fn closed_form(&self) -> Option<ClosedForm> {
         match self.form {
@@ -58,7 +58,7 @@ impl Piece {
     }
 }
 
-/// How x and x' are kept.
+/// The representation of x and x'.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
     /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on;
@@ -70,7 +70,7 @@ enum Representation {
         /// In contact: the barrier and the sign of its side.
         behind: Option<[f64; 2]>,
     },
-    /// Not moving.
+    /// A constant position.
     Constant { x: f64 },
     /// See the trajectory of Runge and Kutta; in contact it counts from the barrier.
     Judged { origin: f64, sign: f64 },
@@ -80,25 +80,25 @@ enum Representation {
 
 /// The whole motion.
 #[derive(Debug, Clone)]
-pub struct Path {
-    pieces: Vec<Piece>,
+pub struct SimulationPath {
+    pieces: Vec<PathSegment>,
     pool: Vec<f64>,
     judge: Option<Trajectory>,
 }
 
 /// A point of the motion inside a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::impact) struct Node {
+pub(in crate::impact) struct QuadratureNode {
     pub(in crate::impact) t: f64,
     pub(in crate::impact) x: f64,
     pub(in crate::impact) velocity: f64,
-    /// How far inside the barrier, more exactly than x tells.
+    /// Depth inside the barrier, with more digits than x has.
     pub(in crate::impact) depth: f64,
     /// dt at this point, for an integral over time.
     pub(in crate::impact) weight: f64,
 }
 
-impl Path {
+impl SimulationPath {
     pub(in crate::impact) fn new() -> Self {
         Self { pieces: Vec::new(), pool: Vec::new(), judge: None }
     }
@@ -107,8 +107,8 @@ impl Path {
         Self { judge: Some(judge), ..Self::new() }
     }
 
-    /// Displacement (rad) and velocity at a time; nothing outside the time covered.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
+    /// Displacement (rad) and velocity at a time; `None` outside the time covered.
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         let last = self.pieces.last()?;
         if !(self.pieces.first()?.start..=last.end).contains(&t) {
             return None;
@@ -120,11 +120,11 @@ impl Path {
     }
 
     /// The stretches of time, in order.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[PathSegment] {
         &self.pieces
     }
 
-    /// The regime in force at a time; nothing outside the time covered.
+    /// The regime in force at a time; `None` outside the time covered.
     pub fn regime_at(&self, t: f64) -> Option<Regime> {
         let last = self.pieces.last()?;
         if t > last.end {
@@ -137,7 +137,7 @@ impl Path {
     /// `(t, x, x')` at the ends of the pieces and at `between` times inside each, equally spaced in
     /// the variable of the piece, so that a contact gets as many as a swing.
     pub fn points(&self, between: usize) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
-        let inside = move |piece: &Piece| {
+        let inside = move |piece: &PathSegment| {
             let piece = *piece;
             (0..=between).map(move |index| {
                 let node = self.node(&piece, index as f64 / (between + 1) as f64);
@@ -182,7 +182,7 @@ impl Path {
         self.push(span, regime, Representation::Closed(form));
     }
 
-    /// Goes on with another path of power series, whose clock begins at this time.
+    /// Appends another path of power series, whose clock begins at this time.
     pub(in crate::impact) fn extend(&mut self, other: &Self, from: f64) {
         let shift = self.pool.len();
         self.pool.extend_from_slice(&other.pool);
@@ -216,20 +216,20 @@ impl Path {
     }
 
     fn push(&mut self, [start, end]: [f64; 2], regime: Regime, form: Representation) {
-        self.pieces.push(Piece { start, end, regime, form });
+        self.pieces.push(PathSegment { start, end, regime, form });
     }
 
     /// Points and weights of a quadrature over a part of a piece, from one fraction of it to
     /// another: exact to rounding where the motion is a power series that converges over it.
     pub(in crate::impact) fn quadrature(
         &self,
-        piece: &Piece,
+        piece: &PathSegment,
         [from, to]: [f64; 2],
-    ) -> impl Iterator<Item = Node> + '_ {
+    ) -> impl Iterator<Item = QuadratureNode> + '_ {
         let piece = *piece;
         nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
-            Node { weight: weight * node.weight, ..node }
+            QuadratureNode { weight: weight * node.weight, ..node }
         })
     }
 
@@ -242,7 +242,7 @@ impl Path {
     }
 
     /// The point at a fraction of the piece, counted in the variable of the piece.
-    pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
+    pub(in crate::impact) fn node(&self, piece: &PathSegment, fraction: f64) -> QuadratureNode {
         let length = piece.end - piece.start;
         match piece.form {
             Representation::Series { offset, terms, length, behind } => {
@@ -250,7 +250,7 @@ impl Path {
                 let [place, velocity, time] = self.series(offset, terms);
                 let (place, velocity) = (value(place, u), value(velocity, u));
                 let (time, pace) = value_and_slope(time, u);
-                let node = Node {
+                let node = QuadratureNode {
                     t: piece.start + time,
                     x: place,
                     velocity,
@@ -259,7 +259,7 @@ impl Path {
                 };
                 match behind {
                     None => node,
-                    Some([barrier, sign]) => Node {
+                    Some([barrier, sign]) => QuadratureNode {
                         x: barrier + sign * place * place,
                         velocity: sign * velocity,
                         depth: place * place,
@@ -267,12 +267,16 @@ impl Path {
                     },
                 }
             }
-            _ => Node { weight: length, ..self.node_at(piece, piece.start + fraction * length) },
+            _ => QuadratureNode {
+                weight: length,
+                ..self.node_at(piece, piece.start + fraction * length)
+            },
         }
     }
 
-    fn node_at(&self, piece: &Piece, t: f64) -> Node {
-        let node = |x: f64, velocity: f64| Node { t, x, velocity, depth: 0.0, weight: 0.0 };
+    fn node_at(&self, piece: &PathSegment, t: f64) -> QuadratureNode {
+        let node =
+            |x: f64, velocity: f64| QuadratureNode { t, x, velocity, depth: 0.0, weight: 0.0 };
         match piece.form {
             Representation::Series { offset, terms, length, .. } => {
                 let [_, _, time] = self.series(offset, terms);
@@ -282,25 +286,28 @@ impl Path {
                     _ if t >= piece.end => length,
                     _ => crossing_of(|u| value(time, u) - wanted, 0.0, length),
                 };
-                Node { t, ..self.node(piece, u / length) }
+                QuadratureNode { t, ..self.node(piece, u / length) }
             }
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {
-                let (x, velocity) = form.at(t - piece.start);
+                let (x, velocity) = form.phase_point_at(t - piece.start);
                 let depth = match (form, piece.regime) {
                     (ClosedForm::Contact { barrier, .. }, Regime::Contact(side)) => {
                         (side.sign() * (x - barrier)).max(0.0)
                     }
                     _ => 0.0,
                 };
-                Node { depth, ..node(x, velocity) }
+                QuadratureNode { depth, ..node(x, velocity) }
             }
             Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));
-                let (value, velocity) =
-                    self.judge.as_ref().and_then(|path| path.at(inside)).unwrap_or((0.0, 0.0));
-                Node {
+                let (value, velocity) = self
+                    .judge
+                    .as_ref()
+                    .and_then(|path| path.phase_point_at(inside))
+                    .unwrap_or((0.0, 0.0));
+                QuadratureNode {
                     depth: if matches!(piece.regime, Regime::Contact(_)) {
                         value.max(0.0)
                     } else {

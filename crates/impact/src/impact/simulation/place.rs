@@ -1,5 +1,4 @@
-//! Where a motion settles: at the bottom of its turn, or held above it by a barrier that stands in
-//! the way.
+//! The rest position of a motion: the bottom of its turn, or held above it by a barrier in the way.
 //!
 //! ```text
 //! bottom:   2 pi n, the nearest
@@ -14,8 +13,8 @@ use crate::numeric::ode::root::find_root;
 
 /// A place of rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::impact) struct Place {
-    /// Where, rad.
+pub(in crate::impact) struct RestPoint {
+    /// The position, rad.
     pub x: f64,
     /// The lowest place of this turn, rad.
     bottom: f64,
@@ -23,7 +22,7 @@ pub(in crate::impact) struct Place {
     held: Option<Side>,
 }
 
-impl Place {
+impl RestPoint {
     /// The one at which a motion here settles, friction and excitation left aside; for a motion
     /// that is nowhere, the bottom.
     pub fn near(model: &Model, x: f64) -> Self {
@@ -41,7 +40,7 @@ impl Place {
         Self { x: barrier + side.sign() * depth, bottom, held: Some(side) }
     }
 
-    /// How far above the bottom the pendulum is held, rad.
+    /// Height of the rest position above the bottom, rad.
     pub fn height(&self) -> f64 {
         (self.x - self.bottom).abs()
     }

@@ -13,10 +13,10 @@
 //! pendulum above the bottom, or where it has turned over; A_0 is less by how far above the bottom
 //! that is.
 //!
-//! Where the line to the next turning point is at the level before the motion itself, as where one
-//! swing takes nearly everything, or just after a turning point, the fall of |x| from the turning
-//! point is the rest: the later of the two, so that neither makes it jump. A motion that creeps has
-//! none but that.
+//! If the line to the next turning point reaches the level before the motion itself does, as when
+//! one swing takes nearly everything, or just after a turning point, the fall of |x| from the
+//! turning point is the rest: the later of the two, so that neither makes it jump. A creeping
+//! motion has none but that.
 //!
 //! A barrier turns the motion early on its side: how far it gets there says where the barrier
 //! stands and nothing of the swing. On the other side every swing shows its whole energy, impacts
@@ -33,8 +33,8 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
-use super::place::Place;
-use super::{Integrator, Simulation, Stop, Turn};
+use super::place::RestPoint;
+use super::{Integrator, Simulation, SimulationStop, TurningPoint};
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
 
@@ -51,20 +51,20 @@ pub struct Rest {
     pub place: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
-    /// The last time at which the pendulum was so far from the place of rest; nothing where it
-    /// never was.
+    /// The last time at which the pendulum was so far from the place of rest; `None` if it never
+    /// was.
     pub last_crossing: Option<f64>,
 }
 
-/// Why there is no rest time.
+/// The reason why there is no rest time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum NoRest {
     /// The motion has not become small enough.
     #[error("the amplitude stays above 10 % of the first swing until the end of the run")]
     StaysAbove,
-    /// It has become small enough in the last swing, but when is not known before the next turning
-    /// point.
+    /// The motion has become small enough in the last swing, but the time is not known before the
+    /// next turning point.
     #[error("the run ends before the turning point that would show it: a longer duration will")]
     NotYetSeen,
     /// There is no amplitude to begin with.
@@ -77,20 +77,20 @@ pub enum NoRest {
     BrokeOff,
 }
 
-/// How the turning points tell the rest.
+/// The information of the turning points about the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum ByTurns {
+enum RestByTurningPoints {
     /// The envelope goes through the level between these two.
-    Line { above: Turn, below: Turn },
-    /// It creeps from here on.
-    Fall(Turn),
+    Line { above: TurningPoint, below: TurningPoint },
+    /// A creeping motion from here on.
+    Fall(TurningPoint),
 }
 
 impl Simulation {
-    /// When it came to rest.
+    /// The time at which it came to rest.
     pub fn rest(&self) -> Rest {
         let amplitude = self.first_swing();
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let level = REST_FRACTION * amplitude;
         if amplitude == 0.0 {
             return Rest { amplitude, place, time: Err(NoRest::NoAmplitude), last_crossing: None };
@@ -99,14 +99,16 @@ impl Simulation {
         let time = match self.rest_by_turns(level) {
             Err(_) if !self.stop.is_complete() => Err(NoRest::BrokeOff),
             Err(reason) => Err(reason),
-            Ok(ByTurns::Line { above, below }) => {
+            Ok(RestByTurningPoints::Line { above, below }) => {
                 let time = between(above, below, level);
                 Ok(match may_be_late(above, below, level) {
-                    true => self.fall(above, level).map_or(time, |fall| time.max(fall)),
+                    true => self.time_of_fall(above, level).map_or(time, |fall| time.max(fall)),
                     false => time,
                 })
             }
-            Ok(ByTurns::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
+            Ok(RestByTurningPoints::Fall(from)) => {
+                self.time_of_fall(from, level).ok_or(NoRest::NotYetSeen)
+            }
         };
         Rest { amplitude, place, time, last_crossing }
     }
@@ -117,28 +119,28 @@ impl Simulation {
         first_swing(&self.model, self.start)
     }
 
-    /// Where it settles.
-    pub(super) fn place(&self) -> Place {
-        Place::near(&self.model, self.end_x)
+    /// The rest position at which the motion settles.
+    pub(super) fn rest_point(&self) -> RestPoint {
+        RestPoint::near(&self.model, self.end_x)
     }
 
     /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|)
     /// are what is joined by straight lines of log|x|, with x counted from the place of rest.
-    pub fn envelope(&self) -> Vec<Turn> {
+    pub fn envelope(&self) -> Vec<TurningPoint> {
         self.envelope_from(self.first_swing())
     }
 
-    /// The same from this first swing; only the points that are known to belong to it.
-    fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
-        let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
-        let place = self.place();
+    /// The envelope from this first swing; only the points that are known to belong to it.
+    fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
+        let mut envelope = vec![TurningPoint { t: 0.0, x: amplitude }];
+        let place = self.rest_point();
         let free = place.free_side(&self.model);
-        let counted = |turn: &Turn| Turn { t: turn.t, x: turn.x - place.x };
+        let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };
         // From where it came tells on which side a turning point lies; a moment of rest without
         // motion before it, as under friction, lies where the last one did.
         let mut before = self.start.x;
         let mut side = None;
-        let mut last: Option<Turn> = None;
+        let mut last: Option<TurningPoint> = None;
         for &turn in &self.turns {
             match turn.x - before {
                 rise if rise > 0.0 => side = Some(Side::Right),
@@ -172,8 +174,8 @@ impl Simulation {
             // rest.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
-        } else if self.stop == Stop::RestEnergy {
-            envelope.push(Turn { t: self.end_time, x: self.last_swing() });
+        } else if self.stop == SimulationStop::RestEnergy {
+            envelope.push(TurningPoint { t: self.end_time, x: self.last_swing() });
         }
         envelope
     }
@@ -182,71 +184,74 @@ impl Simulation {
     fn last_swing(&self) -> f64 {
         let swing =
             swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY);
-        (swing - self.place().height()).max(0.0)
+        (swing - self.rest_point().height()).max(0.0)
     }
 
-    /// What the turning points say of the rest.
-    fn rest_by_turns(&self, level: f64) -> Result<ByTurns, NoRest> {
+    /// Determines the rest from the turning points.
+    fn rest_by_turns(&self, level: f64) -> Result<RestByTurningPoints, NoRest> {
         let envelope = self.envelope();
         let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
             return Err(NoRest::StaysAbove);
         };
         let above = envelope[index];
         match envelope.get(index + 1) {
-            Some(below) => Ok(ByTurns::Line { above, below: *below }),
+            Some(below) => Ok(RestByTurningPoints::Line { above, below: *below }),
             None => self.creeping(above, level),
         }
     }
 
-    /// Where no turning point of the envelope follows `above`: a motion that has not turned for a
-    /// whole period of the linear swing creeps, and is its own envelope; any other has to be
-    /// followed further.
-    fn creeping(&self, above: Turn, level: f64) -> Result<ByTurns, NoRest> {
+    /// Decides the case without a turning point of the envelope after `above`: a motion that has
+    /// not turned for a whole period of the linear swing creeps, and is its own envelope; any other
+    /// has to be followed further.
+    fn creeping(&self, above: TurningPoint, level: f64) -> Result<RestByTurningPoints, NoRest> {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
         }
-        let place = self.place().x;
-        let last = self.turns.last().map_or(above, |last| Turn { t: last.t, x: last.x - place });
+        let place = self.rest_point().x;
+        let last =
+            self.turns.last().map_or(above, |last| TurningPoint { t: last.t, x: last.x - place });
         if self.end_time - last.t <= TAU {
             return Err(NoRest::NotYetSeen);
         }
         Ok(match last.x.abs() > level {
-            true => ByTurns::Fall(last),
-            false => ByTurns::Line { above, below: last },
+            true => RestByTurningPoints::Fall(last),
+            false => RestByTurningPoints::Line { above, below: last },
         })
     }
 
     /// The turning point from which the fall to a tenth has to be known and no path tells it: none
     /// is kept, or it is that of a chain, whose formulas are only near the motion between turning
     /// points.
-    pub(in crate::impact) fn untold_fall(&self) -> Option<Turn> {
+    pub(in crate::impact) fn untold_fall(&self) -> Option<TurningPoint> {
         let level = REST_FRACTION * self.first_swing();
         if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
             return None;
         }
         let from = match self.rest_by_turns(level).ok()? {
-            ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above)?,
-            ByTurns::Fall(from) => from,
+            RestByTurningPoints::Line { above, below } => {
+                may_be_late(above, below, level).then_some(above)?
+            }
+            RestByTurningPoints::Fall(from) => from,
         };
-        Some(Turn { t: from.t, x: from.x + self.place().x })
+        Some(TurningPoint { t: from.t, x: from.x + self.rest_point().x })
     }
 
     fn path_tells_the_fall(&self) -> bool {
         self.integrator != Integrator::Chain && !self.path.pieces().is_empty()
     }
 
-    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next,
-    /// all counted from the place of rest.
-    pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
+    /// The time at which |x| has fallen to the level on the way from a turning point, or the start,
+    /// to the next, all counted from the place of rest.
+    pub(in crate::impact) fn time_of_fall(&self, from: TurningPoint, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;
         }
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let begins = if from.t > 0.0 { from.x } else { self.start.x - place };
         let next = self.turns.iter().find(|turn| turn.t > from.t);
         let until = next.map_or(self.end_time, |turn| turn.t);
         let edge = place + level.copysign(begins);
-        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        let excess = |t: f64| self.path.phase_point_at(t).map_or(0.0, |(x, _)| x - edge);
         let falls = begins.abs() > level && excess(until) * begins < 0.0;
         falls.then(|| crossing_of(excess, from.t, until))
     }
@@ -254,13 +259,13 @@ impl Simulation {
     /// Between turning points x only rises or only falls: the last stretch that begins beyond the
     /// level holds the crossing, unless the run ends beyond it.
     fn last_crossing(&self, level: f64) -> Option<f64> {
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let beyond = |x: f64| (x - place).abs() > level;
         if self.path.pieces().is_empty() || beyond(self.end_x) {
             return None;
         }
-        let start = Turn { t: 0.0, x: self.start.x };
-        let end = Turn { t: self.end_time, x: self.end_x };
+        let start = TurningPoint { t: 0.0, x: self.start.x };
+        let end = TurningPoint { t: self.end_time, x: self.end_x };
         let index = self.turns.iter().rposition(|turn| beyond(turn.x));
         let from = match index {
             Some(index) => self.turns[index],
@@ -272,7 +277,7 @@ impl Simulation {
             .copied()
             .unwrap_or(end);
         let edge = place + level.copysign(from.x - place);
-        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        let excess = |t: f64| self.path.phase_point_at(t).map_or(0.0, |(x, _)| x - edge);
         Some(crossing_of(excess, from.t, to.t))
     }
 }
@@ -281,7 +286,7 @@ impl Simulation {
 /// would settle if it did not turn over.
 pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
     let Start { x, velocity } = start;
-    let place = Place::near(model, x);
+    let place = RestPoint::near(model, x);
     match velocity == 0.0 && model.depth(x).is_none() {
         true => (x - place.x).abs(),
         false => (swing_of(model.energy(x, velocity)).unwrap_or(PI) - place.height()).max(0.0),
@@ -290,15 +295,15 @@ pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
 
 /// Whether the turning points show that the envelope is below this level, where nothing can raise
 /// it again.
-pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -> bool {
+pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level: f64) -> bool {
     if model.beta != 0.0 {
         return false;
     }
     let Some(last) = turns.last() else {
         return false;
     };
-    let place = Place::near(model, last.x);
-    let small = |turn: &Turn| (turn.x - place.x).abs() <= level;
+    let place = RestPoint::near(model, last.x);
+    let small = |turn: &TurningPoint| (turn.x - place.x).abs() <= level;
     // On the free side, not in the barrier.
     let free = |side: Side| {
         let from_barrier =
@@ -312,19 +317,19 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
     }
 }
 
-/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where
-/// it turns over.
+/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; `None` if it
+/// turns over.
 fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
 }
 
 /// Whether the motion may still be beyond the level where the straight line of log|x| between two
-/// turning points is at it: where it may not, nobody need know the fall.
+/// turning points is at it: if it cannot be, the fall is not needed.
 ///
-/// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at
-/// least half as far out as the one before, a is twice the level at most: the swing of the pendulum
-/// is longer by a fortieth there, and what damps, viscous or dry, makes it longer by a fifth.
-fn may_be_late(above: Turn, below: Turn, level: f64) -> bool {
+/// The linear swing of amplitude a takes acos(level/a) to the level. If a turning point is at least
+/// half as far out as the one before, a is twice the level at most: the swing of the pendulum is
+/// longer by a fortieth there, and damping, viscous or dry, makes it longer by a fifth.
+fn may_be_late(above: TurningPoint, below: TurningPoint, level: f64) -> bool {
     let halves = 2.0 * below.x.abs() < above.x.abs();
     halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()
 }
@@ -335,9 +340,9 @@ const LONGEST_FALL: f64 = 1.5;
 
 /// The time at which the straight line of log|x| from one turning point to a later one passes the
 /// level between them.
-fn between(above: Turn, below: Turn, level: f64) -> f64 {
+fn between(above: TurningPoint, below: TurningPoint, level: f64) -> f64 {
     // Friction may hold it at zero, whose logarithm is not to be had.
-    let height = |turn: Turn| turn.x.abs().max(1e-12 * level).ln();
+    let height = |turn: TurningPoint| turn.x.abs().max(1e-12 * level).ln();
     let fraction = (level.ln() - height(above)) / (height(below) - height(above));
     above.t + fraction * (below.t - above.t)
 }

@@ -16,12 +16,12 @@ use thiserror::Error;
 use super::MOST_MOTIONS;
 use crate::spelling::nearest;
 
-/// How the values of an axis follow each other.
+/// The spacing of the values of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spacing {
-    /// By equal steps.
+    /// Equal steps.
     Linear,
-    /// By equal ratios.
+    /// Equal ratios.
     Logarithmic,
     /// As they are listed.
     List,
@@ -49,7 +49,7 @@ pub struct Axis {
     values: Vec<f64>,
 }
 
-/// Why a text names no axis.
+/// The reason why a text names no axis.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AxisError {
@@ -60,14 +60,14 @@ pub enum AxisError {
     )]
     Form(String),
     /// Neither linear nor logarithmic.
-    #[error("`{name}` is no spacing: after the count stands `log` for equal ratios, or `lin`{}", meant(.nearest))]
+    #[error("`{name}` is no spacing: after the count stands `log` for equal ratios, or `lin`{}", suggestion(.nearest))]
     Spacing {
         /// The value given.
         name: String,
-        /// What was meant, perhaps.
+        /// The most similar known name.
         nearest: Option<&'static str>,
     },
-    /// A value that is no finite number.
+    /// A value that is not a finite number.
     #[error("`{0}` is no finite number")]
     Number(String),
     /// Ends further apart than numbers reach.
@@ -104,12 +104,12 @@ pub enum AxisError {
     },
 }
 
-fn meant(nearest: &Option<&str>) -> String {
+fn suggestion(nearest: &Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(": did you mean `{name}`?"))
 }
 
 impl Axis {
-    /// So many values by equal steps, both ends included.
+    /// An axis of `count` values with equal steps, both ends included.
     ///
     /// # Errors
     /// [`AxisError`], for ends that are not finite or one and the same, and for a count below 2 or
@@ -122,7 +122,7 @@ impl Axis {
         Self::range(name, Spacing::Linear, [from, to], count, |part| from + span * part)
     }
 
-    /// So many values by equal ratios, both ends included.
+    /// An axis of `count` values with equal ratios, both ends included.
     ///
     /// # Errors
     /// As [`Axis::linear`]; ends that are zero, or of different signs.
@@ -161,7 +161,7 @@ impl Axis {
             index if index == last => to,
             index => value(index as f64 / last as f64),
         });
-        Self::of(name, spacing, values.collect())
+        Self::new(name, spacing, values.collect())
     }
 
     /// These values, in this order.
@@ -181,12 +181,12 @@ impl Axis {
     /// ```
     pub fn list(name: &str, values: Vec<f64>) -> Result<Self, AxisError> {
         match (2..=MOST_MOTIONS).contains(&values.len()) {
-            true => Self::of(name, Spacing::List, values),
+            true => Self::new(name, Spacing::List, values),
             false => Err(AxisError::Count(values.len().to_string())),
         }
     }
 
-    fn of(name: &str, spacing: Spacing, values: Vec<f64>) -> Result<Self, AxisError> {
+    fn new(name: &str, spacing: Spacing, values: Vec<f64>) -> Result<Self, AxisError> {
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             return Err(AxisError::Number(value.to_string()));
         }
@@ -203,7 +203,7 @@ impl Axis {
         &self.name
     }
 
-    /// How the values follow each other.
+    /// The spacing of the values.
     pub fn spacing(&self) -> Spacing {
         self.spacing
     }

@@ -16,7 +16,7 @@ const WHOLE: f64 = 6_755_399_441_055_744.0;
 /// The first 33 bits of pi/2, and the rest.
 const QUARTER: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
 
-/// Beyond this the product with the first part of pi/2 is not exact.
+/// The angle beyond which the product with the first part of pi/2 is not exact.
 const LARGEST: f64 = 1e5;
 
 /// 1/2!, 1/3!, ..., 1/17!.
@@ -73,7 +73,7 @@ pub(super) fn sines_and_cosines<const L: usize>(angles: &[f64; L]) -> ([f64; L],
     (sines, cosines)
 }
 
-/// Those of one angle, the same to the last bit.
+/// Sine and cosine of one angle, bit for bit those of [`sines_and_cosines`].
 pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
     let ([sine], [cosine]) = sines_and_cosines(&[angle]);
     (sine, cosine)
@@ -83,8 +83,8 @@ pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// They are those of the standard library to the last digit, in every quadrant, next to its
-    /// ends, and for any number.
+    /// Sine and cosine are those of the standard library to the last digit, in every quadrant, next
+    /// to its ends, and for any number.
     #[test]
     fn they_are_sine_and_cosine() {
         let steps = (-40_000..40_000).map(|step| f64::from(step) * 0.013);

@@ -1,13 +1,13 @@
 //! Contact: its begin and its end, and what happens in a step of the regularised equation.
 
-use super::{Event, Loaded, Runner, turning_points};
+use super::{Loaded, Runner, StepEvent, turning_points};
 use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Turn, enter};
-use crate::impact::taylor::course::Course;
-use crate::impact::taylor::series::{End, HIGHEST_ORDER};
+use crate::impact::simulation::{TurningPoint, begin_contact};
+use crate::impact::taylor::course::StepEvents;
+use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState};
 
 /// One step of the regularised equation: w, v and t as polynomials.
 struct ContactStep<'a> {
@@ -33,10 +33,10 @@ impl ContactStep<'_> {
 pub(super) fn cut(
     [place, velocity, time]: [&[f64]; 3],
     remaining: f64,
-    (length, whole): (f64, End),
-) -> (f64, End) {
+    (length, whole): (f64, StepEndState),
+) -> (f64, StepEndState) {
     let h = crossing_of(|u| value(time, u) - remaining, 0.0, length);
-    let end = End {
+    let end = StepEndState {
         place: value(place, h),
         velocity: value(velocity, h),
         time: remaining,
@@ -51,8 +51,8 @@ impl Runner {
     pub(super) fn press_on(
         &mut self,
         (side, barrier): (Side, f64),
-        end: End,
-        course: Course,
+        end: StepEndState,
+        course: StepEvents,
         load: impl FnOnce() -> Loaded,
     ) -> bool {
         let x = |w: f64| barrier + side.sign() * (w * w);
@@ -68,14 +68,14 @@ impl Runner {
             None => (side.sign() * end.sine, end.cosine),
             Some(_) => self.angle_at(side),
         };
-        // What is stored in the barrier comes on top.
+        // The energy stored in the barrier comes on top.
         if self.is_at_rest_energy(velocity, cosine) {
             return false;
         }
         let mut deepest = w * w;
         if let Some(turn) = course.turn {
             deepest = deepest.max(turn.place * turn.place);
-            self.turns.push(Turn { t: self.t + turn.time, x: x(turn.place) });
+            self.turns.push(TurningPoint { t: self.t + turn.time, x: x(turn.place) });
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
@@ -90,7 +90,7 @@ impl Runner {
         (self.place, self.velocity, self.sine, self.cosine) = (w, velocity, sine, cosine);
         match course.crossing {
             None => self.adapt(),
-            Some(_) => self.leave(side.sign() * velocity),
+            Some(_) => self.leave_contact(side.sign() * velocity),
         }
         true
     }
@@ -99,7 +99,7 @@ impl Runner {
     pub(super) fn advance_contact(
         &mut self,
         (side, barrier): (Side, f64),
-        whole: End,
+        whole: StepEndState,
         series: [&[f64; HIGHEST_ORDER + 1]; 3],
     ) {
         let [w, v, time] = series.map(|series| &series[..=self.order]);
@@ -118,7 +118,7 @@ impl Runner {
         };
         let (mut end, mut event, deepest) = self.turns_and_release(&step, h, whole);
         if let Some(detach) = self.detachment(v, end) {
-            (end, event) = (detach, Some(Event::Detach));
+            (end, event) = (detach, Some(StepEvent::Detach));
         }
         let energy = |u: f64| {
             let depth = step.depth(u);
@@ -128,7 +128,7 @@ impl Runner {
             && energy(end) <= rest_energy
         {
             end = crossing_of(|u| energy(u) - rest_energy, 0.0, end);
-            event = Some(Event::RestEnergy);
+            event = Some(StepEvent::RestEnergy);
         }
         let start = self.t;
         self.t = if last && end == h {
@@ -153,8 +153,8 @@ impl Runner {
         &mut self,
         step: &ContactStep,
         h: f64,
-        whole: End,
-    ) -> (f64, Option<Event>, f64) {
+        whole: StepEndState,
+    ) -> (f64, Option<StepEvent>, f64) {
         let turns = turning_points(step.v, h, whole);
         let (mut from, mut w_from) = (0.0, step.w[0]);
         let mut deepest = 0.0_f64;
@@ -166,13 +166,16 @@ impl Runner {
                 } else {
                     to
                 };
-                return (release, Some(Event::Release), deepest);
+                return (release, Some(StepEvent::Release), deepest);
             }
             deepest = deepest.max(w_to * w_to);
             if turning {
-                self.turns.push(Turn { t: self.t + value(step.time, to), x: step.x(w_to * w_to) });
+                self.turns.push(TurningPoint {
+                    t: self.t + value(step.time, to),
+                    x: step.x(w_to * w_to),
+                });
                 if self.model.sticks() {
-                    return (to, Some(Event::Turn), deepest);
+                    return (to, Some(StepEvent::Turn), deepest);
                 }
             }
             (from, w_from) = (to, w_to);
@@ -180,8 +183,8 @@ impl Runner {
         (h, None, deepest)
     }
 
-    /// Where in a step that ends at `end` the barrier would begin to pull: gamma + mu v stays
-    /// positive.
+    /// The point in a step that ends at `end` at which the barrier would begin to pull: gamma + mu
+    /// v stays positive.
     fn detachment(&self, v: &[f64], end: f64) -> Option<f64> {
         let Model { gamma, mu, .. } = self.model;
         if mu <= 0.0 || v[0] - variation(v, end) >= -gamma / mu {
@@ -195,42 +198,42 @@ impl Runner {
         detach.filter(|detach| *detach < end)
     }
 
-    /// Goes on from the end of a step in contact, which has this w and velocity.
-    fn go_on(&mut self, step: &ContactStep, event: Option<Event>) {
+    /// Continues from the end of a step in contact, which has this w and velocity.
+    fn go_on(&mut self, step: &ContactStep, event: Option<StepEvent>) {
         let (w, velocity) = (self.place, self.velocity);
-        if event != Some(Event::Release) {
+        if event != Some(StepEvent::Release) {
             self.set_angle(step.x(w * w));
         }
         self.adapt();
         match event {
-            Some(Event::Turn) => {
+            Some(StepEvent::Turn) => {
                 self.velocity = 0.0;
                 self.turn();
             }
-            Some(Event::Release) => {
+            Some(StepEvent::Release) => {
                 self.place = step.barrier;
-                self.leave(step.side.sign() * velocity);
+                self.leave_contact(step.side.sign() * velocity);
             }
-            Some(Event::Detach) => {
+            Some(StepEvent::Detach) => {
                 self.regime = Regime::Detached(step.side);
                 self.base = 0.0;
                 self.place = step.x(w * w);
                 self.velocity = step.side.sign() * velocity;
                 self.set_flight_unit();
             }
-            Some(Event::RestEnergy) => self.end_at_rest_energy(),
+            Some(StepEvent::RestEnergy) => self.end_at_rest_energy(),
             _ => {}
         }
     }
 
     /// Contact begins, at this speed.
     pub(super) fn touch(&mut self, side: Side, speed: f64) {
-        enter(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
-        self.press(side, 0.0, speed);
+        begin_contact(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
+        self.enter_contact(side, 0.0, speed);
     }
 
-    /// Goes over to the equation of the contact after free flight from rest on the barrier, which
-    /// has taken this time and ends at this depth and speed.
+    /// Changes to the equation of the contact after free flight from rest on the barrier, which has
+    /// taken this time and ends at this depth and speed.
     pub(super) fn begin_contact_from_rest(
         &mut self,
         side: Side,
@@ -247,11 +250,11 @@ impl Runner {
             }
             false => (0.0, 0.0),
         };
-        self.press(side, (depth - back).max(0.0).sqrt(), speed - taken);
+        self.enter_contact(side, (depth - back).max(0.0).sqrt(), speed - taken);
     }
 
     /// In contact at w with this speed inwards.
-    pub(super) fn press(&mut self, side: Side, w: f64, speed: f64) {
+    pub(super) fn enter_contact(&mut self, side: Side, w: f64, speed: f64) {
         self.regime = Regime::Contact(side);
         let barrier = self.model.barrier(side).unwrap_or_default();
         self.place = w;
@@ -263,15 +266,15 @@ impl Runner {
         let reached = hertz::greatest_depth(self.model.gamma, speed).max(w * w);
         let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
         self.hertz = [reached.sqrt(), fastest];
-        // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next
-        // to none.
+        // The time scale of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near the
+        // bottom they are almost zero.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
         let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());
         self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };
     }
 
     /// Contact ends at this velocity.
-    pub(super) fn leave(&mut self, velocity: f64) {
+    pub(super) fn leave_contact(&mut self, velocity: f64) {
         if let Some((side, barrier)) = self.side() {
             self.place = barrier;
             if let Some(impact) = self.impacts.last_mut() {

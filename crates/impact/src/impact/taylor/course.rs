@@ -4,14 +4,14 @@
 //! The bounds of x are the barriers; the bound of w, in contact, is 0. What is not plain is looked
 //! at motion by motion, by `flight` and `contact`, which come to the same numbers where it is.
 
-use super::series::{Coefficients, Ends, Inputs};
-use super::{Equation, VANISHING};
+use super::series::{Ends, Inputs, SeriesCoefficients};
+use super::{StepEquation, VANISHING};
 use crate::impact::polynomial::lanes::{changes_of_sign, crossings};
 
 /// A place on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
-    /// In the variable of the series.
+pub(super) struct StepPoint {
+    /// The variable of the series.
     pub(super) at: f64,
     /// x or w.
     pub(super) place: f64,
@@ -20,15 +20,15 @@ pub(super) struct Point {
     pub(super) time: f64,
 }
 
-/// What happens in a step of one motion.
+/// The events in a step of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Course {
-    pub(super) turn: Option<Point>,
-    /// Where a bound is crossed, and whether it is the upper one.
-    pub(super) crossing: Option<(Point, bool)>,
+pub(super) struct StepEvents {
+    pub(super) turn: Option<StepPoint>,
+    /// The point at which a bound is crossed, and whether it is the upper one.
+    pub(super) crossing: Option<(StepPoint, bool)>,
 }
 
-/// That of several.
+/// The events in a step of several motions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Courses<const L: usize> {
     plain: [bool; L],
@@ -52,8 +52,8 @@ impl<const L: usize> Points<L> {
         Self { at: [0.0; L], place: [0.0; L], velocity: [0.0; L], time: [0.0; L] }
     }
 
-    fn lane(&self, lane: usize) -> Point {
-        Point {
+    fn lane(&self, lane: usize) -> StepPoint {
+        StepPoint {
             at: self.at[lane],
             place: self.place[lane],
             velocity: self.velocity[lane],
@@ -63,7 +63,7 @@ impl<const L: usize> Points<L> {
 }
 
 impl<const L: usize> Courses<L> {
-    /// Nothing happens in any of the steps.
+    /// No events in any of the steps.
     pub(super) fn new() -> Self {
         Self {
             plain: [true; L],
@@ -75,9 +75,9 @@ impl<const L: usize> Courses<L> {
         }
     }
 
-    /// The course of one motion; nothing where it is not plain.
-    pub(super) fn lane(&self, lane: usize) -> Option<Course> {
-        self.plain[lane].then(|| Course {
+    /// The course of one motion; `None` if it is not plain.
+    pub(super) fn lane(&self, lane: usize) -> Option<StepEvents> {
+        self.plain[lane].then(|| StepEvents {
             turn: self.turns[lane].then(|| self.turn.lane(lane)),
             crossing: self.crosses[lane].then(|| (self.crossing.lane(lane), self.rises[lane])),
         })
@@ -87,8 +87,8 @@ impl<const L: usize> Courses<L> {
 /// The courses of steps of these lengths, which end there if nothing happens before.
 #[inline(always)]
 pub(super) fn courses<const L: usize>(
-    series: &Coefficients<L>,
-    (order, equation): (usize, Equation),
+    series: &SeriesCoefficients<L>,
+    (order, equation): (usize, StepEquation),
     inputs: &Inputs<L>,
     lengths: &[f64; L],
     ends: &Ends<L>,
@@ -96,7 +96,7 @@ pub(super) fn courses<const L: usize>(
 ) {
     (courses.plain, courses.turns) = ([true; L], [false; L]);
     let (place, velocity) = (&series.place[..=order], &series.velocity[..=order]);
-    // Where the stretch that may cross a bound begins, and from where to where it goes.
+    // Start and end of the part of the step that may cross a bound.
     let (mut from, mut start) = ([0.0; L], inputs.place);
     let (mut to, mut goal) = (*lengths, ends.place);
     let may_turn: [bool; L] = std::array::from_fn(|lane| {

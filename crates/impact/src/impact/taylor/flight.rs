@@ -2,21 +2,21 @@
 //! it, a turning point.
 
 use super::contact::cut;
-use super::{Event, LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
+use super::{LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, StepEvent, turning_points};
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Turn, enter};
+use crate::impact::simulation::{TurningPoint, begin_contact};
 use crate::impact::taylor::angle::sine_and_cosine;
-use crate::impact::taylor::course::Course;
-use crate::impact::taylor::series::{End, HIGHEST_ORDER, TIME_TERMS};
+use crate::impact::taylor::course::StepEvents;
+use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState, TIME_TERMS};
 
 impl Runner {
     /// Takes a step of free flight with a plain course, if nothing else ends it.
     pub(super) fn fly_on(
         &mut self,
-        end: End,
-        course: Course,
+        end: StepEndState,
+        course: StepEvents,
         load: impl FnOnce() -> Loaded,
     ) -> bool {
         if self.settings.duration - self.t <= end.time {
@@ -41,7 +41,7 @@ impl Runner {
             return false;
         }
         if let Some(turn) = course.turn {
-            self.turns.push(Turn { t: self.t + turn.time, x: turn.place });
+            self.turns.push(TurningPoint { t: self.t + turn.time, x: turn.place });
         }
         let start = self.t;
         let (at, time) =
@@ -61,7 +61,11 @@ impl Runner {
     }
 
     /// Takes a step of free flight up to what ends it, and goes on from there.
-    pub(super) fn advance_flight(&mut self, whole: End, series: [&[f64; HIGHEST_ORDER + 1]; 3]) {
+    pub(super) fn advance_flight(
+        &mut self,
+        whole: StepEndState,
+        series: [&[f64; HIGHEST_ORDER + 1]; 3],
+    ) {
         let [x, v, time] = series;
         let (x, v, time) = (&x[..=self.order], &v[..=self.order], &time[..TIME_TERMS]);
         let remaining = self.settings.duration - self.t;
@@ -77,7 +81,7 @@ impl Runner {
         let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
         let (mut x_end, mut v_end) =
             if end == h { (whole.place, whole.velocity) } else { (value(x, end), value(v, end)) };
-        if let Some(Event::Touch(side)) = event {
+        if let Some(StepEvent::Touch(side)) = event {
             x_end = self.model.barrier(side).unwrap_or(x_end);
         }
         let (mut sine, mut cosine) = self.angle(x_end);
@@ -86,7 +90,7 @@ impl Runner {
             && matches!(self.regime, Regime::Free)
         {
             end = crossing_of(|u| energy(u) - rest_energy, 0.0, end);
-            event = Some(Event::RestEnergy);
+            event = Some(StepEvent::RestEnergy);
             (x_end, v_end) = (value(x, end), value(v, end));
             (sine, cosine) = sine_and_cosine(x_end);
         }
@@ -95,7 +99,7 @@ impl Runner {
         self.t = if last && end == h { self.settings.duration } else { start + elapsed };
         if self.settings.keep_path {
             let state = match event {
-                Some(Event::Onset(side)) => Regime::Contact(side),
+                Some(StepEvent::Onset(side)) => Regime::Contact(side),
                 _ => self.regime,
             };
             self.path.push_series([start, self.t], (state, None), end, [x, v, time]);
@@ -104,45 +108,52 @@ impl Runner {
         self.adapt();
         match event {
             None => {}
-            Some(Event::Turn) => {
+            Some(StepEvent::Turn) => {
                 self.velocity = 0.0;
                 self.turn();
             }
-            Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => {
+            Some(StepEvent::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => {
                 self.touch(side, side.sign() * v_end)
             }
-            Some(Event::Onset(side)) => {
+            Some(StepEvent::Onset(side)) => {
                 let depth = side.sign() * rise(x, end);
-                enter(&mut self.impacts, (&self.model, &self.settings), side, start, [0.0, 0.0]);
+                begin_contact(
+                    &mut self.impacts,
+                    (&self.model, &self.settings),
+                    side,
+                    start,
+                    [0.0, 0.0],
+                );
                 self.begin_contact_from_rest(side, elapsed, [depth, side.sign() * v_end]);
             }
-            Some(Event::Touch(side) | Event::Settle(side)) => {
+            Some(StepEvent::Touch(side) | StepEvent::Settle(side)) => {
                 (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
                 self.fly();
             }
-            Some(Event::Release) => self.leave(v_end),
-            Some(Event::Reattach) => {
+            Some(StepEvent::Release) => self.leave_contact(v_end),
+            Some(StepEvent::Reattach) => {
                 if let Regime::Detached(side) = self.regime {
                     let barrier = self.model.barrier(side).unwrap_or_default();
-                    self.press(
+                    self.enter_contact(
                         side,
                         (side.sign() * (self.place - barrier)).max(0.0).sqrt(),
                         side.sign() * v_end,
                     );
                 }
             }
-            Some(Event::RestEnergy) => self.end_at_rest_energy(),
-            Some(Event::Detach) => {}
+            Some(StepEvent::RestEnergy) => self.end_at_rest_energy(),
+            Some(StepEvent::Detach) => {}
         }
     }
 
-    /// What ends a free flight before `h`, and where. Turning points on the way are noted.
+    /// The event that ends a free flight before `h`, and its time. Turning points on the way are
+    /// recorded.
     fn flight_event(
         &mut self,
         [x, v, time]: [&[f64]; 3],
         h: f64,
-        end: End,
-    ) -> (f64, Option<Event>) {
+        end: StepEndState,
+    ) -> (f64, Option<StepEvent>) {
         let turns = turning_points(v, h, end);
         let (mut from, mut x_from) = (0.0, x[0]);
         let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
@@ -154,7 +165,7 @@ impl Runner {
                 // x_r.
                 if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
                     if sign * rise(x, to) > 0.0 {
-                        return (self.onset(side, [x, v, time], to), Some(Event::Onset(side)));
+                        return (self.onset(side, [x, v, time], to), Some(StepEvent::Onset(side)));
                     }
                     continue;
                 }
@@ -167,19 +178,19 @@ impl Runner {
                         from
                     };
                     if sign * value(v, touch) > 0.0 {
-                        return (touch, Some(Event::Touch(side)));
+                        return (touch, Some(StepEvent::Touch(side)));
                     }
                     // Beyond it by more than rounding, and yet no speed: it turned on the barrier
                     // and is pushed in.
                     if sign * (x_to - barrier) > 8.0 * f64::EPSILON * barrier.abs().max(1.0) {
-                        return (touch, Some(Event::Settle(side)));
+                        return (touch, Some(StepEvent::Settle(side)));
                     }
                 }
             }
             if turning {
-                self.turns.push(Turn { t: self.t + value(time, to), x: x_to });
+                self.turns.push(TurningPoint { t: self.t + value(time, to), x: x_to });
                 if self.model.sticks() {
-                    return (to, Some(Event::Turn));
+                    return (to, Some(StepEvent::Turn));
                 }
             }
             (from, x_from) = (to, x_to);
@@ -187,9 +198,15 @@ impl Runner {
         (h, None)
     }
 
-    /// What ends the flight away from a barrier that is still behind: back in place, or as fast as
-    /// the barrier.
-    fn detached_event(&mut self, side: Side, x: &[f64], v: &[f64], h: f64) -> (f64, Option<Event>) {
+    /// The event that ends the flight away from a barrier that is still recovering: the pendulum
+    /// has passed its rest position, or is no faster than the barrier.
+    fn detached_event(
+        &mut self,
+        side: Side,
+        x: &[f64],
+        v: &[f64],
+        h: f64,
+    ) -> (f64, Option<StepEvent>) {
         let barrier = self.model.barrier(side).unwrap_or_default();
         let sign = side.sign();
         let mut excess = [0.0; HIGHEST_ORDER + 1];
@@ -203,13 +220,13 @@ impl Runner {
         // Until then it moves away from the barrier all the time.
         if sign * (value(x, catch) - barrier) <= 0.0 {
             let release = level_crossing(x, barrier, 0.0, catch);
-            return (release, Some(Event::Release));
+            return (release, Some(StepEvent::Release));
         }
-        (catch, catches.as_slice().first().map(|_| Event::Reattach))
+        (catch, catches.as_slice().first().map(|_| StepEvent::Reattach))
     }
 
-    /// How far a motion that moves into the barrier from rest on it, and does so at least until
-    /// `to`, may go before the contact force counts.
+    /// The step length up to which the contact force is negligible, for a motion that moves into
+    /// the barrier from rest on it at least until `to`.
     fn onset(&self, side: Side, [x, v, time]: [&[f64]; 3], to: f64) -> f64 {
         let mut u = to;
         // Each time the part of the force shrinks by 4^4 or more.
@@ -234,7 +251,7 @@ impl Runner {
     }
 }
 
-/// How far x has risen since the start of the step: to more digits than x has.
+/// The change of x since the start of the step, with more digits than x has.
 fn rise(x: &[f64], u: f64) -> f64 {
     match x.split_first() {
         Some((_, rest)) => u * value(rest, u),

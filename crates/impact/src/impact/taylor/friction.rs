@@ -3,7 +3,7 @@
 
 use super::Runner;
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Stop, Turn};
+use crate::impact::simulation::{SimulationStop, TurningPoint};
 
 impl Runner {
     /// The acceleration by all but friction at rest, now.
@@ -18,18 +18,18 @@ impl Runner {
         self.model.field(t, x) - contact
     }
 
-    /// At rest under Coulomb friction: which way it goes on, if at all.
+    /// Decides at rest under Coulomb friction in which direction the motion continues, if at all.
     pub(super) fn turn(&mut self) {
         let force = self.force_at_rest();
         if force.abs() <= self.model.alpha * (1.0 + 4.0 * f64::EPSILON) {
-            self.wait();
+            self.stay_held();
         } else {
             self.direction = force.signum();
         }
     }
 
     /// Held by friction until the excitation tears it loose, or to the end.
-    fn wait(&mut self) {
+    fn stay_held(&mut self) {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
         let (release, direction) =
@@ -39,7 +39,7 @@ impl Runner {
             self.path.push_rest([start, end], x);
         }
         if end > start {
-            self.turns.push(Turn { t: end, x });
+            self.turns.push(TurningPoint { t: end, x });
         }
         self.t = end;
         self.velocity = 0.0;
@@ -48,7 +48,7 @@ impl Runner {
             self.released = true;
         } else {
             self.direction = 0.0;
-            self.stop = Some(Stop::Duration);
+            self.stop = Some(SimulationStop::Duration);
         }
     }
 }

@@ -8,7 +8,7 @@
 //! The slope y' is stored one place down: n y_n in the place of y_(n-1). A coefficient costs n
 //! multiplications, half of them for a square.
 
-use super::series::{HIGHEST_ORDER, Series};
+use super::series::{HIGHEST_ORDER, LaneSeries};
 use super::stretch::stretched;
 
 /// Motions in one register of 256 bits.
@@ -18,8 +18,8 @@ const REGISTER: usize = 4;
 /// next, so that every coefficient is read once for both.
 #[inline(always)]
 pub(super) fn product<const L: usize>(
-    a: &Series<L>,
-    b: &Series<L>,
+    a: &LaneSeries<L>,
+    b: &LaneSeries<L>,
     n: usize,
     ahead: &mut [f64; L],
 ) -> [f64; L] {
@@ -47,8 +47,8 @@ pub(super) fn product<const L: usize>(
 /// (a b)_n and (a c)_n likewise.
 #[inline(always)]
 pub(super) fn products<const L: usize>(
-    a: &Series<L>,
-    [b, c]: [&Series<L>; 2],
+    a: &LaneSeries<L>,
+    [b, c]: [&LaneSeries<L>; 2],
     n: usize,
     ahead: &mut [[f64; L]; 2],
 ) -> [[f64; L]; 2] {
@@ -89,8 +89,8 @@ pub(super) fn products<const L: usize>(
 /// half.
 #[inline(always)]
 pub(super) fn symmetric<const L: usize>(
-    a: &Series<L>,
-    b: &Series<L>,
+    a: &LaneSeries<L>,
+    b: &LaneSeries<L>,
     n: usize,
     ahead: &mut [f64; L],
 ) -> [f64; L] {
@@ -126,12 +126,16 @@ pub(super) fn symmetric<const L: usize>(
 
 /// (a a)_n.
 #[inline(always)]
-pub(super) fn square<const L: usize>(a: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+pub(super) fn square<const L: usize>(
+    a: &LaneSeries<L>,
+    n: usize,
+    ahead: &mut [f64; L],
+) -> [f64; L] {
     symmetric(a, a, n, ahead)
 }
 
 #[inline(always)]
-pub(super) fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+pub(super) fn per_lane<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
     let mut result = [0.0; L];
     for (lane, entry) in result.iter_mut().enumerate() {
         *entry = value(lane);
@@ -153,8 +157,8 @@ pub(super) const INVERSE: [f64; HIGHEST_ORDER + 2] = {
 /// The next coefficients of sine and cosine of an angle with this rate: n s_n = (rate c)_(n-1).
 #[inline(always)]
 pub(super) fn sine_and_cosine<const L: usize>(
-    [sine, cosine]: [&mut Series<L>; 2],
-    rate: &Series<L>,
+    [sine, cosine]: [&mut LaneSeries<L>; 2],
+    rate: &LaneSeries<L>,
     n: usize,
     ahead: &mut [[f64; L]; 2],
 ) {
@@ -169,7 +173,7 @@ pub(super) fn sine_and_cosine<const L: usize>(
 /// over n, in the unit of the step.
 #[inline(always)]
 pub(super) fn waves_of_time<const L: usize>(
-    [sine, cosine]: [&mut Series<L>; 2],
+    [sine, cosine]: [&mut LaneSeries<L>; 2],
     stretch: &[[f64; L]; 2],
     factor: &[f64; L],
     n: usize,
@@ -184,9 +188,9 @@ pub(super) fn waves_of_time<const L: usize>(
 /// The next coefficient of what has the slope y'/b, and of that slope; `numerator` is n y_n.
 #[inline(always)]
 pub(super) fn quotient<const L: usize>(
-    [result, slope]: [&mut Series<L>; 2],
+    [result, slope]: [&mut LaneSeries<L>; 2],
     numerator: &[f64; L],
-    over: &Series<L>,
+    over: &LaneSeries<L>,
     n: usize,
 ) {
     let mut known = [0.0; L];
@@ -204,11 +208,11 @@ pub(super) fn quotient<const L: usize>(
 /// Time itself, all of it.
 #[inline(always)]
 pub(super) fn time<const L: usize>(
-    series: &mut Series<L>,
+    series: &mut LaneSeries<L>,
     unit: &[f64; L],
     [p, q]: &[[f64; L]; 2],
 ) {
     series[1] = *unit;
-    series[2] = each(|lane| INVERSE[2] * unit[lane] * p[lane]);
-    series[3] = each(|lane| INVERSE[3] * unit[lane] * q[lane]);
+    series[2] = per_lane(|lane| INVERSE[2] * unit[lane] * p[lane]);
+    series[3] = per_lane(|lane| INVERSE[3] * unit[lane] * q[lane]);
 }

@@ -8,9 +8,9 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::course::{Courses, courses};
 use super::recurrences::{contact, flight};
-use super::series::{Coefficients, Ends, HIGHEST_ORDER, Inputs, Terms};
+use super::series::{Ends, HIGHEST_ORDER, Inputs, SeriesCoefficients, Terms};
 use super::step::step_lengths;
-use super::{Equation, Runner};
+use super::{Runner, StepEquation};
 
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
@@ -21,23 +21,23 @@ const POOL: usize = 16;
 
 /// The series of one group; always compiled into its caller, so that it gets the widest registers
 /// there are.
-struct Expansion<'a> {
+struct LaneExpansion<'a> {
     inputs: &'a Inputs<LANES>,
     order: usize,
     terms: Terms,
-    series: &'a mut Coefficients<LANES>,
-    equation: Equation,
+    series: &'a mut SeriesCoefficients<LANES>,
+    equation: StepEquation,
 }
 
-impl WithSimd for Expansion<'_> {
-    /// How far they reach.
+impl WithSimd for LaneExpansion<'_> {
+    /// The reach of the series.
     type Output = [f64; LANES];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> [f64; LANES] {
         match self.equation {
-            Equation::Flight => flight(self.inputs, self.order, self.terms, self.series),
-            Equation::Contact => contact(self.inputs, self.order, self.terms, self.series),
+            StepEquation::Flight => flight(self.inputs, self.order, self.terms, self.series),
+            StepEquation::Contact => contact(self.inputs, self.order, self.terms, self.series),
         }
         step_lengths(&self.series.velocity, self.order, &self.inputs.size, &self.inputs.allowed)
     }
@@ -45,11 +45,11 @@ impl WithSimd for Expansion<'_> {
 
 /// Its values at the ends of the steps, and what happens in them.
 struct Evaluation<'a> {
-    series: &'a Coefficients<LANES>,
+    series: &'a SeriesCoefficients<LANES>,
     inputs: &'a Inputs<LANES>,
     lengths: &'a [f64; LANES],
     order: usize,
-    equation: Equation,
+    equation: StepEquation,
     ends: &'a mut Ends<LANES>,
     courses: &'a mut Courses<LANES>,
 }
@@ -70,11 +70,11 @@ impl WithSimd for Evaluation<'_> {
 fn next_group(
     flights: &mut Vec<usize>,
     contacts: &mut Vec<usize>,
-) -> ([usize; LANES], usize, Equation) {
+) -> ([usize; LANES], usize, StepEquation) {
     let (queue, equation) = if flights.len() >= contacts.len() {
-        (flights, Equation::Flight)
+        (flights, StepEquation::Flight)
     } else {
-        (contacts, Equation::Contact)
+        (contacts, StepEquation::Contact)
     };
     let mut group = [0; LANES];
     let mut count = 0;
@@ -100,7 +100,7 @@ pub(in crate::impact) fn follow(
     let mut contacts: Vec<usize> = Vec::with_capacity(POOL);
     // Places of the pool that have no series to come yet.
     let mut fresh: Vec<usize> = Vec::with_capacity(POOL);
-    let mut series = Box::new(Coefficients::<LANES>::new());
+    let mut series = Box::new(SeriesCoefficients::<LANES>::new());
     let mut inputs = Inputs::<LANES>::new();
     let (mut ends, mut courses) = (Ends::<LANES>::new(), Courses::<LANES>::new());
     for (number, runner) in waiting.by_ref().take(POOL) {
@@ -112,9 +112,9 @@ pub(in crate::impact) fn follow(
             let Some(entry) = pool.get_mut(place) else {
                 continue;
             };
-            match entry.1.wants() {
-                Some(Equation::Flight) => flights.push(place),
-                Some(Equation::Contact) => contacts.push(place),
+            match entry.1.next_equation() {
+                Some(StepEquation::Flight) => flights.push(place),
+                Some(StepEquation::Contact) => contacts.push(place),
                 None => {
                     // Its place goes to the next run; without one it stays behind, ended.
                     if let Some(next) = waiting.next() {
@@ -139,7 +139,7 @@ pub(in crate::impact) fn follow(
                 order = runner.order();
             }
         }
-        let proposed = arch.dispatch(Expansion {
+        let proposed = arch.dispatch(LaneExpansion {
             inputs: &inputs,
             order,
             terms,
@@ -149,7 +149,7 @@ pub(in crate::impact) fn follow(
         let mut lengths = [0.0; LANES];
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                lengths[lane] = runner.reach(proposed[lane]);
+                lengths[lane] = runner.step_length(proposed[lane]);
             }
         }
         arch.dispatch(Evaluation {

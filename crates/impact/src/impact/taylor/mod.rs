@@ -1,7 +1,7 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
 //! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run
-//! alone (`alone`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
+//! alone (`simulate_one`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
 //! of a step come from `recurrences`.
 //!
 //! ```text
@@ -15,7 +15,7 @@
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
 //!
-//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is
+//! A [`Runner`] says which series it needs next ([`Runner::next_equation`], [`Runner::inputs`]) and is
 //! given its coefficients ([`Runner::advance`]); who computes them, for one motion or for several
 //! side by side, it does not know. What happens in most steps, a turning point and a touch or a
 //! release, is found side by side too, in `course`; what else may end a step stands in `flight` and
@@ -39,13 +39,13 @@ use std::f64::consts::FRAC_2_PI;
 use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{
-    Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter,
-    first_swing, has_rested, scaled,
+    ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation, SimulationPath,
+    SimulationStop, TurningPoint, begin_contact, first_swing, has_rested, scaled,
 };
 use angle::sine_and_cosine;
-use course::{Course, Courses, courses};
+use course::{Courses, StepEvents, courses};
 pub(super) use lanes::follow;
-use series::{Coefficients, End, HIGHEST_ORDER, Inputs, Terms};
+use series::{HIGHEST_ORDER, Inputs, SeriesCoefficients, StepEndState, Terms};
 use step::step_lengths;
 
 /// The longest step in time, for a motion at rest has no scale of its own.
@@ -79,9 +79,9 @@ const FEW: usize = 8;
 /// The coefficients of a step of one motion: x or w, v, t.
 type Loaded = [[f64; HIGHEST_ORDER + 1]; 3];
 
-/// Which series is wanted.
+/// The equation of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Equation {
+enum StepEquation {
     Flight,
     Contact,
 }
@@ -115,22 +115,22 @@ pub(super) struct Runner {
     length: f64,
     steps: usize,
     idle: usize,
-    stop: Option<Stop>,
+    stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
     level: f64,
-    impacts: Vec<Contact>,
-    turns: Vec<Turn>,
-    path: Path,
+    impacts: Vec<ContactRecord>,
+    turns: Vec<TurningPoint>,
+    path: SimulationPath,
 }
 
-/// What ends a step before its time.
+/// The event that ends a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Event {
+enum StepEvent {
     Turn,
     Touch(Side),
     /// Turned on the barrier and pushed in: at rest there, and the contact begins from rest.
     Settle(Side),
-    /// From rest on the barrier into it, far enough for the contact force to begin to count.
+    /// The onset of the contact force after a motion from rest on the barrier into it.
     Onset(Side),
     Release,
     /// The contact would begin to pull.
@@ -141,20 +141,20 @@ enum Event {
 }
 
 /// One motion from its start to its end.
-pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulation {
+pub(super) fn simulate_one(model: Model, start: Start, settings: Settings) -> Simulation {
     let mut runner = Runner::new(model, start, settings);
-    let mut series = Coefficients::<1>::new();
+    let mut series = SeriesCoefficients::<1>::new();
     let mut inputs = Inputs::<1>::new();
     let mut found = Courses::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
-    while let Some(equation) = runner.wants() {
+    while let Some(equation) = runner.next_equation() {
         runner.inputs(0, &mut inputs);
         match equation {
-            Equation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
-            Equation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
+            StepEquation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
+            StepEquation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
         }
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
-        let length = runner.reach(proposed);
+        let length = runner.step_length(proposed);
         let ends = series.ends(&inputs, &[length], order, equation);
         courses(&series, (order, equation), &inputs, &[length], &ends, &mut found);
         runner.advance(ends.lane(0), found.lane(0), || series.lane(order, 0));
@@ -164,7 +164,7 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
 
 /// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is
 /// followed with its path, again or, for a chain, for once.
-pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
+pub(super) fn time_of_fall_by_series(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
         true => Start { x: from.x, velocity: 0.0 },
@@ -175,9 +175,9 @@ pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     if settings.duration <= 0.0 {
         return None;
     }
-    let again = alone(simulation.model, start, settings);
+    let again = simulate_one(simulation.model, start, settings);
     let level = REST_FRACTION * first_swing(&simulation.model, simulation.start);
-    let fall = again.fall(Turn { t: 0.0, x: start.x }, level)?;
+    let fall = again.time_of_fall(TurningPoint { t: 0.0, x: start.x }, level)?;
     Some(from.t + fall)
 }
 
@@ -222,11 +222,11 @@ impl Runner {
             level: REST_FRACTION * first_swing(&model, start),
             impacts: Vec::with_capacity(FEW),
             turns: Vec::with_capacity(4 * FEW),
-            path: Path::new(),
+            path: SimulationPath::new(),
         };
         runner.fly();
         if start.velocity == 0.0 {
-            runner.turns.push(Turn { t: 0.0, x: start.x });
+            runner.turns.push(TurningPoint { t: 0.0, x: start.x });
         }
         for side in [Side::Left, Side::Right] {
             if model.barrier(side) == Some(start.x) && side.sign() * start.velocity > 0.0 {
@@ -235,10 +235,10 @@ impl Runner {
         }
         if let Some((side, depth)) = model.depth(start.x) {
             let speed = side.sign() * start.velocity;
-            enter(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
+            begin_contact(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
             match model.would_pull(speed) {
                 true => runner.regime = Regime::Detached(side),
-                false => runner.press(side, depth.sqrt(), speed),
+                false => runner.enter_contact(side, depth.sqrt(), speed),
             }
         }
         if model.sticks() {
@@ -251,12 +251,12 @@ impl Runner {
             .rest_energy
             .is_some_and(|energy| model.energy(start.x, start.velocity) <= energy)
         {
-            runner.stop = Some(Stop::RestEnergy);
+            runner.stop = Some(SimulationStop::RestEnergy);
         }
         runner
     }
 
-    /// What came of it.
+    /// Returns the simulation at the end of the run.
     pub(super) fn finish(self, start: Start) -> Simulation {
         let (end_time, end_x, end_velocity) = self.now();
         let mut simulation = Simulation {
@@ -270,11 +270,11 @@ impl Runner {
             end_time,
             end_x,
             end_velocity,
-            stop: self.stop.unwrap_or(Stop::Duration),
+            stop: self.stop.unwrap_or(SimulationStop::Duration),
             steps: self.steps,
             fall: None,
         };
-        simulation.fall = fall(&simulation);
+        simulation.fall = time_of_fall_by_series(&simulation);
         simulation
     }
 
@@ -301,26 +301,26 @@ impl Runner {
     }
 
     /// The series wanted next; nothing once the run has ended.
-    fn wants(&mut self) -> Option<Equation> {
+    fn next_equation(&mut self) -> Option<StepEquation> {
         if self.stop.is_some() {
             return None;
         }
         if self.t >= self.settings.duration {
-            self.stop = Some(Stop::Duration);
+            self.stop = Some(SimulationStop::Duration);
             return None;
         }
         if self.steps >= self.settings.maximum_steps {
-            self.stop = Some(Stop::Steps { t: self.t });
+            self.stop = Some(SimulationStop::Steps { t: self.t });
             return None;
         }
         if self.settings.interrupt.is_requested() {
-            self.stop = Some(Stop::Interrupted { t: self.t });
+            self.stop = Some(SimulationStop::Interrupted { t: self.t });
             return None;
         }
         self.steps += 1;
         match self.regime {
-            Regime::Contact(_) => Some(Equation::Contact),
-            _ => Some(Equation::Flight),
+            Regime::Contact(_) => Some(StepEquation::Contact),
+            _ => Some(StepEquation::Flight),
         }
     }
 
@@ -358,7 +358,7 @@ impl Runner {
         };
     }
 
-    /// How large the motion is now, and what the first term left out of a step may be.
+    /// The size of the motion now, and the bound of the first term left out of a step.
     fn allowance(&self) -> (f64, f64) {
         let tolerance = &self.settings;
         let place = match self.regime {
@@ -370,9 +370,9 @@ impl Runner {
         (size, allowed)
     }
 
-    /// How far the step goes, in its unit, where the series reaches so far: it ends there if
-    /// nothing happens before.
-    fn reach(&mut self, proposed: f64) -> f64 {
+    /// The length of the step in its unit, if the series reaches so far: it ends there if nothing
+    /// happens before.
+    fn step_length(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
         let longest = match self.regime {
             Regime::Contact(_) => LONGEST_CONTACT_STEP,
@@ -382,17 +382,22 @@ impl Runner {
         self.length
     }
 
-    /// Goes on with the series at the present moment: its values at the end of the step, and where
-    /// they do not say enough, its coefficients: x and v, or w, v and t.
-    fn advance(&mut self, end: End, course: Option<Course>, load: impl Fn() -> Loaded) {
+    /// Takes the next step of the series: from its values at the end of the step, and, if they do
+    /// not suffice, from its coefficients: x and v, or w, v and t.
+    fn advance(
+        &mut self,
+        end: StepEndState,
+        course: Option<StepEvents>,
+        load: impl Fn() -> Loaded,
+    ) {
         let (before, turns) = (self.t, self.turns.len());
         if !(end.place.is_finite() && end.variation.is_finite()) {
-            self.stop = Some(Stop::NotFinite { t: self.t });
+            self.stop = Some(SimulationStop::NotFinite { t: self.t });
             return;
         }
         let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
         if contact.is_none() && self.t + end.time.min(self.settings.duration - self.t) <= self.t {
-            self.stop = Some(Stop::StepTooSmall { t: self.t });
+            self.stop = Some(SimulationStop::StepTooSmall { t: self.t });
             return;
         }
         let plain = course.filter(|course| {
@@ -416,11 +421,11 @@ impl Runner {
         }
         let turned = self.settings.stop_at_rest && self.turns.len() > turns;
         if turned && self.stop.is_none() && has_rested(&self.model, &self.turns, self.level) {
-            self.stop = Some(Stop::AtRest);
+            self.stop = Some(SimulationStop::AtRest);
         }
         self.idle = if self.t > before { 0 } else { self.idle + 1 };
         if self.idle > MOST_IDLE && self.stop.is_none() {
-            self.stop = Some(Stop::Stalled { t: self.t });
+            self.stop = Some(SimulationStop::Stalled { t: self.t });
         }
     }
 
@@ -443,7 +448,7 @@ impl Runner {
     /// Ends the run where it is; turning points noted in the rest of the step are no longer part of
     /// it.
     fn end_at_rest_energy(&mut self) {
-        self.stop = Some(Stop::RestEnergy);
+        self.stop = Some(SimulationStop::RestEnergy);
         while self.turns.last().is_some_and(|turn| turn.t > self.t) {
             self.turns.pop();
         }
@@ -483,8 +488,8 @@ impl Runner {
     }
 }
 
-/// Where the velocity changes sign.
-fn turning_points(v: &[f64], h: f64, end: End) -> Roots {
+/// Sign changes of the velocity.
+fn turning_points(v: &[f64], h: f64, end: StepEndState) -> Roots {
     // A motion at the edge of underflow has come to rest.
     if v[0].abs() > end.variation || end.variation < VANISHING {
         return Roots::new();

@@ -6,9 +6,9 @@
 //! those of the equation, in contact regularised by `regularised`.
 
 use super::kernels::{
-    INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time,
+    INVERSE, per_lane, product, quotient, sine_and_cosine, square, time, waves_of_time,
 };
-use super::series::{Coefficients, HIGHEST_ORDER, Inputs, Terms};
+use super::series::{HIGHEST_ORDER, Inputs, SeriesCoefficients, Terms};
 use super::stretch::{in_contact, in_flight, stretched, stretched_next};
 use crate::impact::model::STEEPNESS;
 
@@ -30,11 +30,12 @@ pub(super) fn flight<const L: usize>(
     inputs: &Inputs<L>,
     order: usize,
     terms: Terms,
-    series: &mut Coefficients<L>,
+    series: &mut SeriesCoefficients<L>,
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_flight(inputs);
-    let Coefficients { place: x, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
+    let SeriesCoefficients { place: x, velocity: v, time: t, scratch, ahead, ahead_of_waves } =
+        series;
     let [drive, counter, x_slope, sine, cosine, scaled_v, slowing_over, slowing_slope, slowing, ..] =
         scratch;
     let [scaled_v_squared_ahead, drive_cosine_ahead, ..] = ahead;
@@ -51,15 +52,15 @@ pub(super) fn flight<const L: usize>(
         counter[0] = inputs.drive[1];
     }
     for n in 0..order {
-        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let factor: [f64; L] = per_lane(|lane| inputs.unit[lane] * INVERSE[n + 1]);
         let v_stretched = stretched(&stretch, v, n);
-        x_slope[n] = each(|lane| inputs.unit[lane] * v_stretched[lane]);
-        x[n + 1] = each(|lane| INVERSE[n + 1] * x_slope[n][lane]);
+        x_slope[n] = per_lane(|lane| inputs.unit[lane] * v_stretched[lane]);
+        x[n + 1] = per_lane(|lane| INVERSE[n + 1] * x_slope[n][lane]);
         if terms.excited && n > 0 {
             waves_of_time(
                 [&mut *drive, &mut *counter],
                 &stretch,
-                &each(|lane| inputs.unit[lane] * inputs.eta[lane] * INVERSE[n]),
+                &per_lane(|lane| inputs.unit[lane] * inputs.eta[lane] * INVERSE[n]),
                 n,
             );
         }
@@ -67,38 +68,39 @@ pub(super) fn flight<const L: usize>(
             sine_and_cosine([&mut *sine, &mut *cosine], x_slope, n, sine_ahead);
         }
         if terms.arctangent {
-            scaled_v[n] = each(|lane| STEEPNESS * v[n][lane]);
+            scaled_v[n] = per_lane(|lane| STEEPNESS * v[n][lane]);
             let scaled_v_squared = square(scaled_v, n, scaled_v_squared_ahead);
-            let mut slowing_over_n: [f64; L] = each(|lane| scaled_v_squared[lane]);
+            let mut slowing_over_n: [f64; L] = per_lane(|lane| scaled_v_squared[lane]);
             if n == 0 {
-                slowing_over_n = each(|lane| slowing_over_n[lane] + 1.0);
+                slowing_over_n = per_lane(|lane| slowing_over_n[lane] + 1.0);
             }
             slowing_over[n] = slowing_over_n;
             if n == 0 {
-                slowing[0] = each(|lane| (scaled_v[0][lane]).atan());
+                slowing[0] = per_lane(|lane| (scaled_v[0][lane]).atan());
             }
             if n > 0 {
                 quotient(
                     [&mut *slowing, &mut *slowing_slope],
-                    &each(|lane| n as f64 * scaled_v[n][lane]),
+                    &per_lane(|lane| n as f64 * scaled_v[n][lane]),
                     slowing_over,
                     n,
                 );
             }
         }
-        let mut force: [f64; L] = each(|lane| -sine[n][lane] - inputs.viscous[lane] * v[n][lane]);
+        let mut force: [f64; L] =
+            per_lane(|lane| -sine[n][lane] - inputs.viscous[lane] * v[n][lane]);
         if n == 0 {
-            force = each(|lane| force[lane] - inputs.dry[lane]);
+            force = per_lane(|lane| force[lane] - inputs.dry[lane]);
         }
         if terms.arctangent {
-            force = each(|lane| force[lane] - inputs.arctangent[lane] * slowing[n][lane]);
+            force = per_lane(|lane| force[lane] - inputs.arctangent[lane] * slowing[n][lane]);
         }
         if terms.excited {
             let drive_cosine = product(drive, cosine, n, drive_cosine_ahead);
-            force = each(|lane| force[lane] + inputs.beta[lane] * drive_cosine[lane]);
+            force = per_lane(|lane| force[lane] + inputs.beta[lane] * drive_cosine[lane]);
         }
         let force_stretched = stretched_next(&stretch, force, &mut force_before);
-        v[n + 1] = each(|lane| factor[lane] * force_stretched[lane]);
+        v[n + 1] = per_lane(|lane| factor[lane] * force_stretched[lane]);
     }
 }
 
@@ -123,11 +125,12 @@ pub(super) fn contact<const L: usize>(
     inputs: &Inputs<L>,
     order: usize,
     terms: Terms,
-    series: &mut Coefficients<L>,
+    series: &mut SeriesCoefficients<L>,
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_contact(inputs);
-    let Coefficients { place: w, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
+    let SeriesCoefficients { place: w, velocity: v, time: t, scratch, ahead, ahead_of_waves } =
+        series;
     let [
         depth,
         t_slope,
@@ -166,15 +169,15 @@ pub(super) fn contact<const L: usize>(
     }
     depth[0] = square(w, 0, depth_ahead);
     for n in 0..order {
-        let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
+        let factor: [f64; L] = per_lane(|lane| inputs.unit[lane] * INVERSE[n + 1]);
         let w_stretched = stretched(&stretch, w, n);
-        t[n + 1] = each(|lane| factor[lane] * w_stretched[lane]);
+        t[n + 1] = per_lane(|lane| factor[lane] * w_stretched[lane]);
         let v_stretched = stretched(&stretch, v, n);
-        w[n + 1] = each(|lane| 0.5 * factor[lane] * v_stretched[lane]);
+        w[n + 1] = per_lane(|lane| 0.5 * factor[lane] * v_stretched[lane]);
         depth[n + 1] = square(w, n + 1, depth_ahead);
-        depth_slope[n] = each(|lane| (n + 1) as f64 * depth[n + 1][lane]);
+        depth_slope[n] = per_lane(|lane| (n + 1) as f64 * depth[n + 1][lane]);
         if terms.excited && n > 0 {
-            t_slope[n - 1] = each(|lane| n as f64 * inputs.eta[lane] * t[n][lane]);
+            t_slope[n - 1] = per_lane(|lane| n as f64 * inputs.eta[lane] * t[n][lane]);
             sine_and_cosine([&mut *drive, &mut *counter], t_slope, n, drive_ahead);
         }
         if n > 0 {
@@ -182,45 +185,46 @@ pub(super) fn contact<const L: usize>(
         }
         fourth[n] = square(depth, n, fourth_ahead);
         if terms.arctangent {
-            scaled_v[n] = each(|lane| STEEPNESS * v[n][lane]);
+            scaled_v[n] = per_lane(|lane| STEEPNESS * v[n][lane]);
             let scaled_v_squared = square(scaled_v, n, scaled_v_squared_ahead);
-            let mut slowing_over_n: [f64; L] = each(|lane| scaled_v_squared[lane]);
+            let mut slowing_over_n: [f64; L] = per_lane(|lane| scaled_v_squared[lane]);
             if n == 0 {
-                slowing_over_n = each(|lane| slowing_over_n[lane] + 1.0);
+                slowing_over_n = per_lane(|lane| slowing_over_n[lane] + 1.0);
             }
             slowing_over[n] = slowing_over_n;
             if n == 0 {
-                slowing[0] = each(|lane| (scaled_v[0][lane]).atan());
+                slowing[0] = per_lane(|lane| (scaled_v[0][lane]).atan());
             }
             if n > 0 {
                 quotient(
                     [&mut *slowing, &mut *slowing_slope],
-                    &each(|lane| n as f64 * scaled_v[n][lane]),
+                    &per_lane(|lane| n as f64 * scaled_v[n][lane]),
                     slowing_over,
                     n,
                 );
             }
         }
-        let mut slow_n: [f64; L] = each(|lane| sine[n][lane]);
+        let mut slow_n: [f64; L] = per_lane(|lane| sine[n][lane]);
         if n == 0 {
-            slow_n = each(|lane| slow_n[lane] + inputs.dry[lane]);
+            slow_n = per_lane(|lane| slow_n[lane] + inputs.dry[lane]);
         }
         if terms.arctangent {
-            slow_n = each(|lane| slow_n[lane] + inputs.arctangent[lane] * slowing[n][lane]);
+            slow_n = per_lane(|lane| slow_n[lane] + inputs.arctangent[lane] * slowing[n][lane]);
         }
         if terms.excited {
             let drive_cosine = product(drive, cosine, n, drive_cosine_ahead);
-            slow_n = each(|lane| slow_n[lane] - inputs.beta[lane] * drive_cosine[lane]);
+            slow_n = per_lane(|lane| slow_n[lane] - inputs.beta[lane] * drive_cosine[lane]);
         }
         slow[n] = slow_n;
         let w_slow = product(w, slow, n, w_slow_ahead);
-        let mut force: [f64; L] = each(|lane| -inputs.gamma[lane] * fourth[n][lane] - w_slow[lane]);
+        let mut force: [f64; L] =
+            per_lane(|lane| -inputs.gamma[lane] * fourth[n][lane] - w_slow[lane]);
         if terms.damped_contact {
             let v_fourth = product(v, fourth, n, v_fourth_ahead);
-            force = each(|lane| force[lane] - inputs.mu[lane] * v_fourth[lane]);
+            force = per_lane(|lane| force[lane] - inputs.mu[lane] * v_fourth[lane]);
         }
         let force_stretched = stretched_next(&stretch, force, &mut force_before);
-        v[n + 1] = each(|lane| {
+        v[n + 1] = per_lane(|lane| {
             factor[lane] * force_stretched[lane] - inputs.viscous[lane] * depth[n + 1][lane]
         });
     }
@@ -230,7 +234,7 @@ pub(super) fn contact<const L: usize>(
 mod tests {
     use std::collections::BTreeMap;
 
-    use super::super::series::{Series, TIME_TERMS};
+    use super::super::series::{LaneSeries, TIME_TERMS};
     use super::*;
     use crate::expr::{Expr, parse_expression};
     use crate::impact::model::Side;
@@ -307,7 +311,7 @@ mod tests {
         (0..rates.len()).map(|place| tape.series(place).to_vec()).collect()
     }
 
-    fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
+    fn assert_same(own: &LaneSeries<1>, other: &[f64], what: &str) {
         let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         for (n, (own, other)) in own.iter().zip(other).enumerate() {
             assert!(
@@ -318,8 +322,8 @@ mod tests {
         }
     }
 
-    /// What stands in this file is what follows from equation (7) as an expression, coefficient by
-    /// coefficient.
+    /// The recurrences of this file are compared with the series of equation (7) as an expression,
+    /// coefficient by coefficient.
     #[test]
     fn the_series_are_those_of_the_equation() {
         let acceleration = parse_expression(EQUATION).expect("equation (7)");
@@ -334,7 +338,7 @@ mod tests {
                 damped_contact: bits & 4 != 0,
             };
             let mut now = inputs(terms);
-            let mut series = Coefficients::<1>::new();
+            let mut series = SeriesCoefficients::<1>::new();
             contact(&now, ORDER, terms, &mut series);
             let start = [("w", 0.3), ("x'", 0.02), ("t", 0.7)];
             let other = by_expressions(start, &in_contact_rates, (&now, in_contact(&now)));

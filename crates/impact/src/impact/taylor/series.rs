@@ -1,12 +1,12 @@
-//! What the series of a step start from, where they are kept, and their values at its end.
+//! Initial values and storage of the series of a step, and their values at its end.
 //!
 //! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched
 //! within a step (`stretch`). `L` motions go through the same operations side by side; each gets
 //! bit for bit what it would get alone.
 
 use super::angle::sines_and_cosines;
-use super::kernels::each;
-use super::{Equation, Loaded};
+use super::kernels::per_lane;
+use super::{Loaded, StepEquation};
 use crate::impact::polynomial::lanes::{values, values_of, variations};
 
 /// Highest order of a series.
@@ -15,14 +15,14 @@ pub(super) const HIGHEST_ORDER: usize = 30;
 /// Coefficients of the time in flight.
 pub(super) const TIME_TERMS: usize = 4;
 
-/// How many of the last coefficients decide on the length of a step: a series may have gaps. At
-/// touch v is a series in s^5, for v' = -gamma w^4 and w' = v/2.
+/// Number of last coefficients that decide on the length of a step: a series may have gaps. At
+/// touch v is a series in s^5, because v' = -gamma w^4 and w' = v/2.
 pub(super) const LAST: usize = 5;
 
 /// Coefficients of a series, those of `L` motions side by side.
-pub(super) type Series<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
+pub(super) type LaneSeries<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
 
-/// Which terms of equation (7) are on in at least one of the motions.
+/// The terms of equation (7) that act in at least one of the motions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Terms {
     pub(super) arctangent: bool,
@@ -40,8 +40,8 @@ impl Terms {
     }
 }
 
-/// What the series of `L` motions start from: where they are now, and their parameters. In contact
-/// everything is seen in the mirror of its side.
+/// Initial values of the series of `L` motions: their states and parameters. In contact everything
+/// is mirrored to the right side.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Inputs<const L: usize> {
@@ -67,10 +67,10 @@ pub(super) struct Inputs<const L: usize> {
     pub(super) eta: [f64; L],
     pub(super) gamma: [f64; L],
     pub(super) mu: [f64; L],
-    /// How large the motion is, and what the first term left out of a step may be.
+    /// The size of the motion, and the bound of the first term left out of a step.
     pub(super) size: [f64; L],
     pub(super) allowed: [f64; L],
-    /// Between which x or w stays in this phase.
+    /// The bounds of x or w in this phase.
     pub(super) lower: [f64; L],
     pub(super) upper: [f64; L],
 }
@@ -105,24 +105,24 @@ impl<const L: usize> Inputs<L> {
 /// Series that no one reads but the equations.
 const SCRATCH: usize = 18;
 
-/// What a step is made of: two or three series, all but the first two scratch outside contact. No
+/// The series of a step: two or three of them, all but the first two scratch outside contact. No
 /// coefficient of eight lanes lies across two lines of the cache.
 #[repr(align(64))]
-pub(super) struct Coefficients<const L: usize> {
+pub(super) struct SeriesCoefficients<const L: usize> {
     /// x in flight, w in contact.
-    pub(super) place: Series<L>,
-    pub(super) velocity: Series<L>,
+    pub(super) place: LaneSeries<L>,
+    pub(super) velocity: LaneSeries<L>,
     /// Time since the start of the step.
-    pub(super) time: Series<L>,
-    pub(super) scratch: [Series<L>; SCRATCH],
-    /// What is known of the next coefficients of products, and of sines and cosines. They are kept
-    /// here because as variables of the function they make eight motions side by side slower by 8
-    /// %.
+    pub(super) time: LaneSeries<L>,
+    pub(super) scratch: [LaneSeries<L>; SCRATCH],
+    /// The known parts of the next coefficients of products, and of sines and cosines. They are
+    /// kept here because as variables of the function they make eight motions side by side slower
+    /// by 8 %.
     pub(super) ahead: [[f64; L]; SCRATCH],
     pub(super) ahead_of_waves: [[[f64; L]; 2]; 2],
 }
 
-impl<const L: usize> Coefficients<L> {
+impl<const L: usize> SeriesCoefficients<L> {
     pub(super) fn new() -> Self {
         let zero = [[0.0; L]; HIGHEST_ORDER + 1];
         Self {
@@ -147,16 +147,16 @@ pub(super) struct Ends<const L: usize> {
     pub(super) cosine: [f64; L],
 }
 
-/// Those of one motion.
+/// The values of one motion at the end of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct End {
+pub(super) struct StepEndState {
     pub(super) place: f64,
     pub(super) velocity: f64,
     /// The time that the step takes.
     pub(super) time: f64,
     /// A bound on the change of the velocity within the step.
     pub(super) variation: f64,
-    /// Of x, in contact as seen in the mirror.
+    /// Sine and cosine of x, mirrored in contact.
     pub(super) sine: f64,
     pub(super) cosine: f64,
 }
@@ -167,8 +167,8 @@ impl<const L: usize> Ends<L> {
         Self { place: zero, velocity: zero, time: zero, variation: zero, sine: zero, cosine: zero }
     }
 
-    pub(super) fn lane(&self, lane: usize) -> End {
-        End {
+    pub(super) fn lane(&self, lane: usize) -> StepEndState {
+        StepEndState {
             place: self.place[lane],
             velocity: self.velocity[lane],
             time: self.time[lane],
@@ -179,7 +179,7 @@ impl<const L: usize> Ends<L> {
     }
 }
 
-impl<const L: usize> Coefficients<L> {
+impl<const L: usize> SeriesCoefficients<L> {
     /// The series of one motion: x or w, v, t.
     pub(super) fn lane(&self, order: usize, lane: usize) -> Loaded {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
@@ -193,15 +193,20 @@ impl<const L: usize> Coefficients<L> {
 
     /// Place, velocity and time at these points; the time is a short polynomial in flight.
     #[inline(always)]
-    pub(super) fn values(&self, at: &[f64; L], order: usize, equation: Equation) -> [[f64; L]; 3] {
+    pub(super) fn values(
+        &self,
+        at: &[f64; L],
+        order: usize,
+        equation: StepEquation,
+    ) -> [[f64; L]; 3] {
         let order = order.min(HIGHEST_ORDER);
         let (place, velocity) = (&self.place[..=order], &self.velocity[..=order]);
         match equation {
-            Equation::Flight => {
+            StepEquation::Flight => {
                 let [place, velocity] = values_of([place, velocity], at);
                 [place, velocity, values(&self.time[..TIME_TERMS], at)]
             }
-            Equation::Contact => values_of([place, velocity, &self.time[..=order]], at),
+            StepEquation::Contact => values_of([place, velocity, &self.time[..=order]], at),
         }
     }
 
@@ -212,13 +217,13 @@ impl<const L: usize> Coefficients<L> {
         inputs: &Inputs<L>,
         lengths: &[f64; L],
         order: usize,
-        equation: Equation,
+        equation: StepEquation,
     ) -> Ends<L> {
         let order = order.min(HIGHEST_ORDER);
         let [place, velocity, time] = self.values(lengths, order, equation);
         let angle = match equation {
-            Equation::Flight => place,
-            Equation::Contact => each(|lane| inputs.base[lane] + place[lane] * place[lane]),
+            StepEquation::Flight => place,
+            StepEquation::Contact => per_lane(|lane| inputs.base[lane] + place[lane] * place[lane]),
         };
         let (sine, cosine) = sines_and_cosines(&angle);
         Ends {

@@ -1,7 +1,7 @@
-//! How long a step may be, from the last coefficients of a series.
+//! The length of a step, from the last coefficients of a series.
 
 use super::kernels::INVERSE;
-use super::series::{LAST, Series};
+use super::series::{LAST, LaneSeries};
 
 /// 2^52: a number to whose last digits whole numbers below it can be added, and taken off again.
 const WHOLE_NUMBERS: f64 = 4_503_599_627_370_496.0;
@@ -10,7 +10,7 @@ const WHOLE_NUMBERS: f64 = 4_503_599_627_370_496.0;
 /// of convergence that the last coefficients of the velocity tell: |v_n| ~ size / radius^n.
 #[inline(always)]
 pub(super) fn step_lengths<const L: usize>(
-    velocity: &Series<L>,
+    velocity: &LaneSeries<L>,
     order: usize,
     size: &[f64; L],
     allowed: &[f64; L],

@@ -13,7 +13,7 @@
 //! in flight up to 1.6. They decide about the length of the steps alone: the series are those of
 //! the equation in any variable, and a step is as long as its own coefficients allow.
 
-use super::series::{Inputs, Series};
+use super::series::{Inputs, LaneSeries};
 
 /// p and q of the steps of free flight.
 #[inline(always)]
@@ -41,7 +41,7 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
         let (w, v) = (root[lane] / largest[lane], velocity[lane] / fastest[lane]);
         let (w, v) = (if w < 1.0 { w } else { 1.0 }, if v < 1.0 { v } else { 1.0 });
         let v = if v > -1.0 { v } else { -1.0 };
-        // Where it is in s: -1 at the touch, 0 where it is deepest, 1 at the release.
+        // The position in s: -1 at the touch, 0 at the greatest depth, 1 at the release.
         let place = -v * (1.0 - 0.8 * w + 0.12 * (w * w) * (w * w) * w);
         let inside = (1.0 - place * place) * (1.0 - place * place);
         p[lane] = if fits { 0.64 * place * inside * units } else { 0.0 };
@@ -54,7 +54,7 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
 #[inline(always)]
 pub(super) fn stretched<const L: usize>(
     [p, q]: &[[f64; L]; 2],
-    series: &Series<L>,
+    series: &LaneSeries<L>,
     n: usize,
 ) -> [f64; L] {
     let mut result = series[n];
@@ -67,8 +67,8 @@ pub(super) fn stretched<const L: usize>(
     result
 }
 
-/// The same of a series that is not kept: from its coefficient n and the two before it, the last
-/// one first.
+/// The next coefficient of a series that is not kept: from its coefficient n and the two before it,
+/// the last one first.
 #[inline(always)]
 pub(super) fn stretched_next<const L: usize>(
     [p, q]: &[[f64; L]; 2],

@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 1e-14;
 /// Relative tolerance where there are many of them.
 const TOLERANCE_OF_PIECES: f64 = 1e-12;
 
-/// Why there is no period.
+/// The reason why there is no period.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PeriodError {
@@ -70,7 +70,7 @@ pub enum PeriodError {
         /// The least amplitude, to six digits.
         least: f64,
     },
-    /// No second turning point.
+    /// There is no second turning point.
     #[error(
         "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}{}",
         periodic_elsewhere(range)
@@ -78,7 +78,7 @@ pub enum PeriodError {
     Escapes {
         /// The release point.
         start: f64,
-        /// How far the search went.
+        /// The position that the search has reached.
         searched: f64,
         /// The range of periodic motions, in words.
         range: Option<String>,
@@ -90,7 +90,7 @@ pub enum PeriodError {
     RunsAway {
         /// The release point.
         start: f64,
-        /// When.
+        /// The time.
         time: f64,
     },
     /// Released farther out than motions come back from, where what becomes of this one has no
@@ -113,7 +113,8 @@ pub enum PeriodError {
         /// The unstable equilibrium.
         place: f64,
     },
-    /// So close to the separatrix that rounding decides how long the motion stays there.
+    /// The release is so close to the separatrix that rounding decides how long the motion stays
+    /// there.
     #[error(
         "released at rest from x = {start}, the motion is too close to the separatrix of the unstable equilibrium x = {place} for its \
          period to be computed: on the separatrix it never comes back"
@@ -127,7 +128,7 @@ pub enum PeriodError {
     /// A place in the way that no motion passes.
     #[error("the motion runs into x = {place}, where the force has no finite value")]
     Pole {
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// The force is beyond all numbers where the motion leads.
@@ -135,9 +136,9 @@ pub enum PeriodError {
         "the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308"
     )]
     Overflow {
-        /// Where.
+        /// The position.
         place: f64,
-        /// What is beyond, in words.
+        /// The part of the force that overflows, in words.
         term: String,
     },
     /// The force changes so often along the motion that its period would take too long.
@@ -177,7 +178,7 @@ impl PeriodError {
         }
     }
 
-    /// The same where positions were distances from `origin`.
+    /// Returns the error with `origin` added to all positions.
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
         match &mut self {
@@ -206,12 +207,12 @@ impl PeriodError {
 
 /// A force of the position alone, and where it may turn fast.
 #[derive(Clone, Copy)]
-pub struct Force<'a> {
+pub struct PiecewiseForce<'a> {
     value: &'a dyn Fn(f64) -> f64,
     cuts: &'a dyn Fn(f64, f64) -> Vec<f64>,
 }
 
-impl<'a> Force<'a> {
+impl<'a> PiecewiseForce<'a> {
     /// A force without corners or bumps narrower than the motion.
     pub fn smooth(value: &'a dyn Fn(f64) -> f64) -> Self {
         Self { value, cuts: &|_, _| vec![] }
@@ -227,7 +228,7 @@ impl<'a> Force<'a> {
     }
 
     /// The force at a position.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn value_at(&self, x: f64) -> f64 {
         (self.value)(x)
     }
 
@@ -246,11 +247,11 @@ impl<'a> Force<'a> {
 }
 
 /// `dt/dphi = 1/sqrt(2 g)` of the substitution above, piece by piece between the cuts of the force.
-pub struct Rates<'a> {
-    force: &'a Force<'a>,
-    /// By how much longer an instant takes than without inertia of position.
+pub struct TimePerAngle<'a> {
+    force: &'a PiecewiseForce<'a>,
+    /// Time dilation sqrt(M(x)) of a position-dependent mass, one if there is none.
     weight: &'a dyn Fn(f64) -> f64,
-    /// From the far turning point to the start.
+    /// Positions from the far turning point to the start.
     pub knots: Vec<f64>,
     /// phi at the knots, from -pi/2 to pi/2.
     pub angles: Vec<f64>,
@@ -261,10 +262,10 @@ pub struct Rates<'a> {
     below_end: Vec<f64>,
 }
 
-impl<'a> Rates<'a> {
+impl<'a> TimePerAngle<'a> {
     /// Between two turning points, the first of them the start.
     pub fn new(
-        force: &'a Force<'a>,
+        force: &'a PiecewiseForce<'a>,
         weight: &'a dyn Fn(f64) -> f64,
         start: f64,
         end: f64,
@@ -336,7 +337,7 @@ impl<'a> Rates<'a> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
         let mean_force = |from: f64, to: f64| {
-            integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0)
+            integral(&|u| self.force.value_at(from + (to - from) * u), 0.0, 1.0, 0.0)
         };
         // From the nearer end: beside a pole the distance from it counts, not the position. Or from
         // the middle, for the same reason.
@@ -382,7 +383,7 @@ pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
 /// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a
 /// force that is infinite at zero is smooth.
 fn graded(knots: &[f64]) -> Vec<f64> {
-    /// What lies closer than this, relatively, adds less to the period than its rounding.
+    /// Relative distance below which a piece adds less to the period than its rounding.
     const CLOSEST: f64 = 1e-15;
     const RATIO: f64 = 0.25;
     let (end, start) = (knots[0], knots[knots.len() - 1]);
@@ -409,7 +410,7 @@ fn graded(knots: &[f64]) -> Vec<f64> {
 /// # Errors
 /// More knots than can be waited for.
 fn resolved(
-    force: &Force,
+    force: &PiecewiseForce,
     knots: Vec<f64>,
     infinite_middle: bool,
 ) -> Result<Vec<f64>, PeriodError> {
@@ -419,7 +420,9 @@ fn resolved(
     let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
     for pair in knots.windows(2) {
         let in_the_middle = infinite_middle && pair.contains(&0.0);
-        if in_the_middle || settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
+        if in_the_middle
+            || converged_value(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some()
+        {
             found.push(pair[1]);
             continue;
         }
@@ -428,7 +431,9 @@ fn resolved(
             if found.len() + open.len() > MOST_KNOTS {
                 return Err(PeriodError::Waves);
             }
-            if halvings == HALVINGS || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
+            if halvings == HALVINGS
+                || converged_value(force.value, from, to, 0.0, FEW_PANELS).is_some()
+            {
                 found.push(to);
                 continue;
             }
@@ -454,18 +459,19 @@ fn integral(
     integral_within(function, [from, to], negligible, MOST)
 }
 
-/// As [`integral`], by so many panels at most where they are halved one by one.
+/// As [`integral`], by this many panels at most where they are halved one by one.
 fn integral_within(
     function: &dyn Fn(f64) -> f64,
     [from, to]: [f64; 2],
     negligible: f64,
     most_panels: usize,
 ) -> Result<f64, QuadratureError> {
-    if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
+    if let Some(value) = converged_value(function, from, to, negligible, MOST_PANELS) {
         return Ok(value);
     }
     match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
-        // Where pull and push cancel, the integral is as good as the forces in it allow.
+        // If attraction and repulsion cancel, the integral is as accurate as the forces in it
+        // allow.
         Err(QuadratureError::NotConverged { value, error_estimate, .. })
             if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) =>
         {
@@ -477,7 +483,7 @@ fn integral_within(
 
 /// The value at which the integral settles while panels are doubled, or from which on doubling no
 /// longer brings it closer, which is where the rounding of the force itself begins.
-fn settled(
+fn converged_value(
     function: &dyn Fn(f64) -> f64,
     from: f64,
     to: f64,
@@ -518,34 +524,39 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::period::{Force, turning_point};
+/// use lindstedt::numeric::period::{PiecewiseForce, turning_point};
 ///
-/// let end = turning_point(&Force::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
+/// let end = turning_point(&PiecewiseForce::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
 /// let energy = |x: f64| x * x / 2.0 + x.powi(3) / 6.0;
 /// assert!(end < -0.5 && (energy(end) - energy(0.5)).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
 /// ```
-pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+pub fn turning_point(
+    force: &PiecewiseForce,
+    equilibrium: f64,
+    start: f64,
+) -> Result<f64, PeriodError> {
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
-    /// So many amplitudes away it is not the waves on the way that are in question, as over one
-    /// summit of a pendulum after the other.
+    /// Number of amplitudes beyond which the waves on the way do not matter, as over one summit of
+    /// a pendulum after the other.
     const FAR: f64 = 100.0;
-    /// How often a stretch on which the force has no integral is halved.
+    /// Number of halvings of an interval on which the force has no integral.
     const HALVINGS: u32 = 60;
     /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
     const FEW_PANELS: usize = 120;
-    /// About a second; a force of a hundred thousand waves takes less.
+    /// Largest number of evaluations, about a second; a force of a hundred thousand waves takes
+    /// less.
     const MOST_EVALUATIONS: u64 = 20_000_000;
     let evaluations = Cell::new(0_u64);
     let value = |x: f64| {
         evaluations.set(evaluations.get() + 1);
-        force.at(x)
+        force.value_at(x)
     };
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
-    if force.at(start) * side <= 0.0 || amplitude == 0.0 {
+    if force.value_at(start) * side <= 0.0 || amplitude == 0.0 {
         return Err(PeriodError::PushedAway { start, equilibrium, range: None });
     }
     if is_symmetric(force, equilibrium, amplitude) {
@@ -617,28 +628,28 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
 /// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image
 /// of the start is then the turning point to the last digit, which no root finder gives near a
 /// separatrix.
-fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
+fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> bool {
     /// The search for a turning point does not pass a place where the force is infinite: there
     /// symmetry may be lost in rounding.
     const ROUNDING: f64 = 1e-12;
-    let infinite = grows_towards_zero(&|y| force.at(equilibrium + y), amplitude);
+    let infinite = grows_towards_zero(&|y| force.value_at(equilibrium + y), amplitude);
     let rounding = if infinite { ROUNDING } else { 0.0 };
     let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
     let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
     places.extend(knots.iter().map(|knot| knot - equilibrium));
     places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
     places.into_iter().filter(|&x| x != 0.0).all(|x| {
-        let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
+        let (here, there) = (force.value_at(equilibrium + x), force.value_at(equilibrium - x));
         (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
     })
 }
 
 /// A step cut where the force first pushes the motion back and then on again, so that the kinetic
 /// energy has no lowest point between two ends.
-fn where_it_turns(force: &Force, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
+fn where_it_turns(force: &PiecewiseForce, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
-    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();
+    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.value_at(place(k)) * side > 0.0).collect();
     if drives.windows(2).all(|pair| pair[0] || !pair[1]) {
         return vec![(from, to)];
     }

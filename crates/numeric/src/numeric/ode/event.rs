@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 use super::State;
 use super::root::{find_minimum, find_root};
 use super::sample::Sample;
-use super::trajectory::Step;
+use super::trajectory::TrajectoryStep;
 
 /// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that
 /// counts, and what is to happen there.
@@ -23,26 +23,26 @@ pub struct Event<'a, S = State> {
     pub(super) action: Action<'a, S>,
 }
 
-/// Which crossings of zero count.
+/// The direction of a zero crossing that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// From negative to positive.
+    /// Crossings from negative to positive.
     Rising,
-    /// From positive to negative.
+    /// Crossings from positive to negative.
     Falling,
     /// Both.
     Either,
 }
 
-/// What happens at an event.
+/// The action at an event.
 pub enum Action<'a, S = State> {
-    /// It is listed in the trajectory; the run goes on.
+    /// The event is recorded, and the run continues.
     Record,
-    /// It is listed and the run ends there.
+    /// The event is recorded, and the run ends.
     Stop,
-    /// It is listed, and the run restarts with another right side and possibly another state: the
-    /// closure gets the state at the event and answers the index of the phase to go on with and the
-    /// state to go on from (its time is not used).
+    /// The event is recorded, and the run restarts with another right side and possibly another
+    /// state: the closure takes the state at the event and returns the index of the next phase and
+    /// its initial state (whose time is not used).
     Switch(Box<dyn Fn(S) -> (usize, S) + 'a>),
 }
 
@@ -74,12 +74,12 @@ impl<'a, S> Event<'a, S> {
         Self { function: Box::new(function), direction: Direction::Either, action }
     }
 
-    /// Only crossings from negative to positive.
+    /// Counts only crossings from negative to positive.
     pub fn rising(self) -> Self {
         Self { direction: Direction::Rising, ..self }
     }
 
-    /// Only crossings from positive to negative.
+    /// Counts only crossings from positive to negative.
     pub fn falling(self) -> Self {
         Self { direction: Direction::Falling, ..self }
     }
@@ -107,7 +107,7 @@ pub(super) struct NotFinite;
 
 /// Follows the sign of one event function from step to step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Watch {
+pub(super) struct SignTracker {
     /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the
     /// function reached zero at the very end of a step: from there the next sign is the start, not
     /// a crossing.
@@ -116,7 +116,7 @@ pub(super) struct Watch {
     starts_on_surface: bool,
 }
 
-impl Watch {
+impl SignTracker {
     /// The fractions of the step at which the event happens, in order, and whether its function
     /// rises there. `moved` is given for the first step of a phase: its start, moved on at the
     /// rates that the values have there.
@@ -126,7 +126,7 @@ impl Watch {
     /// direction that counts, it is left at once.
     pub(super) fn crossings<S: Sample>(
         &mut self,
-        step: &Step<S>,
+        step: &TrajectoryStep<S>,
         event: &Event<S>,
         moved: Option<&S>,
     ) -> Result<Vec<(f64, bool)>, NotFinite> {
@@ -143,9 +143,9 @@ impl Watch {
         let starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
         if starts_on_surface {
             self.starts_on_surface = true;
-            // What rounding leaves of the values has any sign, and so has the error of the
-            // polynomial where what the function depends on is at rest: it leaves as a square of
-            // time at least.
+            // Rounding errors have any sign, and so has the error of the polynomial if the
+            // arguments of the event function are at rest: the function leaves zero as the square
+            // of time at least.
             let rounding = rounding_at(event, &step.state_at(0.0));
             let largest =
                 samples.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
@@ -227,8 +227,7 @@ fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
 }
 
-/// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it
-/// lies beyond zero.
+/// Inserts the minimum of |value| between samples of one sign if it lies beyond zero.
 fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f64) {
     let mut misses = Vec::new();
     let mut search = |from: f64, to: f64, sign: f64| {
@@ -280,15 +279,20 @@ mod tests {
     use super::*;
 
     /// A step of length 1 with x from `from` to `to` in a straight line.
-    fn line(from: f64, to: f64) -> Step<State> {
+    fn line(from: f64, to: f64) -> TrajectoryStep<State> {
         let start = State { t: 0.0, x: from, v: 0.0 };
-        Step::new(0, start, 1.0, FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]))
+        TrajectoryStep::new(
+            0,
+            start,
+            1.0,
+            FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
+        )
     }
 
     /// The crossings of x = 0 in such steps, one after the other from the start of a phase.
     fn crossings(steps: &[(f64, f64)]) -> Vec<Vec<f64>> {
         let event = Event::record(|_, x, _| x);
-        let mut watch = Watch::default();
+        let mut watch = SignTracker::default();
         let mut follow = |(index, &(from, to)): (usize, &(f64, f64))| {
             let step = line(from, to);
             let moved = (index == 0).then(|| step.state_at(1.0));
@@ -322,7 +326,7 @@ mod tests {
             let step = line(0.0, -1.0);
             let moved = step.state_at(1.0);
             assert_eq!(
-                Watch::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
+                SignTracker::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
                 found
             );
         }

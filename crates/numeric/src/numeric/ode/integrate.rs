@@ -11,15 +11,17 @@ use differential_equations::status::Status;
 use thiserror::Error;
 
 use super::State;
-use super::event::{Action, Event, Watch};
-use super::sample::{Point, Sample, Values};
+use super::event::{Action, Event, SignTracker};
+use super::sample::{Point, Sample, StateVector};
 use super::scheme::{Scheme, explicit, implicit};
-use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
+use super::trajectory::{
+    EventOccurrence, FRACTIONS, StopReason, TERMS, Trajectory, TrajectoryStep,
+};
 use crate::interrupt::Interrupt;
 
-/// How closely and how long to integrate.
+/// Tolerances and limits of an integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct IntegrationOptions {
     /// Error allowed per step relative to the size of each value.
     pub relative_tolerance: f64,
     /// Error allowed per step beside it, in the units of the values: choose it well below their
@@ -33,19 +35,19 @@ pub struct Options {
     /// Whether the motion has parts of very different speed: an implicit method of lower order then
     /// takes longer steps.
     pub stiff: bool,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
-impl Default for Options {
+impl Default for IntegrationOptions {
     /// Tolerances of 1e-10, 200 000 steps of any length.
     fn default() -> Self {
         Self::with_tolerance(1e-10)
     }
 }
 
-impl Options {
-    /// The same relative and absolute tolerance, the rest as in the default.
+impl IntegrationOptions {
+    /// Options with one number as relative and absolute tolerance, the rest as in the default.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self {
             relative_tolerance: tolerance,
@@ -59,15 +61,15 @@ impl Options {
 }
 
 /// A smooth right side and the events to look for while it is in force.
-pub struct Phase<'a, S: Sample = State> {
-    rates: Box<Rates<'a, S>>,
+pub struct IntegrationPhase<'a, S: Sample = State> {
+    rates: Box<RateFunction<'a, S>>,
     events: Vec<Event<'a, S>>,
 }
 
 /// Writes the rates of the values at a time.
-type Rates<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
+type RateFunction<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
 
-impl<'a> Phase<'a> {
+impl<'a> IntegrationPhase<'a> {
     /// The acceleration g(t, x, v) and the events of this phase.
     pub fn new(acceleration: impl Fn(f64, f64, f64) -> f64 + 'a, events: Vec<Event<'a>>) -> Self {
         let rates = Box::new(first_order(acceleration));
@@ -82,7 +84,7 @@ fn first_order(
     move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
 }
 
-/// What makes a run impossible from the outset. A run that began keeps what it has, see
+/// An error that prevents a run from the outset. A run that began keeps what it has, see
 /// [`StopReason`].
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -128,7 +130,7 @@ pub enum IntegrationError {
         "rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain"
     )]
     RateNotFinite {
-        /// Which.
+        /// Index of the value.
         index: usize,
         /// Time of the start.
         t: f64,
@@ -156,7 +158,7 @@ pub enum IntegrationError {
     UnknownPhase {
         /// The index asked for.
         phase: usize,
-        /// How many there are.
+        /// Number of phases.
         count: usize,
     },
 }
@@ -173,9 +175,9 @@ pub enum IntegrationError {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Options, State, integrate};
+/// use lindstedt::numeric::ode::{IntegrationOptions, State, integrate};
 ///
-/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &Options::default())?;
+/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &IntegrationOptions::default())?;
 /// assert!((path.end().x - 3.0_f64.cos()).abs() < 1e-8);
 /// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 /// ```
@@ -184,10 +186,10 @@ pub fn integrate<'a>(
     start: State,
     end_time: f64,
     events: &[Event<'a>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+    run(&[(&rates, events)], 0, start, end_time, StepLimits::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
 }
 
@@ -200,29 +202,29 @@ pub fn integrate<'a>(
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Event, Options, Phase, State, integrate_phases};
+/// use lindstedt::numeric::ode::{Event, IntegrationOptions, IntegrationPhase, State, integrate_phases};
 ///
 /// // Free fall from a height of 1 until a spring of stiffness 100 is met at x = 0.
 /// let met = Event::switch(|_t, x, _v| x, |state| (1, State { x: 0.0, ..state })).falling();
-/// let fall = Phase::new(|_t, _x, _v| -1.0, vec![met]);
+/// let fall = IntegrationPhase::new(|_t, _x, _v| -1.0, vec![met]);
 /// let deepest = Event::stop(|_t, _x, v| v).rising();
-/// let spring = Phase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
+/// let spring = IntegrationPhase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
 /// let start = State { t: 0.0, x: 1.0, v: 0.0 };
-/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &Options::default())?;
+/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &IntegrationOptions::default())?;
 /// let depth = -path.end().x;
 /// assert!((50.0 * depth * depth - (1.0 + depth)).abs() < 1e-8); // energy of the spring, work of the weight
 /// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 /// ```
 pub fn integrate_phases(
-    phases: &[Phase],
+    phases: &[IntegrationPhase],
     first: usize,
     start: State,
     end_time: f64,
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, IntegrationError> {
-    let parts: Vec<Part<State>> =
+    let parts: Vec<PhaseFunctions<State>> =
         phases.iter().map(|phase| (&*phase.rates as _, phase.events.as_slice())).collect();
-    run(&parts, first, start, end_time, Looks::NOWHERE, options)
+    run(&parts, first, start, end_time, StepLimits::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
 }
 
@@ -231,13 +233,13 @@ pub fn integrate_phases(
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Action, Event, Options, Point, integrate_first_order};
+/// use lindstedt::numeric::ode::{Action, Event, IntegrationOptions, Point, integrate_first_order};
 ///
 /// // Euler's equations of a body that turns freely: energy and angular momentum are kept.
 /// let spin = |_t: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[2] * w[0], -w[0] * w[1]];
 /// let start = Point { t: 0.0, y: [0.1, 1.0, 0.2] };
 /// let turned = Event::new(|point: &Point<[f64; 3]>| point.y[1], Action::Record).falling();
-/// let path = integrate_first_order(spin, start, 20.0, &[turned], &Options::with_tolerance(1e-12))?;
+/// let path = integrate_first_order(spin, start, 20.0, &[turned], &IntegrationOptions::with_tolerance(1e-12))?;
 /// let energy = |w: [f64; 3]| 2.0 * w[0] * w[0] + 2.0 * w[1] * w[1] + 2.0 * w[2] * w[2];
 /// assert!(path.samples(100).all(|point| (energy(point.y) - energy(start.y)).abs() < 1e-10));
 /// assert!(!path.occurrences().is_empty());
@@ -246,55 +248,55 @@ pub fn integrate_phases(
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn integrate_first_order<'a, Y: Values>(
+pub fn integrate_first_order<'a, Y: StateVector>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
     events: &[Event<'a, Point<Y>>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+    run(&[(&rates, events)], 0, start, end_time, StepLimits::NOWHERE, options)
 }
 
 /// As [`integrate_first_order`], with steps that end where they have to.
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn integrate_through<'a, Y: Values>(
+pub fn integrate_through<'a, Y: StateVector>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
-    looks: Looks<Point<Y>>,
+    looks: StepLimits<Point<Y>>,
     events: &[Event<'a, Point<Y>>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
     run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
 
-/// What ends a step beside its error.
-pub struct Looks<'a, S> {
+/// Conditions that end a step beside its error.
+pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
-    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for
-    /// all of it.
-    pub kept: Option<&'a Kept<'a, S>>,
+    /// Returns the fraction of a step that may be kept, from the step as a function of its
+    /// fraction; `None` keeps all of it.
+    pub kept: Option<&'a AcceptedFraction<'a, S>>,
 }
 
-/// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of
-/// it.
-pub type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
+/// A function that returns the fraction of a step that may be kept, from the step as a function of
+/// its fraction; `None` keeps all of it.
+pub type AcceptedFraction<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
 
-impl<S> Looks<'_, S> {
+impl<S> StepLimits<'_, S> {
     const NOWHERE: Self = Self { critical: &[], kept: None };
 }
 
-impl<S> Clone for Looks<'_, S> {
+impl<S> Clone for StepLimits<'_, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S> Copy for Looks<'_, S> {}
+impl<S> Copy for StepLimits<'_, S> {}
 
 /// The error in the words of displacement and velocity.
 fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
@@ -309,19 +311,19 @@ fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationEr
     }
 }
 
-type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
+type PhaseFunctions<'r, 'a, S> = (&'r RateFunction<'r, S>, &'r [Event<'a, S>]);
 
 /// Switches in a row without progress of time (beyond rounding) after which the run is called
 /// stalled.
 const MAXIMUM_IDLE_SWITCHES: usize = 16;
 
 fn run<S: Sample>(
-    parts: &[Part<S>],
+    parts: &[PhaseFunctions<S>],
     first: usize,
     start: S,
     end_time: f64,
-    looks: Looks<S>,
-    options: &Options,
+    looks: StepLimits<S>,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
     let unknown = |phase: usize| IntegrationError::UnknownPhase { phase, count: parts.len() };
@@ -346,7 +348,7 @@ fn run<S: Sample>(
     loop {
         let &(rates, events) = parts.get(phase).ok_or(unknown(phase))?;
         let equations =
-            Counted::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
+            CountedRates::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
         let begin = trajectory.end.time();
         let leg = Leg { equations, phase, events, end_time, looks, options };
         let end = match options.stiff {
@@ -379,7 +381,11 @@ fn run<S: Sample>(
     Ok(trajectory)
 }
 
-fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
+fn check(
+    start: &impl Sample,
+    end_time: f64,
+    options: &IntegrationOptions,
+) -> Result<(), IntegrationError> {
     let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
         return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
@@ -401,13 +407,13 @@ fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), In
 }
 
 /// The right side, counting its evaluations and remembering whether one of them was not finite.
-struct Counted<'r, S: Sample> {
-    rates: &'r Rates<'r, S>,
+struct CountedRates<'r, S: Sample> {
+    rates: &'r RateFunction<'r, S>,
     evaluations: &'r Cell<usize>,
     non_finite: Cell<bool>,
 }
 
-impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
+impl<S: Sample> ODE<f64, S::Values> for CountedRates<'_, S> {
     fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
         (self.rates)(t, values, derivative);
         self.evaluations.set(self.evaluations.get() + 1);
@@ -419,12 +425,12 @@ impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
 
 /// The part of a run with one right side.
 struct Leg<'r, 'a, S: Sample> {
-    equations: Counted<'r, S>,
+    equations: CountedRates<'r, S>,
     phase: usize,
     events: &'r [Event<'a, S>],
     end_time: f64,
-    looks: Looks<'r, S>,
-    options: &'r Options,
+    looks: StepLimits<'r, S>,
+    options: &'r IntegrationOptions,
 }
 
 enum LegEnd<S> {
@@ -443,7 +449,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         let Some(mut solver) = self.solver(scheme, &state, 0.0) else {
             return LegEnd::Stopped(self.failure(state.time()));
         };
-        let mut watches = vec![Watch::default(); self.events.len()];
+        let mut watches = vec![SignTracker::default(); self.events.len()];
         let mut first = true;
         loop {
             let time = state.time();
@@ -499,8 +505,8 @@ impl<S: Sample> Leg<'_, '_, S> {
                 }
                 continue;
             }
-            let moved = first.then(|| self.moved(&state, step.length));
-            let Some(happenings) = self.happenings(&step, &mut watches, moved.as_ref()) else {
+            let moved = first.then(|| self.extrapolated(&state, step.length));
+            let Some(happenings) = self.located_events(&step, &mut watches, moved.as_ref()) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time });
             };
             trajectory.steps.push(step);
@@ -513,14 +519,14 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// How far the next critical time is, farther than rounding.
+    /// Time until the next critical time that is farther away than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
         let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
         self.looks.critical.get(next).map_or(f64::INFINITY, |critical| critical - time)
     }
 
-    /// Whether the steps are used up, or somebody wants it to end.
+    /// The reason to stop: the steps are used up, or an interrupt was requested.
     fn given_up(&self, time: f64, attempts: usize) -> Option<StopReason> {
         if attempts >= self.options.maximum_steps {
             return Some(StopReason::MaximumSteps { time });
@@ -537,7 +543,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         trajectory: &mut Trajectory<S>,
     ) -> Option<LegEnd<S>> {
         for (happening, event, rising) in happenings {
-            trajectory.occurrences.push(Occurrence {
+            trajectory.occurrences.push(EventOccurrence {
                 phase: self.phase,
                 event,
                 state: happening.clone(),
@@ -601,7 +607,7 @@ impl<S: Sample> Leg<'_, '_, S> {
 
     /// The start of a step, moved on for so long at the rates that it has: what is at rest stays
     /// where it is.
-    fn moved(&self, start: &S, length: f64) -> S {
+    fn extrapolated(&self, start: &S, length: f64) -> S {
         let mut values = start.values();
         let mut rates = values.clone();
         (self.equations.rates)(start.time(), &values, &mut rates);
@@ -617,7 +623,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         scheme: &Scheme<M, S::Values>,
         solver: &mut M,
         start: &S,
-    ) -> Option<(Step<S>, S)> {
+    ) -> Option<(TrajectoryStep<S>, S)> {
         let (from, to) = (solver.t_prev(), solver.t());
         let length = to - from;
         let mut values: [S::Values; TERMS] = std::array::from_fn(|_| start.values());
@@ -627,15 +633,15 @@ impl<S: Sample> Leg<'_, '_, S> {
         let next = S::new(to, solver.y());
         let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());
         let finite = next.is_finite() && values.iter().all(finite);
-        finite.then(|| (Step::new(self.phase, start.clone(), length, values), next))
+        finite.then(|| (TrajectoryStep::new(self.phase, start.clone(), length, values), next))
     }
 
-    /// The events inside the step in the order of time, as states, and whether they rise; `None`
-    /// where an event function is not finite.
-    fn happenings(
+    /// The events inside the step in the order of time, as states, and whether they rise; `None` if
+    /// an event function is not finite.
+    fn located_events(
         &self,
-        step: &Step<S>,
-        watches: &mut [Watch],
+        step: &TrajectoryStep<S>,
+        watches: &mut [SignTracker],
         moved: Option<&S>,
     ) -> Option<Vec<(S, usize, bool)>> {
         let mut found = Vec::new();

@@ -18,17 +18,17 @@
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
-//! use lindstedt::numeric::ode::{Event, Options, State, integrate};
+//! use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = |_t: f64, x: f64, _v: f64| -x.sin();
 //! let start = State { t: 0.0, x: 1.5, v: 0.0 };
 //! let vertical = Event::stop(|_t, x, _v| x).falling();
-//! let path = integrate(pendulum, start, 10.0, &[vertical], &Options::default())?;
+//! let path = integrate(pendulum, start, 10.0, &[vertical], &IntegrationOptions::default())?;
 //!
 //! let period = std::f64::consts::TAU / 0.860_608_346_679_613;
 //! assert!((path.end().t - 0.25 * period).abs() < 1e-9);
-//! assert!(path.at(1.0).is_some_and(|(x, v)| x > 0.0 && v < 0.0));
+//! assert!(path.phase_point_at(1.0).is_some_and(|(x, v)| x > 0.0 && v < 0.0));
 //! # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 //! ```
 //!
@@ -50,12 +50,13 @@ mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
+pub use integrate::{AcceptedFraction, StepLimits, integrate_through};
 pub use integrate::{
-    IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases,
+    IntegrationError, IntegrationOptions, IntegrationPhase, integrate, integrate_first_order,
+    integrate_phases,
 };
-pub use integrate::{Kept, Looks, integrate_through};
-pub use sample::{Point, Sample, Values};
-pub use trajectory::{Occurrence, StopReason, Trajectory};
+pub use sample::{Point, Sample, StateVector};
+pub use trajectory::{EventOccurrence, StopReason, Trajectory};
 
 /// A point of the motion: time, displacement, velocity. Also the initial condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,8 +110,14 @@ mod tests {
     fn the_dense_output_follows_the_elliptic_functions() {
         // (tolerance, largest error allowed up to t = 100): about a hundred times the tolerance.
         for (tolerance, allowed) in [(1e-12, 1e-10), (1e-9, 2e-7), (1e-6, 2e-3)] {
-            let path =
-                integrate(pendulum, REST, 100.0, &[], &Options::with_tolerance(tolerance)).unwrap();
+            let path = integrate(
+                pendulum,
+                REST,
+                100.0,
+                &[],
+                &IntegrationOptions::with_tolerance(tolerance),
+            )
+            .unwrap();
             assert_eq!(path.stop_reason(), StopReason::EndReached);
             assert_eq!(path.end().t, 100.0);
             let mut worst = 0.0_f64;
@@ -125,17 +132,18 @@ mod tests {
 
     #[test]
     fn between_the_knots_it_is_as_good_as_at_the_knots() {
-        let path = integrate(pendulum, REST, 20.0, &[], &Options::with_tolerance(1e-10)).unwrap();
-        let error = |t: f64| (path.at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
+        let path = integrate(pendulum, REST, 20.0, &[], &IntegrationOptions::with_tolerance(1e-10))
+            .unwrap();
+        let error = |t: f64| (path.phase_point_at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
         let at_knots = path.knots().map(|knot| error(knot.t)).fold(0.0, f64::max);
         let anywhere = path.samples(5000).map(|state| error(state.t)).fold(0.0, f64::max);
         assert!(anywhere < 3.0 * at_knots, "{anywhere} between, {at_knots} at the knots");
         assert!(
-            path.at(-1e-9).is_none()
-                && path.at(20.000_001).is_none()
-                && path.at(f64::NAN).is_none()
+            path.phase_point_at(-1e-9).is_none()
+                && path.phase_point_at(20.000_001).is_none()
+                && path.phase_point_at(f64::NAN).is_none()
         );
-        assert_eq!(path.at(0.0), Some((1.5, 0.0)));
+        assert_eq!(path.phase_point_at(0.0), Some((1.5, 0.0)));
     }
 
     #[test]
@@ -147,7 +155,8 @@ mod tests {
             Event::record(|t, _, _| t - 5.0),
         ];
         let path =
-            integrate(pendulum, REST, 30.0, &events, &Options::with_tolerance(1e-12)).unwrap();
+            integrate(pendulum, REST, 30.0, &events, &IntegrationOptions::with_tolerance(1e-12))
+                .unwrap();
         let times = |event| {
             path.occurrences().iter().filter(move |found| found.event == event).map(|it| it.state.t)
         };
@@ -178,7 +187,7 @@ mod tests {
             REST,
             30.0,
             &[Event::stop(|_, x, _| x - 1.0).falling()],
-            &Options::default(),
+            &IntegrationOptions::default(),
         )
         .unwrap();
         assert_eq!(path.stop_reason(), StopReason::Event { phase: 0, event: 0 });
@@ -212,7 +221,7 @@ mod tests {
                     start,
                     end_time,
                     &[event],
-                    &Options::with_tolerance(tolerance),
+                    &IntegrationOptions::with_tolerance(tolerance),
                 )
                 .unwrap();
                 assert_eq!(
@@ -227,7 +236,7 @@ mod tests {
                 start,
                 end_time,
                 &[beyond],
-                &Options::with_tolerance(tolerance),
+                &IntegrationOptions::with_tolerance(tolerance),
             )
             .unwrap();
             assert!(path.occurrences().is_empty(), "wall {} is never reached", 2.0 - wall);
@@ -235,7 +244,7 @@ mod tests {
     }
 
     /// Pendulum and barrier, x'' + sin x + gamma (x - x_c)_+^(3/2) = 0, switched at the barrier.
-    fn pendulum_and_barrier(barrier: f64, gamma: f64) -> Vec<Phase<'static>> {
+    fn pendulum_and_barrier(barrier: f64, gamma: f64) -> Vec<IntegrationPhase<'static>> {
         let snapped = move |state: State| State { x: barrier, ..state };
         let reach =
             Event::switch(move |_, x, _| x - barrier, move |state| (1, snapped(state))).rising();
@@ -243,7 +252,10 @@ mod tests {
             Event::switch(move |_, x, _| x - barrier, move |state| (0, snapped(state))).falling();
         let contact =
             move |_: f64, x: f64, _: f64| -x.sin() - gamma * (x - barrier).max(0.0).powf(1.5);
-        vec![Phase::new(pendulum, vec![reach]), Phase::new(contact, vec![leave])]
+        vec![
+            IntegrationPhase::new(pendulum, vec![reach]),
+            IntegrationPhase::new(contact, vec![leave]),
+        ]
     }
 
     /// Time of approach and of contact, from the energy: elliptic F, and T_c = 8 sqrt(q_m) int q /
@@ -280,9 +292,14 @@ mod tests {
         {
             let (approach, contact) = exact_times(1.5, 0.323, gamma);
             let phases = pendulum_and_barrier(0.323, gamma);
-            let path =
-                integrate_phases(&phases, 0, start, 50.0, &Options::with_tolerance(tolerance))
-                    .unwrap();
+            let path = integrate_phases(
+                &phases,
+                0,
+                start,
+                50.0,
+                &IntegrationOptions::with_tolerance(tolerance),
+            )
+            .unwrap();
             assert_eq!(path.occurrences().len(), 24, "gamma {gamma}");
             for (index, found) in path.occurrences().iter().enumerate() {
                 let exit = index % 2;
@@ -295,7 +312,7 @@ mod tests {
                     "gamma {gamma}: crossing {index} at {}",
                     found.state.t
                 );
-                assert_eq!(path.at(found.state.t).unwrap().0, 0.323);
+                assert_eq!(path.phase_point_at(found.state.t).unwrap().0, 0.323);
                 assert_eq!(path.phase_at(found.state.t), Some(1 - exit));
             }
         }
@@ -311,7 +328,7 @@ mod tests {
                 1,
                 start,
                 1.0,
-                &Options::default(),
+                &IntegrationOptions::default(),
             )
             .unwrap();
             assert_eq!(path.occurrences().len(), 1, "speed {speed}: {:?}", path.occurrences());
@@ -329,13 +346,15 @@ mod tests {
 
     #[test]
     fn a_bouncing_ball_stalls_where_its_bounces_accumulate() {
-        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at t
-        // = 1 + 2 (1/2 + 1/4 + ...).
+        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at
+        // t = 1 + 2 (1/2 + 1/4 + ...).
         let rebound =
             Event::switch(|_, x, _| x, |state| (0, State { x: 0.0, v: -0.5 * state.v, ..state }))
                 .falling();
         let start = State { t: 0.0, x: 0.5, v: 0.0 };
-        let path = integrate(|_, _, _| -1.0, start, 10.0, &[rebound], &Options::default()).unwrap();
+        let path =
+            integrate(|_, _, _| -1.0, start, 10.0, &[rebound], &IntegrationOptions::default())
+                .unwrap();
         for (bounce, time) in [1.0, 2.0, 2.5, 2.75].into_iter().enumerate() {
             assert!((path.occurrences()[bounce].state.t - time).abs() < 1e-11);
         }
@@ -351,36 +370,44 @@ mod tests {
     fn a_run_that_cannot_go_on_says_when_and_keeps_what_it_has() {
         // x = 1/(1 - t)^2 escapes at t = 1.
         let start = State { t: 0.0, x: 1.0, v: 2.0 };
-        let path = integrate(|_, x, _| 6.0 * x * x, start, 3.0, &[], &Options::default()).unwrap();
+        let path =
+            integrate(|_, x, _| 6.0 * x * x, start, 3.0, &[], &IntegrationOptions::default())
+                .unwrap();
         assert!(!path.is_complete() && (path.end().t - 1.0).abs() < 1e-3, "{}", path.stop_reason());
-        assert!((path.at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
+        assert!((path.phase_point_at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
 
         // Beyond x = 1 there is no acceleration; x = t gets there at t = 1.
         let start = State { t: 0.0, x: 0.0, v: 1.0 };
-        let path =
-            integrate(|_, x, _| 0.0 * (1.0 - x).sqrt(), start, 3.0, &[], &Options::default())
-                .unwrap();
+        let path = integrate(
+            |_, x, _| 0.0 * (1.0 - x).sqrt(),
+            start,
+            3.0,
+            &[],
+            &IntegrationOptions::default(),
+        )
+        .unwrap();
         let StopReason::NonFinite { time } = path.stop_reason() else {
             panic!("{}", path.stop_reason())
         };
         assert!((time - 1.0).abs() < 1e-12);
-        assert!((path.at(0.75).unwrap().0 - 0.75).abs() < 1e-12);
+        assert!((path.phase_point_at(0.75).unwrap().0 - 0.75).abs() < 1e-12);
 
-        let few = Options { maximum_steps: 5, ..Options::default() };
+        let few = IntegrationOptions { maximum_steps: 5, ..IntegrationOptions::default() };
         let path = integrate(pendulum, REST, 30.0, &[], &few).unwrap();
         assert_eq!(path.stop_reason(), StopReason::MaximumSteps { time: path.end().t });
 
         let broken = Event::record(|t, _, _| (1.0 - t).ln());
-        let path = integrate(pendulum, REST, 30.0, &[broken], &Options::default()).unwrap();
+        let path =
+            integrate(pendulum, REST, 30.0, &[broken], &IntegrationOptions::default()).unwrap();
         assert!(matches!(path.stop_reason(), StopReason::NonFinite { time } if time < 1.0));
     }
 
     #[test]
     fn what_cannot_begin_is_refused() {
-        let refuse = |start, end_time, options: Options| {
+        let refuse = |start, end_time, options: IntegrationOptions| {
             integrate(pendulum, start, end_time, &[], &options).unwrap_err()
         };
-        let usual = Options::default();
+        let usual = IntegrationOptions::default();
         assert!(matches!(
             refuse(State { x: f64::NAN, ..REST }, 1.0, usual),
             IntegrationError::NotFinite { .. }
@@ -389,11 +416,11 @@ mod tests {
         assert!(matches!(refuse(REST, -1.0, usual), IntegrationError::EndBeforeStart { .. }));
         for tolerance in [0.0, -1e-9, f64::NAN, 1e-17, 1.0] {
             assert!(matches!(
-                refuse(REST, 1.0, Options::with_tolerance(tolerance)),
+                refuse(REST, 1.0, IntegrationOptions::with_tolerance(tolerance)),
                 IntegrationError::Tolerance(_)
             ));
         }
-        let backwards = Options { maximum_step: -1.0, ..usual };
+        let backwards = IntegrationOptions { maximum_step: -1.0, ..usual };
         assert!(matches!(refuse(REST, 1.0, backwards), IntegrationError::MaximumStep(_)));
         let nowhere = |_: f64, x: f64, _: f64| (x - 2.0).sqrt();
         let refused = integrate(nowhere, REST, 1.0, &[], &usual).unwrap_err();
@@ -402,7 +429,7 @@ mod tests {
             integrate_phases(&pendulum_and_barrier(0.323, 1e6), 2, REST, 1.0, &usual).unwrap_err();
         assert_eq!(refused, IntegrationError::UnknownPhase { phase: 2, count: 2 });
         let path = integrate(pendulum, REST, 0.0, &[], &usual).unwrap();
-        assert_eq!((path.end(), path.at(0.0)), (REST, Some((1.5, 0.0))));
+        assert_eq!((path.end(), path.phase_point_at(0.0)), (REST, Some((1.5, 0.0))));
     }
 
     #[test]
@@ -410,8 +437,10 @@ mod tests {
         // x'' = -omega^2 x from `amplitude`: omega from 1e-6 to 1e9, amplitude down to 1e-9 with a
         // matching tolerance.
         for (omega, amplitude) in [(1e-6, 1.0), (1e9, 1.0), (1.0, 1e-9), (1e3, 1e6)] {
-            let options =
-                Options { absolute_tolerance: 1e-12 * amplitude, ..Options::with_tolerance(1e-12) };
+            let options = IntegrationOptions {
+                absolute_tolerance: 1e-12 * amplitude,
+                ..IntegrationOptions::with_tolerance(1e-12)
+            };
             let start = State { t: 0.0, x: amplitude, v: 0.0 };
             let path = integrate(|_, x, _| -omega * omega * x, start, 20.0 / omega, &[], &options)
                 .unwrap();

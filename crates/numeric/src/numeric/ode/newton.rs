@@ -30,16 +30,16 @@ use nalgebra::{DefaultAllocator, DimMin, OMatrix, OVector};
 pub enum Progress {
     /// The step was so short that its end is the solution.
     Settled,
-    /// There are steps to come.
+    /// The iteration continues.
     Going,
     /// The step leads to nothing that is looked for.
     Lost,
 }
 
-/// The solution to which at most so many steps of Newton's method lead from a start. `equations`
-/// gives the residual and its Jacobian at a place, `judged` hears the end of each step and the step
-/// that was subtracted. `None` is the answer where the equations have no value, their Jacobian no
-/// inverse, or the steps do not settle.
+/// Solves equations by at most this many steps of Newton's method from a start. `equations` returns
+/// the residual and its Jacobian at a point; `judged` is called with the end of each step and the
+/// step that was subtracted. Returns `None` if the equations have no value, their Jacobian is
+/// singular, or the steps do not converge.
 pub fn newton<D>(
     start: OVector<f64, D>,
     most: usize,

@@ -15,7 +15,7 @@
 //! assert!(zeros.len() == 2 && (zeros[1].place - 2.0).abs() < 1e-15 && zeros[1].crosses);
 //! ```
 
-use super::root::{Until, bisect, find_root};
+use super::root::{BisectionStop, bisect, find_root};
 
 /// A real zero of a polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,12 +39,12 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
         |k: usize| (coefficients[k] / coefficients[degree]).abs().powf(1.0 / (degree - k) as f64);
     let farthest = 2.0 * (0..degree).map(bound).fold(0.0, f64::max);
     let farthest = if farthest > 0.0 { farthest } else { 1.0 };
-    // Where powers overflow no zero is to be found.
+    // No zero can be found beyond the point at which the powers overflow.
     let is_finite =
         |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c.abs()).is_finite();
     let farthest = match is_finite(farthest) {
         true => farthest,
-        false => bisect(is_finite, 0.0, farthest, Until::Width(0.0))[0],
+        false => bisect(is_finite, 0.0, farthest, BisectionStop::Width(0.0))[0],
     };
     let [low, high] = ends.map(|end| if end.is_infinite() { farthest.copysign(end) } else { end });
     let mut derivatives = vec![coefficients[..=degree].to_vec()];
@@ -62,7 +62,7 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
 
 /// The zeros of a polynomial that is monotonic between these places.
 fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
-    /// Of the sum of the sizes of all terms: a smaller value is rounding.
+    /// Ratio to the sum of the sizes of all terms below which a value is rounding.
     const ROUNDING: f64 = 1e-14;
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());

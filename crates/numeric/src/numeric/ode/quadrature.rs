@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 use gauss_quad::GaussLegendre;
 use thiserror::Error;
 
-/// Why no integral was returned.
+/// The reason why no integral was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QuadratureError {
@@ -44,7 +44,7 @@ pub enum QuadratureError {
         "the integrand has no finite value at {at}: split the interval there or substitute the singularity away"
     )]
     NonFinite {
-        /// Where.
+        /// The argument.
         at: f64,
     },
     /// The tolerance was not reached.
@@ -76,9 +76,9 @@ static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINT
 /// `from > to` gives the negative integral.
 ///
 /// # Errors
-/// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand
-/// without a finite value, or no convergence within 1000 panels; the last one carries the best
-/// value.
+/// [`QuadratureError`]: an infinite interval, a tolerance that is not a positive number, an
+/// integrand without a finite value, or no convergence within 1000 panels; the last one carries the
+/// best value.
 pub fn integrate_smooth(
     function: impl FnMut(f64) -> f64,
     from: f64,
@@ -154,20 +154,22 @@ pub(crate) fn integrate_within(
     let mut panels = Vec::new();
     for (from, to) in pieces().filter(|(from, to)| from != to) {
         let coarse = gauss(&mut function, from, to)?.0;
-        panels.push(Panel::split(&mut function, from, to, coarse)?);
+        panels.push(QuadraturePanel::split(&mut function, from, to, coarse)?);
     }
     let most = most_panels + panels.len().saturating_sub(1);
     // The sums as they change panel by panel say when it is worth adding up all of them.
-    let total = |panels: &[Panel], of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
+    let total = |panels: &[QuadraturePanel], of: fn(&QuadraturePanel) -> f64| {
+        panels.iter().map(of).sum::<f64>()
+    };
     let mut running_error = total(&panels, |panel| panel.error);
     let mut running_magnitude = total(&panels, |panel| panel.magnitude);
     loop {
-        let sum = |of: fn(&Panel) -> f64| total(&panels, of);
+        let sum = |of: fn(&QuadraturePanel) -> f64| total(&panels, of);
         let bound = |magnitude: f64| absolute.max(tolerance * magnitude);
         if running_error.is_nan() || running_error <= 2.0 * bound(running_magnitude) {
             let error_estimate = sum(|panel| panel.error);
             if error_estimate <= bound(sum(|panel| panel.magnitude)) {
-                return Ok((sum(Panel::value), error_estimate));
+                return Ok((sum(QuadraturePanel::value), error_estimate));
             }
         }
         let worst =
@@ -181,13 +183,13 @@ pub(crate) fn integrate_within(
             || middle >= panel.from.max(panel.to)
         {
             return Err(QuadratureError::NotConverged {
-                value: sum(Panel::value),
+                value: sum(QuadraturePanel::value),
                 error_estimate: sum(|panel| panel.error),
                 worst_at: middle,
             });
         }
-        let left = Panel::split(&mut function, panel.from, middle, panel.left)?;
-        let right = Panel::split(&mut function, middle, panel.to, panel.right)?;
+        let left = QuadraturePanel::split(&mut function, panel.from, middle, panel.left)?;
+        let right = QuadraturePanel::split(&mut function, middle, panel.to, panel.right)?;
         running_error += left.error + right.error - panel.error;
         running_magnitude += left.magnitude + right.magnitude - panel.magnitude;
         panels[index] = left;
@@ -211,7 +213,7 @@ pub fn nodes_and_weights(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)>
 
 /// One panel, already integrated on its two halves.
 #[derive(Clone, Copy)]
-struct Panel {
+struct QuadraturePanel {
     from: f64,
     to: f64,
     left: f64,
@@ -220,7 +222,7 @@ struct Panel {
     error: f64,
 }
 
-impl Panel {
+impl QuadraturePanel {
     fn split(
         function: &mut impl FnMut(f64) -> f64,
         from: f64,
@@ -321,8 +323,8 @@ mod tests {
         ));
     }
 
-    /// Where it is all but a jump its argument is rounded to nine digits, and the pieces there have
-    /// none of their own to lose.
+    /// The argument of a steep function is rounded to nine digits at its step, and the pieces there
+    /// have no digits of their own to lose.
     #[test]
     fn a_piece_that_adds_nothing_is_not_halved_for_its_rounding() {
         let places = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];

@@ -2,7 +2,7 @@
 //! bracket.
 //!
 //! In: a continuous function and an interval. Out: the point, to the last bits of a double.
-//! Where there is no value but only a yes or a no, [`bisect`] halves the interval.
+//! For a property that only holds or not, [`bisect`] halves the interval.
 //!
 //! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R.
 //! Chandrupatla, *Adv. Eng. Software* 28 (1997) 145): the interpolation is taken only where the
@@ -21,7 +21,7 @@
 use std::convert::Infallible;
 use thiserror::Error;
 
-/// Why no root was returned.
+/// The reason why no root was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RootError {
@@ -43,7 +43,7 @@ pub enum RootError {
     /// The function has no finite value at this point.
     #[error("the function has no finite value at {at}: choose an interval on which it is defined")]
     NonFinite {
-        /// Where.
+        /// The argument.
         at: f64,
     },
 }
@@ -103,8 +103,8 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
 
 /// The width at which a bisection ends; neighbouring doubles end it in any case.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Until {
-    /// The interval has been halved so many times.
+pub enum BisectionStop {
+    /// The interval has been halved this many times.
     Halvings(u32),
     /// The interval is no wider than this.
     Width(f64),
@@ -116,16 +116,16 @@ pub enum Until {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::root::{Until, bisect};
+/// use lindstedt::numeric::ode::root::{BisectionStop, bisect};
 ///
-/// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, Until::Width(0.0));
+/// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, BisectionStop::Width(0.0));
 /// assert_eq!([defined, undefined], [2.0, 2.0_f64.next_up()]);
 /// ```
 pub fn bisect(
     mut holds: impl FnMut(f64) -> bool,
     inside: f64,
     outside: f64,
-    until: Until,
+    until: BisectionStop,
 ) -> [f64; 2] {
     let Ok(ends) = try_bisect(|x| Ok::<_, Infallible>(holds(x)), inside, outside, until);
     ends
@@ -139,13 +139,13 @@ pub fn try_bisect<E>(
     mut holds: impl FnMut(f64) -> Result<bool, E>,
     mut inside: f64,
     mut outside: f64,
-    until: Until,
+    until: BisectionStop,
 ) -> Result<[f64; 2], E> {
     let mut halvings = 0;
     loop {
         let is_wide = match until {
-            Until::Halvings(most) => halvings < most,
-            Until::Width(width) => (outside - inside).abs() > width,
+            BisectionStop::Halvings(most) => halvings < most,
+            BisectionStop::Width(width) => (outside - inside).abs() > width,
         };
         let middle = 0.5 * (inside + outside);
         if !is_wide || middle == inside || middle == outside {
@@ -263,14 +263,17 @@ mod tests {
     #[test]
     fn a_property_ends_between_neighbours_or_as_early_as_asked() {
         let below = |x: f64| x < 0.3;
-        assert_eq!(bisect(below, -1.0, 1.0, Until::Width(0.0)), [0.3_f64.next_down(), 0.3]);
-        let above = bisect(|x| !below(x), 1.0, -1.0, Until::Halvings(2000));
+        assert_eq!(bisect(below, -1.0, 1.0, BisectionStop::Width(0.0)), [0.3_f64.next_down(), 0.3]);
+        let above = bisect(|x| !below(x), 1.0, -1.0, BisectionStop::Halvings(2000));
         assert_eq!(above, [0.3, 0.3_f64.next_down()]);
-        assert_eq!(bisect(below, 0.0, 1.0, Until::Halvings(2)), [0.25, 0.5]);
-        assert_eq!(bisect(below, 0.0, 1.0, Until::Width(0.25)), [0.25, 0.5]);
-        assert_eq!(bisect(below, 0.0, f64::INFINITY, Until::Halvings(9)), [0.0, f64::INFINITY]);
+        assert_eq!(bisect(below, 0.0, 1.0, BisectionStop::Halvings(2)), [0.25, 0.5]);
+        assert_eq!(bisect(below, 0.0, 1.0, BisectionStop::Width(0.25)), [0.25, 0.5]);
+        assert_eq!(
+            bisect(below, 0.0, f64::INFINITY, BisectionStop::Halvings(9)),
+            [0.0, f64::INFINITY]
+        );
         let told = |x: f64| if x == 0.25 { Err(x) } else { Ok(below(x)) };
-        assert_eq!(try_bisect(told, 0.0, 1.0, Until::Width(0.0)), Err(0.25));
+        assert_eq!(try_bisect(told, 0.0, 1.0, BisectionStop::Width(0.0)), Err(0.25));
     }
 
     #[test]

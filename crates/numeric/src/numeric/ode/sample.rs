@@ -1,4 +1,4 @@
-//! What is followed: values at a time, as first-order equations have them or as the displacement
+//! The samples of a trajectory: values at a time, of first-order equations or as the displacement
 //! and velocity of one coordinate.
 
 use std::fmt::Debug;
@@ -7,18 +7,21 @@ use super::State;
 
 /// The values of first-order equations: an array, with which a step allocates nothing, or a vector
 /// where their number is known at run time only.
-pub trait Values: differential_equations::traits::State<f64> + AsRef<[f64]> + AsMut<[f64]> {}
+pub trait StateVector:
+    differential_equations::traits::State<f64> + AsRef<[f64]> + AsMut<[f64]>
+{
+}
 
-impl<const N: usize> Values for [f64; N] {}
+impl<const N: usize> StateVector for [f64; N] {}
 
-impl Values for Vec<f64> {}
+impl StateVector for Vec<f64> {}
 
 /// A point of a motion.
 pub trait Sample: Clone + Debug {
-    /// What changes in time.
-    type Values: Values;
+    /// The dependent variables.
+    type Values: StateVector;
 
-    /// From a time and the values at it.
+    /// A sample from a time and the values at it.
     fn new(t: f64, values: &Self::Values) -> Self;
 
     /// The time.
@@ -52,7 +55,7 @@ pub struct Point<Y> {
     pub y: Y,
 }
 
-impl<Y: Values> Sample for Point<Y> {
+impl<Y: StateVector> Sample for Point<Y> {
     type Values = Y;
 
     fn new(t: f64, values: &Y) -> Self {

@@ -5,21 +5,21 @@ use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{Adaptive, ExplicitRungeKutta, ImplicitRungeKutta, Ordinary};
 use differential_equations::ode::OrdinaryNumericalMethod;
 
-use super::integrate::Options;
-use super::sample::{Sample, Values};
+use super::integrate::IntegrationOptions;
+use super::sample::{Sample, StateVector};
 
 /// A method: how to begin, and the values at a time within the step just taken.
 pub(super) struct Scheme<M, Y> {
     /// With these tolerances, this first step (0: of its own choice) and this longest step.
-    pub fresh: fn(&Options, f64, f64) -> M,
+    pub fresh: fn(&IntegrationOptions, f64, f64) -> M,
     /// The values within the step.
     pub inside: fn(&mut M, f64) -> Option<Y>,
 }
 
 /// Verner's 9(8) pair, with its own interpolant.
-pub(super) fn explicit<Y: Values>() -> Scheme<impl OrdinaryNumericalMethod<f64, Y>, Y> {
+pub(super) fn explicit<Y: StateVector>() -> Scheme<impl OrdinaryNumericalMethod<f64, Y>, Y> {
     type Method<Y> = ExplicitRungeKutta<Ordinary, Adaptive, f64, Y, 9, 16, 21>;
-    let fresh = |options: &Options, first_step, longest_step| -> Method<Y> {
+    let fresh = |options: &IntegrationOptions, first_step, longest_step| -> Method<Y> {
         ExplicitRungeKutta::rkv988e()
             .rtol(options.relative_tolerance)
             .atol(options.absolute_tolerance)
@@ -38,7 +38,7 @@ pub(super) fn explicit<Y: Values>() -> Scheme<impl OrdinaryNumericalMethod<f64, 
 /// ed., Springer 1996, section IV.8), which takes long steps where a motion is slow and stiff.
 pub(super) fn implicit<S: Sample>()
 -> Scheme<impl OrdinaryNumericalMethod<f64, S::Values>, S::Values> {
-    let fresh = |options: &Options, first_step: f64, longest_step: f64| {
+    let fresh = |options: &IntegrationOptions, first_step: f64, longest_step: f64| {
         ImplicitRungeKutta::radau5()
             .rtol(options.relative_tolerance)
             .atol(options.absolute_tolerance)

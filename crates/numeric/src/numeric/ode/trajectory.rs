@@ -28,15 +28,15 @@ pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> = LazyLock::new(|| {
 pub struct Trajectory<S: Sample = State> {
     pub(super) start: S,
     pub(super) end: S,
-    pub(super) steps: Vec<Step<S>>,
-    pub(super) occurrences: Vec<Occurrence<S>>,
+    pub(super) steps: Vec<TrajectoryStep<S>>,
+    pub(super) occurrences: Vec<EventOccurrence<S>>,
     pub(super) stop_reason: StopReason,
     pub(super) evaluations: usize,
 }
 
 /// An event that was met.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Occurrence<S = State> {
+pub struct EventOccurrence<S = State> {
     /// Index of the phase whose right side was in force (0 for [`integrate`](super::integrate)).
     pub phase: usize,
     /// Index of the event in that phase's list.
@@ -47,7 +47,7 @@ pub struct Occurrence<S = State> {
     pub rising: bool,
 }
 
-/// Why a run ended. Everything before that moment is kept.
+/// The reason why a run ended. Everything before that moment is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StopReason {
     /// The end time was reached.
@@ -69,7 +69,7 @@ pub enum StopReason {
         /// The last time reached.
         time: f64,
     },
-    /// Somebody asked the run to stop.
+    /// The run was interrupted.
     Interrupted {
         /// The last time reached.
         time: f64,
@@ -123,7 +123,7 @@ impl fmt::Display for StopReason {
 impl Trajectory {
     /// Displacement and velocity at time `t`; `None` outside the time covered. Where a switch
     /// changed the state, the value after the switch.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         self.state_at(t).map(|state| (state.x, state.v))
     }
 }
@@ -139,7 +139,7 @@ impl<S: Sample> Trajectory<S> {
             return None;
         }
         let step = self.steps.get(self.step_index(t)?)?;
-        Some(S::new(t, &step.at((t - step.start.time()) / step.length)))
+        Some(S::new(t, &step.values_at((t - step.start.time()) / step.length)))
     }
 
     /// The initial state.
@@ -168,7 +168,7 @@ impl<S: Sample> Trajectory<S> {
     }
 
     /// The events met, in the order of time.
-    pub fn occurrences(&self) -> &[Occurrence<S>] {
+    pub fn occurrences(&self) -> &[EventOccurrence<S>] {
         &self.occurrences
     }
 
@@ -180,7 +180,7 @@ impl<S: Sample> Trajectory<S> {
         self.steps.get(self.step_index(t)?).map(|step| step.phase)
     }
 
-    /// Why the run ended.
+    /// The reason why the run ended.
     pub fn stop_reason(&self) -> StopReason {
         self.stop_reason
     }
@@ -207,7 +207,7 @@ impl<S: Sample> Trajectory<S> {
 
 /// One accepted step, or the part of it before an event.
 #[derive(Debug, Clone)]
-pub(super) struct Step<S: Sample> {
+pub(super) struct TrajectoryStep<S: Sample> {
     pub(super) phase: usize,
     pub(super) start: S,
     /// The length of the whole step: the unit of the fraction s.
@@ -216,8 +216,8 @@ pub(super) struct Step<S: Sample> {
     quotient: [S::Values; TERMS],
 }
 
-impl<S: Sample> Step<S> {
-    /// From the values at [`FRACTIONS`].
+impl<S: Sample> TrajectoryStep<S> {
+    /// The interpolant through the values at [`FRACTIONS`].
     pub(super) fn new(phase: usize, start: S, length: f64, values: [S::Values; TERMS]) -> Self {
         let origin = start.values();
         let mut quotient = values;
@@ -233,7 +233,7 @@ impl<S: Sample> Step<S> {
     }
 
     /// The values at the fraction s of the step.
-    pub(super) fn at(&self, fraction: f64) -> S::Values {
+    pub(super) fn values_at(&self, fraction: f64) -> S::Values {
         let mut values = self.start.values();
         for (component, value) in values.as_mut().iter_mut().enumerate() {
             *value += fraction * clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
@@ -243,7 +243,7 @@ impl<S: Sample> Step<S> {
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        S::new(self.start.time() + fraction * self.length, &self.at(fraction))
+        S::new(self.start.time() + fraction * self.length, &self.values_at(fraction))
     }
 }
 
@@ -288,15 +288,15 @@ mod tests {
         let r = |s: f64| 4.0 * s.powi(3) - s.powi(6);
         let start = State { t: 2.0, x: 0.3, v: -1.0 };
         let values = FRACTIONS.map(|s| [start.x + s * p(s), start.v + s * r(s)]);
-        let step = Step::new(0, start, 0.5, values);
+        let step = TrajectoryStep::new(0, start, 0.5, values);
         for index in 0..=50 {
             let s = f64::from(index) / 50.0;
-            let [x, v] = step.at(s);
+            let [x, v] = step.values_at(s);
             assert!((x - start.x - s * p(s)).abs() < 1e-14, "x at {s}");
             assert!((v - start.v - s * r(s)).abs() < 1e-14, "v at {s}");
         }
-        assert_eq!(step.at(0.0), [0.3, -1.0]);
+        assert_eq!(step.values_at(0.0), [0.3, -1.0]);
         // Next to the start the sign of x - x0 is that of s P(0), down to the last bit.
-        assert!(step.at(1e-15)[0] > 0.3);
+        assert!(step.values_at(1e-15)[0] > 0.3);
     }
 }

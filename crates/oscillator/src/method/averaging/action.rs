@@ -1,5 +1,5 @@
-//! What of a decay is exact, or nearly so, for a restoring force of any strength: the action under
-//! viscous damping, and the energy from one turning point to the next under dry friction.
+//! Laws of decay that are exact, or nearly so, for a restoring force of any strength: the action
+//! under viscous damping, and the energy from one turning point to the next under dry friction.
 //!
 //! References: V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989,
 //! section 52 (averaging over the true motion); L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed.,
@@ -14,14 +14,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::conservative::{Force, is_odd, potential};
+use crate::conservative::{CentredForce, is_odd, potential};
 use crate::expr::{Expr, Function, Node};
 use crate::oscillator::{Oscillator, Parts};
 use crate::solution::Note;
 use crate::symbol::Symbol;
 
-/// How the only damping term drains.
-enum Drain {
+/// The only damping term of an equation.
+enum OnlyDamping {
     /// `rate * x'`.
     Viscous(Expr),
     /// `size * sgn(x')`.
@@ -29,7 +29,7 @@ enum Drain {
 }
 
 /// The damping, where it is one of the two alone.
-fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
+fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<OnlyDamping> {
     if !parts.inertia.is_zero() || !parts.forcing.is_zero() {
         return None;
     }
@@ -38,7 +38,7 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
     let free = |expression: &Expr| own.iter().all(|&name| !expression.contains(name));
     let rate = Expr::divide(&parts.damping, &Expr::from(velocity)).ok()?.expand().ok()?;
     if free(&rate) {
-        return Some(Drain::Viscous(rate));
+        return Some(OnlyDamping::Viscous(rate));
     }
     let (number, factors) = parts.damping.factors();
     let mut size = Expr::number(number);
@@ -54,10 +54,10 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
             _ => return None,
         }
     }
-    (signs == 1).then_some(Drain::Dry(size))
+    (signs == 1).then_some(OnlyDamping::Dry(size))
 }
 
-/// What holds beside the slow equations, where the restoring force is not linear.
+/// Remarks that hold beside the slow equations if the restoring force is not linear.
 pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     let x = oscillator.coordinate;
     let linear =
@@ -66,11 +66,11 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
         return vec![];
     }
     let note = match drain(oscillator, parts) {
-        Some(Drain::Viscous(rate)) => {
+        Some(OnlyDamping::Viscous(rate)) => {
             let sine = Expr::from(x).sin().is_ok_and(|sine| sine == parts.restoring);
             Some(Note::Action { rate, pendulum: sine })
         }
-        Some(Drain::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
+        Some(OnlyDamping::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
             let at = |name: &str| {
                 potential(&parts.restoring, x)?.substitute(x, &Expr::symbol(name)).ok()
             };
@@ -83,8 +83,8 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     note.into_iter().collect()
 }
 
-/// When the amplitude is a part of that at the start, by the action; `None` where damping is not
-/// viscous alone.
+/// The time at which the amplitude is a part of that at the start, by the action; `None` if damping
+/// is not viscous alone.
 pub fn falls_to(
     oscillator: &Oscillator,
     equilibrium: &Expr,
@@ -92,18 +92,19 @@ pub fn falls_to(
     [start, end]: [f64; 2],
 ) -> Option<f64> {
     let parts = oscillator.parts().ok()?;
-    let Some(Drain::Viscous(rate)) = drain(oscillator, &parts) else {
+    let Some(OnlyDamping::Viscous(rate)) = drain(oscillator, &parts) else {
         return None;
     };
     let rate = rate.evaluate(numbers).ok().filter(|rate| *rate > 0.0)?;
-    let force = Force::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
+    let force =
+        CentredForce::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
     let ratio = action(&force, start)? / action(&force, end)?;
     Some(ratio.ln() / rate).filter(|time| time.is_finite())
 }
 
 /// The action of the motion released at a distance, up to a factor: `int sqrt(V(a) - V(x)) dx`
 /// between its turning points.
-fn action(force: &Force, start: f64) -> Option<f64> {
+fn action(force: &CentredForce, start: f64) -> Option<f64> {
     /// With `x = m + h sin(phi)` the integrand is smooth and periodic.
     const POINTS: usize = 64;
     let other = force.turning_point(start).ok()?;

@@ -21,13 +21,13 @@ use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use super::small_terms::SmallTerms;
 use super::{DerivationLetters, HIGHEST, Projected, Series, small_in_words};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::method::drive::{Drive, Driven, Quadrature};
 use crate::method::driven_answer::DrivenMotion;
 use crate::method::frequency_response::FrequencyResponse;
-use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
+use crate::method::multiple_scales::driven::{DrivenRequest, is_of_resonance};
 use crate::method::multiple_scales::scaling::{Scaling, bounded};
 use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Reason, Refusal, not_polynomial};
@@ -42,8 +42,8 @@ const HIGHEST_POWER: u32 = 24;
 /// The slow equations of a driven motion and its steady amplitudes.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, a term without a
-/// closed projection, or to second order one that is no polynomial.
+/// A drive that is not a single wave, a resonance that the equation does not have, a term without a
+/// closed projection, or to second order one that is not a polynomial.
 pub(super) fn solve(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -60,14 +60,14 @@ pub(super) fn solve(
     if options.amplitude == Some(AmplitudeConvention::Initial) {
         return refuse(Reason::ConventionOfFirstHarmonic);
     }
-    let drive = Drive::of(parts, oscillator, Method::Averaging)?;
+    let drive = Drive::from_parts(parts, oscillator, Method::Averaging)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
-    let averaged = UnderDrive {
+    let averaged = DrivenAveraging {
         oscillator,
         free: &free,
-        small: SmallTerms::of(&free, options)?,
-        asked: Asked {
+        small: SmallTerms::from_oscillator(&free, options)?,
+        asked: DrivenRequest {
             method: Method::Averaging,
             oscillator,
             drive: &drive,
@@ -81,8 +81,8 @@ pub(super) fn solve(
     if !projected.as_ref().is_err_and(is_of_resonance) {
         return projected;
     }
-    // What the projections do not reach, an expansion of a polynomial may, of second order too
-    // where none is asked for.
+    // Drives that do not appear in the projections may appear in an expansion of a polynomial, also
+    // to second order if no order is asked for.
     for order in 1..=options.order.unwrap_or(HIGHEST) {
         let Ok(scaling) = averaged.scaling(order) else {
             break;
@@ -95,19 +95,19 @@ pub(super) fn solve(
 }
 
 /// A driven motion that is to be averaged.
-struct UnderDrive<'a> {
+struct DrivenAveraging<'a> {
     oscillator: &'a Oscillator,
     /// Without its drive.
     free: &'a Oscillator,
     small: SmallTerms,
-    asked: Asked<'a>,
+    asked: DrivenRequest<'a>,
 }
 
-impl UnderDrive<'_> {
+impl DrivenAveraging<'_> {
     /// All that is small as terms of an expansion.
     ///
     /// # Errors
-    /// A term that is no polynomial, nothing restores, powers that are too high.
+    /// A term that is not a polynomial, nothing restores, powers that are too high.
     fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
         let mut force = match self.small.expand(order) {
             Ok(force) => force,
@@ -144,7 +144,7 @@ impl UnderDrive<'_> {
         let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
         let (oscillator, drive) = (self.oscillator, self.asked.drive);
         let a = AmplitudeConvention::FirstHarmonic.symbol();
-        let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
+        let projected = Projected::new(self.free, &self.small, &Expr::from(a))?;
         let near = match self.asked.resonance {
             Some(_) => None,
             None => ratio_of(&drive.frequency, &self.small.linear_part()?.linear_in_full()),
@@ -166,7 +166,7 @@ impl UnderDrive<'_> {
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {
-            let Some(waves) = waves_at(resonance)?.filter(DriveWaves::reach) else {
+            let Some(waves) = waves_at(resonance)?.filter(DriveWaves::is_nonzero) else {
                 continue;
             };
             if let Some(ratio) = near {
@@ -183,9 +183,11 @@ impl UnderDrive<'_> {
         let scaling = self.scaling(1).ok();
         let mut others = vec![];
         for resonance in drive.resonances() {
-            let projected = waves_at(resonance)?.is_some_and(|waves| waves.reach());
+            let projected = waves_at(resonance)?.is_some_and(|waves| waves.is_nonzero());
             if projected
-                || scaling.as_ref().is_some_and(|scaling| self.asked.reaches(resonance, scaling))
+                || scaling
+                    .as_ref()
+                    .is_some_and(|scaling| self.asked.drives_resonance(resonance, scaling))
             {
                 others.push(resonance);
             }
@@ -195,8 +197,8 @@ impl UnderDrive<'_> {
     }
 }
 
-/// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of
-/// cos(psi) and sin(psi).
+/// Contributions of a drive to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the
+/// coefficients of cos(psi) and sin(psi).
 struct DriveWaves {
     sine: [Expr; 2],
     cosine: [Expr; 2],
@@ -204,7 +206,7 @@ struct DriveWaves {
 
 impl DriveWaves {
     /// Whether anything reaches the motion.
-    fn reach(&self) -> bool {
+    fn is_nonzero(&self) -> bool {
         self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
     }
 }
@@ -252,8 +254,8 @@ fn waves(
     Ok(DriveWaves { sine: both(sine)?, cosine: both(cosine)? })
 }
 
-/// What stands before a wave as a constant and whole powers of coordinate and velocity; `None`
-/// where it is something else.
+/// The factor of a wave as a constant and whole powers of coordinate and velocity; `None` if it has
+/// another form.
 fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
     let own = [coordinate, coordinate.derivative()];
     let (number, factors) = driven.factor.factors();
@@ -309,19 +311,19 @@ impl<'a> ResonantEquation<'a> {
         }
     }
 
-    /// Over `2 omega0`.
-    fn halved(&self, expression: &Expr) -> Result<Expr, ExprError> {
+    /// Divides an expression by `2 omega0`.
+    fn over_twice_omega0(&self, expression: &Expr) -> Result<Expr, ExprError> {
         Expr::divide(expression, &(Expr::from(2) * &self.projected.omega0))?.expand()
     }
 
     fn answer(self, waves: &DriveWaves) -> Result<Solution, Refusal> {
         let (a, p) = (Expr::from(self.a), Expr::from(i64::from(self.p)));
-        let rate = self.halved(&self.projected.sine)?;
-        let bend = self.halved(&self.projected.cosine)?;
+        let rate = self.over_twice_omega0(&self.projected.sine)?;
+        let bend = self.over_twice_omega0(&self.projected.cosine)?;
         // a psi'/p
         let phase = (Expr::divide(&(Expr::from(self.sigma) * &a), &p)? - &bend).expand()?;
         let halves = |waves: &[Expr; 2], sign: i64| -> Result<[Expr; 2], ExprError> {
-            let of = |wave: &Expr| (Expr::from(sign) * self.halved(wave)?).expand();
+            let of = |wave: &Expr| (Expr::from(sign) * self.over_twice_omega0(wave)?).expand();
             Ok([of(&waves[0])?, of(&waves[1])?])
         };
         let turning = [halves(&waves.sine, 1)?, halves(&waves.cosine, -1)?];
@@ -392,7 +394,7 @@ impl<'a> ResonantEquation<'a> {
             Some((still, [polynomials(&turning[0])?, polynomials(&turning[1])?]))
         };
         if let Some(([rate, phase], waves)) = whole() {
-            let found = FrequencyResponse::of([&rate, &phase], &waves, self.sigma, self.a);
+            let found = FrequencyResponse::from_rates([&rate, &phase], &waves, self.sigma, self.a);
             response.relation = found.relation;
             response.branches = found.branches;
             response.peak = found.peak;
@@ -417,30 +419,37 @@ impl<'a> ResonantEquation<'a> {
         Ok(response)
     }
 
-    /// How the slow equations came about.
+    /// The derivation of the slow equations, line by line.
     fn derivation(
         &self,
         [amplitude_rate, phase_rate]: [&Expr; 2],
         response: &Response,
-    ) -> Result<Vec<Line>, ExprError> {
-        let letters = DerivationLetters::beside(&self.oscillator.names());
-        let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
+    ) -> Result<Vec<DerivationLine>, ExprError> {
+        let letters = DerivationLetters::avoiding(&self.oscillator.names());
+        let mut lines =
+            self.projected.derivation_lines(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
-        lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
         lines.push(
-            Line::equation(self.a.derivative(), amplitude_rate.clone())
+            DerivationLine::equation(self.drive.angle(), turned).because("the drive turns with"),
+        );
+        lines.push(
+            DerivationLine::equation(self.a.derivative(), amplitude_rate.clone())
                 .because("what sin(θ) asks for, with the drive"),
         );
         lines.push(
-            Line::equation(self.phase.derivative(), phase_rate.clone())
+            DerivationLine::equation(self.phase.derivative(), phase_rate.clone())
                 .because("what cos(θ) asks for"),
         );
         let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
         if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
             let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
             lines.push(
-                Line::equal([Formula::from(Expr::zero()), Formula::from(relation)]).because(steady),
+                DerivationLine::equal([
+                    DerivationFormula::from(Expr::zero()),
+                    DerivationFormula::from(relation),
+                ])
+                .because(steady),
             );
         }
         Ok(lines)

@@ -33,7 +33,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// `[S, C]` of a term; `None` where one has no closed form here.
+/// `[S, C]` of a term; `None` if one has no closed form here.
 pub(super) fn of_term(
     term: &Expr,
     coordinate: Symbol,
@@ -51,8 +51,8 @@ pub(super) fn of_term(
         match both {
             [false, false] => outside = &outside * factor,
             [true, true] => return None,
-            [true, false] if of_position.takes(factor, coordinate) => {}
-            [false, true] if of_velocity.takes(factor, velocity) => {}
+            [true, false] if of_position.absorb(factor, coordinate) => {}
+            [false, true] if of_velocity.absorb(factor, velocity) => {}
             [true, false] => positions.push(factor.clone()),
             [false, true] => velocities.push(factor.clone()),
         }
@@ -135,7 +135,7 @@ fn of_velocity_beside_power(
     amplitude: &Expr,
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
-    let p = position.whole()?;
+    let p = position.integer_exponent()?;
     let (k, halves) = if p.is_even() { (1, p / 2) } else { (0, p / 2 + 1) };
     let value = projected(function, halves, velocity, speed, k)?
         * amplitude.integer_power(p as i64).ok()?;
@@ -153,7 +153,7 @@ fn of_position_beside_power(
     amplitude: &Expr,
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
-    let q = velocity.whole()?;
+    let q = velocity.integer_exponent()?;
     let (k, halves) = if q.is_even() { (1, q / 2) } else { (0, q / 2 + 1) };
     let value = projected(function, halves, coordinate, amplitude, k)?
         * speed.integer_power(q as i64).ok()?;
@@ -205,11 +205,11 @@ fn arctangent_coefficient(product: &Expr, variable: Symbol, size: &Expr, k: usiz
                 slope.as_ref()?;
             }
             _ if !factor.contains(variable) => outside = &outside * factor,
-            _ if power.takes(factor, variable) => {}
+            _ if power.absorb(factor, variable) => {}
             _ => return None,
         }
     }
-    let (count, z) = (power.whole()?, slope? * size);
+    let (count, z) = (power.integer_exponent()?, slope? * size);
     let root = (Expr::one() + z.integer_power(2).ok()?).sqrt().ok()?;
     let r = Expr::divide(&(root - Expr::one()), &z).ok()?;
     // cos^n cos(k .) = 2^-n sum_i binomial(n, i) cos((k + n - 2 i) .)

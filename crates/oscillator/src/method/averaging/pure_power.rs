@@ -1,5 +1,5 @@
 //! Averaging along the true motion of a restoring force that is one power of the coordinate:
-//! nothing linear restores, and the motion without damping is no wave, but of one shape at every
+//! nothing linear restores, and the motion without damping is not a wave, but of one shape at every
 //! amplitude.
 //!
 //! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
@@ -26,10 +26,10 @@ use num_traits::{One as _, Signed as _, Zero as _};
 
 use super::small_terms::letters;
 use super::{DerivationLetters, action};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::power::Power;
 use crate::decimal::rounded;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, ExprError, Function};
@@ -39,7 +39,7 @@ use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{
     AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution,
 };
@@ -56,7 +56,7 @@ pub(super) struct PurePower {
 impl PurePower {
     /// The restoring force of a damped motion, where it is one power, a number above -1 other than
     /// one; `None` for any other.
-    pub(super) fn of(parts: &Parts, coordinate: Symbol) -> Option<Self> {
+    pub(super) fn from_parts(parts: &Parts, coordinate: Symbol) -> Option<Self> {
         if parts.damping.is_zero() || !parts.inertia.is_zero() || !parts.forcing.is_zero() {
             return None;
         }
@@ -75,7 +75,7 @@ impl PurePower {
         (&self.exponent + Rational::one()).recip()
     }
 
-    /// What a damping term does to `r'`: the power of `r`, and what stands before it; `None` where
+    /// The contribution of a damping term to `r'`: the power of `r`, and its coefficient; `None` if
     /// the mean has no closed form.
     fn drain(&self, term: &Expr, coordinate: Symbol) -> Option<(Rational, Expr)> {
         let own = [coordinate, coordinate.derivative()];
@@ -101,7 +101,7 @@ impl PurePower {
     }
 }
 
-/// A term as a constant and a power of each variable; `None` where they stand elsewhere.
+/// A term as a constant and a power of each variable; `None` if they stand elsewhere.
 fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(Expr, [Power; N])> {
     let (number, factors) = term.factors();
     let mut outside = Expr::number(number);
@@ -111,7 +111,7 @@ fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(E
             variables.iter().zip(&mut powers).filter(|(name, _)| factor.contains(**name));
         match (inside.next(), inside.next()) {
             (None, _) => outside = &outside * factor,
-            (Some((name, power)), None) => power.takes(factor, *name).then_some(())?,
+            (Some((name, power)), None) => power.absorb(factor, *name).then_some(())?,
             (Some(_), Some(_)) => return None,
         }
     }
@@ -156,13 +156,14 @@ struct Shape {
 }
 
 impl Shape {
-    /// Of the force `sgn(x) |x|^n`.
-    fn of(restoring: &PurePower, oscillator: &Oscillator, parts: &Parts) -> Option<Self> {
+    /// The constants of the force `sgn(x) |x|^n`.
+    fn new(restoring: &PurePower, oscillator: &Oscillator, parts: &Parts) -> Option<Self> {
         /// The highest harmonic, and the least that is written.
         const MOST: usize = 15;
         const LEAST: f64 = 1e-10;
         let unit = Expr::divide(&parts.restoring, &restoring.stiffness).ok()?.expand().ok()?;
-        let force = Force::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
+        let force =
+            CentredForce::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
         let (_, cosine) = motion_about(&force, 1.0).ok()?;
         let first = *cosine.get(1)?;
         let over = |(k, value): (usize, &f64)| match k % 2 == 1 && (value / first).abs() >= LEAST {
@@ -205,12 +206,12 @@ struct AnswerSymbols {
 }
 
 impl AnswerSymbols {
-    fn beside(oscillator: &Oscillator) -> Self {
+    fn avoiding(oscillator: &Oscillator) -> Self {
         let taken = oscillator.names();
         let [first, turning] = ["chi", "r"].map(|name| fresh(name, &taken));
         Self {
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),
-            phase: DerivationLetters::beside(&taken).phase,
+            phase: DerivationLetters::avoiding(&taken).phase,
             first,
             turning,
             taken,
@@ -222,13 +223,13 @@ impl AnswerSymbols {
 struct SlowEquations {
     amplitude_rate: Expr,
     phase_rate: Expr,
-    derivation: Vec<Line>,
+    derivation: Vec<DerivationLine>,
 }
 
 impl SlowEquations {
     /// # Errors
     /// A damping term without a closed mean.
-    fn of(
+    fn from_pure_power(
         oscillator: &Oscillator,
         parts: &Parts,
         restoring: &PurePower,
@@ -252,20 +253,20 @@ impl SlowEquations {
         let phase_rate = turn(&Expr::divide(&Expr::from(amplitude), &Expr::from(first))?)?;
         let phase_rate = spread(&phase_rate)?;
         let derivation = vec![
-            Line::equation(turning.derivative(), Expr::sum(turning_rates))
+            DerivationLine::equation(turning.derivative(), Expr::sum(turning_rates))
                 .because("the mean of the work that damping takes, over k*r^n"),
-            Line::equation(phase.derivative(), turn(&Expr::from(turning))?)
+            DerivationLine::equation(phase.derivative(), turn(&Expr::from(turning))?)
                 .because("the exact frequency of the motion that turns at r"),
-            Line::equation(amplitude, Expr::from(first) * Expr::from(turning))
+            DerivationLine::equation(amplitude, Expr::from(first) * Expr::from(turning))
                 .because("its first harmonic"),
-            Line::equation(amplitude.derivative(), amplitude_rate.clone()),
-            Line::equation(phase.derivative(), phase_rate.clone()),
+            DerivationLine::equation(amplitude.derivative(), amplitude_rate.clone()),
+            DerivationLine::equation(phase.derivative(), phase_rate.clone()),
         ];
         Ok(Self { amplitude_rate, phase_rate, derivation })
     }
 
     /// Whether the amplitude only grows.
-    fn grows(&self) -> bool {
+    fn always_grows(&self) -> bool {
         let mut terms = self.amplitude_rate.terms().iter();
         !self.amplitude_rate.is_zero() && terms.all(|term| !term.has_leading_minus())
     }
@@ -311,16 +312,16 @@ pub(super) fn solve(
     options: &Options,
 ) -> Result<Solution, Refusal> {
     refuse_other_orders(parts, options)?;
-    let names = AnswerSymbols::beside(oscillator);
-    let Some(shape) = Shape::of(restoring, oscillator, parts) else {
+    let names = AnswerSymbols::avoiding(oscillator);
+    let Some(shape) = Shape::new(restoring, oscillator, parts) else {
         return Err(Reason::NoProjection.to(Method::Averaging).about(&parts.restoring));
     };
-    let slow = SlowEquations::of(oscillator, parts, restoring, &names)?;
+    let slow = SlowEquations::from_pure_power(oscillator, parts, restoring, &names)?;
     let (small, small_with, cut) = small_in_words(oscillator, parts)?;
     let harmonic = shape.last_harmonic();
     let mut validity = vec![cut, Note::AlongTrueMotion { harmonic }];
     validity.extend(action::notes(oscillator, parts));
-    validity.extend(slow.grows().then_some(Note::Grows));
+    validity.extend(slow.always_grows().then_some(Note::Grows));
     let (modulation, named) = slow.released(&names, small_with);
     let first = Definition { symbol: names.first, meaning: Expr::number(shape.first.clone()) };
     Ok(Solution {
@@ -383,7 +384,7 @@ fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     Ok(product)
 }
 
-/// What is small: letters that are factors of the damping alone, or else all of it.
+/// The small letters: those that are factors of the damping alone, or else a name for all of it.
 fn small_in_words(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -396,6 +397,6 @@ fn small_in_words(
     let first = names.next().unwrap_or_else(|| fresh("delta", &oscillator.names()));
     let others: Vec<Symbol> = names.collect();
     let small = std::iter::once(first).chain(others.iter().copied()).collect();
-    let cut = Note::Cut(Cut::Truncated { small, order: 1, marks });
+    let cut = Note::Cut(Truncation::Truncated { small, order: 1, marks });
     Ok((first, others, cut))
 }

@@ -1,4 +1,4 @@
-//! What averaging takes to be small: everything beside the linear restoring force.
+//! The small terms in averaging: all terms but the linear restoring force.
 //!
 //! ```text
 //! x'' + 2 zeta x' + x + eps x^3 = 0       zeta -> delta zeta, eps -> delta eps; delta = 1
@@ -33,7 +33,10 @@ impl SmallTerms {
     ///
     /// # Errors
     /// A letter that does not occur, or a term that no letter makes small beside the one asked for.
-    pub(super) fn of(oscillator: &Oscillator, options: &Options) -> Result<Self, Refusal> {
+    pub(super) fn from_oscillator(
+        oscillator: &Oscillator,
+        options: &Options,
+    ) -> Result<Self, Refusal> {
         let delta = fresh("delta", &oscillator.names());
         let expanded = oscillator.force.expand()?;
         let asked = match options.small.as_deref() {
@@ -58,8 +61,8 @@ impl SmallTerms {
             series.get(1).cloned()
         });
         let slopes: Vec<Expr> = slopes.collect();
-        // Where a function alone restores, as in k*sin(x), the letter before it is not small: its
-        // vanishing leaves nothing.
+        // If a function alone restores, as in k*sin(x), its coefficient is not small: without it
+        // there is no restoring force.
         let function_restores =
             linear.is_empty() && !Expr::sum(slopes.iter().cloned()).expand()?.is_zero();
         let found = match asked {
@@ -102,7 +105,7 @@ impl SmallTerms {
         Ok(split)
     }
 
-    /// What marks the orders; one in the end.
+    /// The bookkeeping parameter, which is one in the end.
     pub(super) fn delta(&self) -> Symbol {
         self.delta
     }
@@ -115,7 +118,7 @@ impl SmallTerms {
     /// The force as a polynomial in powers of `delta`.
     ///
     /// # Errors
-    /// It is none, or nothing restores.
+    /// The force is not a polynomial, or there is no restoring force.
     pub(super) fn expand(&self, order: u32) -> Result<PerturbedForce, OscillatorError> {
         self.marked.expand(SmallParameter::Parameter(self.delta), order)
     }
@@ -123,7 +126,7 @@ impl SmallTerms {
     /// The linear restoring force alone.
     ///
     /// # Errors
-    /// Nothing restores.
+    /// There is no restoring force.
     pub(super) fn linear_part(&self) -> Result<PerturbedForce, OscillatorError> {
         let mut alone = self.marked.clone();
         alone.force = self.linear.clone();
@@ -144,14 +147,14 @@ impl SmallTerms {
     /// All small terms.
     ///
     /// # Errors
-    /// They would be too long.
+    /// The terms would be too long.
     pub(super) fn without_linear(&self) -> Result<Expr, ExprError> {
         let whole = self.marked.force.substitute(self.delta, &Expr::one())?;
         (&whole - &self.linear).expand()
     }
 }
 
-/// What stands before the coordinate, where that is all there is of it in a term.
+/// The coefficient of the coordinate in a term that is linear in it; `None` for any other term.
 fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
     let quotient = Expr::divide(term, &Expr::from(oscillator.coordinate)).ok()?;
     let own = [oscillator.coordinate, oscillator.velocity(), Symbol::new("t")];

@@ -1,7 +1,7 @@
-//! What a derivation by multiple scales found of a free motion, as an answer.
+//! The answer of multiple scales for a free motion.
 
 use super::scaling::Scaling;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::Polynomials;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -10,19 +10,23 @@ use crate::solution::{
     AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Solution,
 };
 
-/// What differs between a free motion and one on a limit cycle.
-pub(super) struct Found {
+/// The results in which a free motion and one on a limit cycle differ.
+pub(super) struct MultipleScalesResult {
     pub(super) definitions: Vec<Definition>,
     pub(super) law: Law,
     pub(super) displacement: FourierSeries<Polynomials>,
     pub(super) limit_cycle: Option<LimitCycle>,
     pub(super) modulation: Modulation,
     pub(super) validity: Vec<Note>,
-    pub(super) derivation: Vec<Line>,
+    pub(super) derivation: Vec<DerivationLine>,
 }
 
 /// The answer, about zero.
-pub(super) fn solution(oscillator: &Oscillator, scaling: &Scaling, found: Found) -> Solution {
+pub(super) fn solution(
+    oscillator: &Oscillator,
+    scaling: &Scaling,
+    found: MultipleScalesResult,
+) -> Solution {
     Solution {
         equation: oscillator.equation(),
         method: Method::MultipleScales,

@@ -1,13 +1,13 @@
-//! How an answer by multiple scales came about, order by order.
+//! The derivation of an answer by multiple scales, order by order.
 
 use num_traits::Zero as _;
 
-use super::driven::Question;
-use super::names::Names;
+use super::driven::DrivenProblem;
+use super::names::ExpansionSymbols;
 use super::scaling::Scaling;
-use super::slow_times::{Complex, Expansion, Wave};
-use super::slow_waves::{Slow, motion};
-use crate::derivation::{Formula, Line};
+use super::slow_times::{Complex, FastPhaseSeries, MultipleScalesExpansion};
+use super::slow_waves::{SlowRates, motion};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Expr, ExprError};
@@ -16,8 +16,12 @@ use crate::series::FourierSeries;
 use crate::solution::Response;
 use crate::symbol::{Symbol, fresh_stem};
 
-/// What an order adds to the motion, in `theta`, with `B = a/2`.
-pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
+/// The contribution of an order to the motion, in `theta`, with `B = a/2`.
+pub(super) fn motion_of(
+    wave: &FastPhaseSeries,
+    order: usize,
+    names: &ExpansionSymbols,
+) -> FourierSeries<Polynomials> {
     let length = wave.keys().copied().max().map_or(0, |m| m.max(0) as usize + 1);
     let (mut cosine, mut sine) =
         (vec![Polynomial::zero(); length], vec![Polynomial::zero(); length]);
@@ -34,15 +38,15 @@ pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeri
     FourierSeries::from_parts(POLYNOMIALS, cosine, sine)
 }
 
-/// How the answer came about; `response` is what follows for a driven motion.
+/// The derivation of the answer; `response` is the frequency response of a driven motion.
 pub(super) fn derivation(
-    expansion: &Expansion,
+    expansion: &MultipleScalesExpansion,
     scaling: &Scaling,
-    names: &Names,
+    names: &ExpansionSymbols,
     linear_frequency: &Polynomial,
     rates: &[Expr; 2],
     response: Option<&Response>,
-) -> Result<Vec<Line>, ExprError> {
+) -> Result<Vec<DerivationLine>, ExprError> {
     let (own, conjugate, a) = (names.complex.own, names.complex.conjugate, names.amplitude);
     let i = Expr::from(names.unit);
     let [orders, times] = &names.orders;
@@ -59,13 +63,15 @@ pub(super) fn derivation(
             .to_owned(),
     };
     let mut lines = vec![
-        Line::words(format!(
+        DerivationLine::words(format!(
             "the motion is {orders}0 + {orders}1 + {orders}2 + ..., each order with its power of {small} and a slow time of its own"
         )),
-        Line::words(format!(
+        DerivationLine::words(format!(
             "{orders}0 = {own}*{wave} + {conjugate}*exp(-{i}*θ), {conjugate} the conjugate of {own}; {turns}"
         )),
-        Line::words(format!("{times}1, {times}2, ... are the rates of {own} on the slow times")),
+        DerivationLine::words(format!(
+            "{times}1, {times}2, ... are the rates of {own} on the slow times"
+        )),
     ];
     for k in 1..=scaling.order as usize {
         let (rate, resonant) = (&expansion.rates[k], &expansion.resonant[k]);
@@ -76,16 +82,16 @@ pub(super) fn derivation(
         let rest = Expr::from(&linear_frequency.product(&Polynomial::constant(ratio(2, 1))));
         let secular = &complex(resonant) - &(&(&i * &rest) * &left);
         lines.push(
-            Line::equal([secular.expand()?.into(), Expr::zero().into()])
+            DerivationLine::equal([secular.expand()?.into(), Expr::zero().into()])
                 .because(format!("order {k}, no {wave} on the right")),
         );
-        lines.push(Line::equation(left, complex(rate).expand()?).because("fixes"));
+        lines.push(DerivationLine::equation(left, complex(rate).expand()?).because("fixes"));
         if response.is_none() {
             let unmarked = |polynomial: &Polynomial| scaling.unmarked(polynomial, names.marker);
             let motion = motion_of(&expansion.displacement[k], k, names);
             let motion = motion.map(POLYNOMIALS, |coefficient, _| unmarked(coefficient));
             lines.push(
-                Line::equation(Symbol::new(&format!("{orders}{k}")), motion)
+                DerivationLine::equation(Symbol::new(&format!("{orders}{k}")), motion)
                     .because(format!("the motion, with {own} = {a}/2 in θ")),
             );
         }
@@ -96,53 +102,55 @@ pub(super) fn derivation(
         None => format!("{own} is {a}/2 turned by the phase {phase} without θ"),
         Some(_) => format!("{own} is {a}/2 turned back by the phase {phase}"),
     };
-    lines.push(Line::equation(a.derivative(), amplitude_rate).because(polar));
-    lines.push(Line::equation(phase.derivative(), phase_rate));
+    lines.push(DerivationLine::equation(a.derivative(), amplitude_rate).because(polar));
+    lines.push(DerivationLine::equation(phase.derivative(), phase_rate));
     lines.extend(response.and_then(elimination));
     Ok(lines)
 }
 
 /// The relation of steady motions.
-fn elimination(response: &Response) -> Option<Line> {
-    let relation = Formula::from(Expr::from(response.relation.as_ref()?));
+fn elimination(response: &Response) -> Option<DerivationLine> {
+    let relation = DerivationFormula::from(Expr::from(response.relation.as_ref()?));
     let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
-    Some(Line::equal([Formula::from(Expr::zero()), relation]).because(steady))
+    Some(DerivationLine::equal([DerivationFormula::from(Expr::zero()), relation]).because(steady))
 }
 
-/// The same expansion in the words of averaging: what each order adds to the rates and to the
+/// The expansion in the words of averaging: the contribution of each order to the rates and to the
 /// motion.
 pub(super) fn averaged_lines(
-    question: &Question,
-    expansion: &Expansion,
+    question: &DrivenProblem,
+    expansion: &MultipleScalesExpansion,
     [amplitude_rate, phase_rate]: &[Expr; 2],
     response: &Response,
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     let names = &question.names;
     let [correction, rate, turn] =
         ["u", "A", "B"].map(|letter| fresh_stem(letter, &question.taken));
     let numbered = |stem: &str, order: usize| Symbol::new(&format!("{stem}{order}"));
     let leading = motion(question, expansion, |k| k == 0)?;
-    let mut lines = vec![Line::equation(question.oscillator.coordinate, leading).because("along")];
+    let mut lines =
+        vec![DerivationLine::equation(question.oscillator.coordinate, leading).because("along")];
     for k in 1..=question.scaling.order as usize {
         let [own_rate, own_turn] =
-            Slow::of_orders(expansion, question, |order| order == k).rates(question)?;
+            SlowRates::of_orders(expansion, question, |order| order == k).rates(question)?;
         lines.push(
-            Line::equation(numbered(&rate, k), own_rate)
+            DerivationLine::equation(numbered(&rate, k), own_rate)
                 .because(format!("no resonant wave is left at order {k}")),
         );
-        lines.push(Line::equation(numbered(&turn, k), own_turn));
+        lines.push(DerivationLine::equation(numbered(&turn, k), own_turn));
         if k < question.scaling.order as usize {
             let rest = motion(question, expansion, |order| order == k)?;
             lines.push(
-                Line::equation(numbered(&correction, k), rest).because("what that leaves over"),
+                DerivationLine::equation(numbered(&correction, k), rest)
+                    .because("what that leaves over"),
             );
         }
     }
     lines.push(
-        Line::equation(names.amplitude.derivative(), amplitude_rate.clone())
+        DerivationLine::equation(names.amplitude.derivative(), amplitude_rate.clone())
             .because("both together"),
     );
-    lines.push(Line::equation(names.phase.derivative(), phase_rate.clone()));
+    lines.push(DerivationLine::equation(names.phase.derivative(), phase_rate.clone()));
     lines.extend(elimination(response));
     Ok(lines)
 }

@@ -14,17 +14,17 @@
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/p = Q + Q_c cos(psi) + Q_s sin(psi)
 //! ```
 //!
-//! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which
-//! leaves the frequency-response equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what
-//! the drive does.
+//! For a steady motion both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which leaves
+//! the frequency-response equation. To first order it is `P^2 + Q^2 = S^2`, with `S` the
+//! contribution of the drive.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::derivation::{averaged_lines, derivation};
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::scaling::{Scaling, bounded, has_linear_damping, has_quadratic_terms, scaling};
-use super::slow_times::{Complex, DrivenTerm, Expansion, Scaled};
-use super::slow_waves::{Slow, backbone, response};
+use super::slow_times::{Complex, DrivenTerm, MultipleScalesExpansion, ScaledProblem};
+use super::slow_waves::{SlowRates, backbone, response};
 use super::undriven;
 use crate::exact::Polynomial;
 use crate::exact::rational::ratio;
@@ -44,7 +44,7 @@ const HIGHEST: u32 = 3;
 /// The slow equations of a driven motion, its frequency-response equation and what follows from it.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, or what stops an
+/// A drive that is not a single wave, a resonance that the equation does not have, or what stops an
 /// expansion.
 pub(super) fn solve(
     oscillator: &Oscillator,
@@ -69,7 +69,7 @@ pub(super) fn solve(
     let refused = |refusal: &Refusal| {
         matches!(refusal.reason, Reason::Oscillator(OscillatorError::NotPolynomial(_)))
     };
-    // What is no polynomial may be one for small motions.
+    // A force that is not a polynomial may be one for small motions.
     match options.small.is_none() && found.as_ref().is_err_and(refused) {
         true => in_amplitude().or(found),
         false => found,
@@ -89,13 +89,13 @@ fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscilla
     Ok(free)
 }
 
-/// The same with the small parameter that is asked for, or the likeliest.
+/// Expands the motion in the small parameter that is asked for, or in the likeliest.
 fn expanded(
     oscillator: &Oscillator,
     parts: &Parts,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let drive = Drive::of(parts, oscillator, Method::MultipleScales)?;
+    let drive = Drive::from_parts(parts, oscillator, Method::MultipleScales)?;
     let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
     let scaling_of = |order: Option<u32>| -> Result<Scaling, Refusal> {
@@ -114,7 +114,7 @@ fn expanded(
         Some(_) => drive,
         None => drive.in_small_motions(oscillator.coordinate, scaling.order + 1),
     };
-    let asked = Asked {
+    let asked = DrivenRequest {
         method: Method::MultipleScales,
         oscillator,
         drive: &drive,
@@ -136,7 +136,7 @@ fn expanded(
     if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
         return answer;
     }
-    // What one order says nothing about, a higher one may.
+    // A higher order may contain the resonance if one order does not.
     let highest = HIGHEST.saturating_mul(u32::try_from(scaling.small_order).unwrap_or(1));
     for order in scaling.order + 1..=highest {
         if let Some(found) = asked.answer_near(&scaling_of(Some(order))?) {
@@ -167,7 +167,7 @@ pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
 }
 
 /// A driven motion that is to be expanded, by the method that asks.
-pub(in crate::method) struct Asked<'a> {
+pub(in crate::method) struct DrivenRequest<'a> {
     pub(in crate::method) method: Method,
     pub(in crate::method) oscillator: &'a Oscillator,
     pub(in crate::method) drive: &'a Drive,
@@ -175,9 +175,9 @@ pub(in crate::method) struct Asked<'a> {
     pub(in crate::method) resonance: Option<(u32, u32)>,
 }
 
-impl Asked<'_> {
+impl DrivenRequest<'_> {
     /// The ratio of the frequencies, where they are numbers and no resonance is asked for.
-    fn near(&self, scaling: &Scaling) -> Option<f64> {
+    fn frequency_ratio(&self, scaling: &Scaling) -> Option<f64> {
         match self.resonance {
             Some(_) => None,
             None => ratio_of(&self.drive.frequency, &scaling.force.linear_in_full()),
@@ -191,7 +191,7 @@ impl Asked<'_> {
 
     /// The resonances that may be meant, the likeliest first.
     fn candidates(&self, scaling: &Scaling) -> Vec<(u32, u32)> {
-        match (self.resonance, self.near(scaling)) {
+        match (self.resonance, self.frequency_ratio(scaling)) {
             (Some(asked), _) => vec![asked],
             (None, Some(ratio)) => by_distance(self.drive.resonances(), ratio),
             (None, None) => {
@@ -208,15 +208,19 @@ impl Asked<'_> {
     }
 
     /// Whether the drive reaches the motion at a resonance.
-    pub(in crate::method) fn reaches(&self, resonance: (u32, u32), scaling: &Scaling) -> bool {
+    pub(in crate::method) fn drives_resonance(
+        &self,
+        resonance: (u32, u32),
+        scaling: &Scaling,
+    ) -> bool {
         if !is_ratio(resonance) {
             return false;
         }
-        let Ok(question) = Question::new(self, scaling, resonance) else {
+        let Ok(question) = DrivenProblem::new(self, scaling, resonance) else {
             return false;
         };
         let expansion = question.expand(false);
-        expansion.is_ok_and(|expansion| Slow::new(&expansion, &question).is_resonant())
+        expansion.is_ok_and(|expansion| SlowRates::new(&expansion, &question).is_resonant())
     }
 
     /// The answer at the likeliest resonance.
@@ -226,41 +230,41 @@ impl Asked<'_> {
     pub(in crate::method) fn answer(&self, scaling: &Scaling) -> Result<Solution, Refusal> {
         let candidates = self.candidates(scaling);
         let first = candidates.first().copied().unwrap_or((1, 1));
-        let reaches = |candidate: &(u32, u32)| self.reaches(*candidate, scaling);
+        let reaches = |candidate: &(u32, u32)| self.drives_resonance(*candidate, scaling);
         let resonance = candidates.iter().copied().find(reaches).unwrap_or(first);
-        if grows(scaling, self.drive, resonance) {
+        if is_driven_at_own_frequency(scaling, self.drive, resonance) {
             let term = self.force().or(self.drive.terms.first());
             let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
             return Err(Reason::ResonanceWithoutDamping.to(self.method).about(&term));
         }
-        let found = self.at(resonance, scaling)?.ok_or_else(|| {
+        let found = self.answer_at(resonance, scaling)?.ok_or_else(|| {
             let others = self.drive.resonances().into_iter().filter(reaches).collect();
             let asked = resonance;
             Reason::NoResonance { asked, others }.to(self.method)
         })?;
-        if let Some(ratio) = self.near(scaling) {
+        if let Some(ratio) = self.frequency_ratio(scaling) {
             is_near(resonance, ratio, self.method)?;
         }
         Ok(found)
     }
 
-    /// The answer at the likeliest resonance that is not far away; `None` where the drive reaches
+    /// The answer at the likeliest resonance that is not far away; `None` if the drive reaches
     /// none.
     pub(in crate::method) fn answer_near(
         &self,
         scaling: &Scaling,
     ) -> Option<Result<Solution, Refusal>> {
-        let near = self.near(scaling);
+        let near = self.frequency_ratio(scaling);
         let is_near =
             |resonance| near.is_none_or(|ratio| is_near(resonance, ratio, self.method).is_ok());
         let mut candidates = self.candidates(scaling).into_iter();
         let found = candidates
-            .find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
-        self.at(found, scaling).transpose()
+            .find(|candidate| is_near(*candidate) && self.drives_resonance(*candidate, scaling))?;
+        self.answer_at(found, scaling).transpose()
     }
 
-    /// The answer at a resonance; `None` where the drive does not reach the motion there.
-    pub(in crate::method) fn at(
+    /// The answer at a resonance; `None` if the drive does not reach the motion there.
+    pub(in crate::method) fn answer_at(
         &self,
         resonance: (u32, u32),
         scaling: &Scaling,
@@ -268,20 +272,20 @@ impl Asked<'_> {
         if !is_ratio(resonance) {
             return Ok(None);
         }
-        let question = Question::new(self, scaling, resonance)?;
+        let question = DrivenProblem::new(self, scaling, resonance)?;
         let expansion = question.expand(false)?;
-        let slow = Slow::new(&expansion, &question);
+        let slow = SlowRates::new(&expansion, &question);
         if !slow.is_resonant() {
             return Ok(None);
         }
         let still = question.expand(true)?;
-        let found = DrivenExpansion { still: Slow::new(&still, &question), slow, expansion };
+        let found = DrivenExpansion { still: SlowRates::new(&still, &question), slow, expansion };
         question.answer(&found).map(Some)
     }
 }
 
 /// Whether a linear force without damping is driven at its own frequency.
-fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
+fn is_driven_at_own_frequency(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
     let own = drive.terms.iter().find(|driven| p * driven.multiple == q);
     let squared =
         own.and_then(|driven| drive.frequency_of(driven).integer_power(2).ok()?.expand().ok());
@@ -290,7 +294,7 @@ fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
 }
 
 /// A question to the expansion.
-pub(super) struct Question<'a> {
+pub(super) struct DrivenProblem<'a> {
     method: Method,
     pub(super) oscillator: &'a Oscillator,
     pub(super) scaling: &'a Scaling,
@@ -300,22 +304,23 @@ pub(super) struct Question<'a> {
     pub(super) linear_frequency: Polynomial,
     root: Option<Definition>,
     definitions: Vec<Definition>,
-    pub(super) names: Names,
+    pub(super) names: ExpansionSymbols,
     pub(super) sigma: Symbol,
-    /// By the multiple of a drive far from resonance `Lambda` of its cosine, and of its sine.
+    /// The symbols `Lambda` of the cosine and of the sine of each drive far from resonance, by its
+    /// multiple.
     lambda: BTreeMap<u32, [Symbol; 2]>,
     pub(super) taken: Vec<Symbol>,
 }
 
-impl<'a> Question<'a> {
+impl<'a> DrivenProblem<'a> {
     fn new(
-        asked: &Asked<'a>,
+        asked: &DrivenRequest<'a>,
         scaling: &'a Scaling,
         resonance: (u32, u32),
     ) -> Result<Self, Refusal> {
         let (oscillator, drive) = (asked.oscillator, asked.drive);
         let LinearPart { frequency: linear_frequency, root, definitions, taken } =
-            LinearPart::of(&scaling.force, oscillator);
+            LinearPart::new(&scaling.force, oscillator);
         let (p, q) = resonance;
         let hard = drive.terms.iter().filter(|driven| driven.is_force(oscillator.coordinate));
         let hard: BTreeSet<u32> =
@@ -334,7 +339,7 @@ impl<'a> Question<'a> {
             linear_frequency,
             root,
             definitions,
-            names: Names::new(&taken, oscillator.coordinate, scaling.marker),
+            names: ExpansionSymbols::new(&taken, oscillator.coordinate, scaling.marker),
             sigma: fresh("sigma", &taken),
             lambda: hard.into_iter().map(|multiple| (multiple, lambda(multiple))).collect(),
             taken,
@@ -386,7 +391,7 @@ impl<'a> Question<'a> {
     }
 
     /// The expansion; `still` leaves damping out, and a small drive.
-    fn expand(&self, still: bool) -> Result<Expansion, Refusal> {
+    fn expand(&self, still: bool) -> Result<MultipleScalesExpansion, Refusal> {
         let (p, q) = self.resonance;
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
         let mut forced: BTreeMap<u32, Complex> = BTreeMap::new();
@@ -416,7 +421,7 @@ impl<'a> Question<'a> {
         }
         let turning = Polynomial::symbol(self.sigma)
             .product(&Polynomial::constant(ratio(1, i64::from(p) * i64::from(q))));
-        let scaled = Scaled {
+        let scaled = ScaledProblem {
             terms,
             linear_frequency: self.linear_frequency.clone(),
             own: q as i32,
@@ -442,7 +447,8 @@ impl<'a> Question<'a> {
         driven.is_force(self.oscillator.coordinate) && p * driven.multiple != q
     }
 
-    /// What `Lambda` stands for: `F/(2 (omega0^2 - Omega^2))`, of the cosines and of the sines.
+    /// The definitions of `Lambda`, `F/(2 (omega0^2 - Omega^2))`, for the cosines and the sines of
+    /// drives far from resonance.
     fn forced_sizes(&self) -> Result<Vec<Definition>, Refusal> {
         let mut found = vec![];
         let symbols = self.lambda.iter().flat_map(|(multiple, symbols)| {
@@ -481,15 +487,15 @@ impl<'a> Question<'a> {
     }
 }
 
-/// What an expansion of a driven motion found.
+/// The result of the expansion of a driven motion.
 struct DrivenExpansion {
-    expansion: Expansion,
-    slow: Slow,
+    expansion: MultipleScalesExpansion,
+    slow: SlowRates,
     /// Without damping and drive.
-    still: Slow,
+    still: SlowRates,
 }
 
-impl Question<'_> {
+impl DrivenProblem<'_> {
     fn answer(&self, found: &DrivenExpansion) -> Result<Solution, Refusal> {
         let DrivenExpansion { expansion, slow, still } = found;
         let (p, q) = self.resonance;
@@ -510,7 +516,7 @@ impl Question<'_> {
         definitions.extend(drive.definitions.iter().cloned());
         definitions.extend(forced);
         definitions.extend(scaling.bookkeeping.clone());
-        let backbone = self.unmarked(&backbone(&Slow::still(&still.phase), self));
+        let backbone = self.unmarked(&backbone(&SlowRates::constant_part(&still.phase), self));
         let averaged = self.method == Method::Averaging;
         // Averaging has its motion to one order less than its rates.
         let highest = if averaged { scaling.order - 1 } else { scaling.order };
@@ -553,8 +559,8 @@ impl Question<'_> {
         Ok(motion.into_solution(self.oscillator))
     }
 
-    /// What counts as small beside the small parameters of the answer: the detuning, and drives
-    /// without such a parameter.
+    /// The quantities that are small beside the small parameters of the answer: the detuning, and
+    /// drives without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];
         for driven in self.drive.terms.iter().filter(|driven| driven.above == 0) {

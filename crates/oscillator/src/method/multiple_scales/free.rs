@@ -3,17 +3,17 @@
 
 use num_traits::Zero as _;
 
-use super::answer::{Found, solution};
+use super::answer::{MultipleScalesResult, solution};
 use super::derivation::{derivation, motion_of};
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::release::release;
 use super::scaling::{Scaling, scaling};
 use super::slow_equations::{Cycles, SlowEquations, cycles};
-use super::slow_times::Scaled;
+use super::slow_times::ScaledProblem;
 use super::undriven;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::Expr;
-use crate::method::limit_cycle::Units;
+use crate::method::limit_cycle::FrequencyUnits;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
@@ -30,7 +30,7 @@ const HIGHEST: [u32; 2] = [3, 6];
 /// The slow equations of a free motion and what follows from them.
 ///
 /// # Errors
-/// What stops an expansion, an order above those that there are, a limit cycle without a closed
+/// A force that cannot be expanded, an order above the highest, or a limit cycle without a closed
 /// form.
 pub(super) fn solve(
     oscillator: &Oscillator,
@@ -39,12 +39,12 @@ pub(super) fn solve(
 ) -> Result<Solution, Refusal> {
     let mut scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
     scaling.force.write_with_frequency(&oscillator.names());
-    let linear = LinearPart::of(&scaling.force, oscillator);
-    let units = Units::new(&scaling.force, linear.frequency.clone());
+    let linear = LinearPart::new(&scaling.force, oscillator);
+    let units = FrequencyUnits::new(&scaling.force, linear.frequency.clone());
     let cycles = cycles(&scaling, &units, options, &linear.taken)?;
-    let names = Names::new(&linear.taken, oscillator.coordinate, scaling.marker);
+    let names = ExpansionSymbols::new(&linear.taken, oscillator.coordinate, scaling.marker);
     let order = scaling.order as usize;
-    let scaled = Scaled {
+    let scaled = ScaledProblem {
         terms: scaling.force.terms.iter().map(undriven).collect(),
         linear_frequency: linear.frequency.clone(),
         own: 1,
@@ -66,7 +66,7 @@ pub(super) fn solve(
     let rates = [&free.slow.amplitude, &free.slow.phase].map(|rate| free.written(&free.cut(rate)));
     let rates = rates.each_ref().map(Expr::from);
     let derivation = derivation(&expansion, &scaling, &names, &linear.frequency, &rates, None)?;
-    let mut found = Found {
+    let mut found = MultipleScalesResult {
         definitions: linear.definitions.clone(),
         law: Law::Frequency(free.written(&free.cut(&free.slow.phase))),
         displacement: free.written_motion(&free.motion),
@@ -76,11 +76,11 @@ pub(super) fn solve(
         derivation,
     };
     if let Some(cycles) = &cycles {
-        free.settle(cycles, &mut found)?;
+        free.place_on_cycle(cycles, &mut found)?;
     }
     found.definitions.extend(scaling.bookkeeping.clone());
     found.validity.extend(linear.root.clone().map(Note::Positive));
-    // Where the amplitude changes the motion has a start.
+    // If the amplitude changes in time, the motion has a start.
     if !found.modulation.is_conservative() {
         free.start(&mut found, &oscillator.names());
     }
@@ -93,11 +93,11 @@ struct Free<'a> {
     motion: FourierSeries<Polynomials>,
     scaling: &'a Scaling,
     linear: &'a LinearPart,
-    names: &'a Names,
+    names: &'a ExpansionSymbols,
 }
 
 impl Free<'_> {
-    /// Up to the order of the answer.
+    /// Truncates a polynomial after the order of the answer.
     fn cut(&self, polynomial: &Polynomial) -> Polynomial {
         polynomial.truncated(self.names.marker, self.scaling.order as i32)
     }
@@ -145,9 +145,13 @@ impl Free<'_> {
         Expr::from(&self.written(&rate.truncated(self.names.marker, lowest)))
     }
 
-    /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept
-    /// beside it.
-    fn settle(&self, cycles: &Cycles, found: &mut Found) -> Result<(), Refusal> {
+    /// Restricts the motion to the chosen limit cycle; the motion in the amplitude is kept beside
+    /// it.
+    fn place_on_cycle(
+        &self,
+        cycles: &Cycles,
+        found: &mut MultipleScalesResult,
+    ) -> Result<(), Refusal> {
         let (scaling, names) = (self.scaling, self.names);
         let cycle = &cycles.cycles[cycles.number - 1];
         let order = scaling.order as usize;
@@ -183,9 +187,9 @@ impl Free<'_> {
         Ok(())
     }
 
-    /// Where a motion released at rest begins, to the order to which the slow equations tell it,
-    /// and its closed form from there.
-    fn start(&self, found: &mut Found, names: &[Symbol]) {
+    /// Adds the initial amplitude and phase of a motion released from rest, to the order of the
+    /// slow equations, and the closed form from there.
+    fn start(&self, found: &mut MultipleScalesResult, names: &[Symbol]) {
         let order = (self.scaling.order as usize).saturating_sub(1);
         let rates = [&self.slow.amplitude, &self.slow.phase];
         let begins = release(&self.motion, rates, &self.linear.frequency, self.names, order);

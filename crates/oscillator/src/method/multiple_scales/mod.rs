@@ -9,10 +9,10 @@
 //! a' = sum eps^k f_k(a),   theta' = omega0 + sum eps^k g_k(a),   f_k + i a g_k = 2 e^(-i beta) D_k B,  B = (a/2) e^(i beta)
 //! ```
 //!
-//! What the slow derivatives `D_k B` are is for `slow_times`. The motion leaves out homogeneous
+//! The slow derivatives `D_k B` are computed in `slow_times`. The motion leaves out homogeneous
 //! solutions, so `a` is the amplitude of the first harmonic to every order. A free conservative
-//! motion keeps its amplitude, and `theta'` is its frequency; a self-excited one ends where
-//! `f = 0`, on a limit cycle.
+//! motion keeps its amplitude, and `theta'` is its frequency; a self-excited one ends at `f = 0`,
+//! on a limit cycle.
 //!
 //! Parameters that have to vanish together, as in `x'' + 2*zeta*x' + x + eps*x^3 = 0`, count as
 //! equally small. In powers of the amplitude a linear damping counts as its square, so that it

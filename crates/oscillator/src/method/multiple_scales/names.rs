@@ -1,17 +1,17 @@
-//! What a derivation by multiple scales introduces: the names of the complex amplitude, the slow
-//! phase, the orders.
+//! Symbols that a derivation by multiple scales introduces: the complex amplitude, the slow phase,
+//! the orders.
 
 use num_traits::Zero as _;
 
-use super::slow_times::Amplitude;
+use super::slow_times::ComplexAmplitude;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::solution::AmplitudeConvention;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The symbols.
-pub(super) struct Names {
-    pub(super) complex: Amplitude,
+pub(super) struct ExpansionSymbols {
+    pub(super) complex: ComplexAmplitude,
     /// Marks the orders: the small parameter, or a symbol that is one.
     pub(super) marker: Symbol,
     /// The slow phase.
@@ -19,18 +19,17 @@ pub(super) struct Names {
     pub(super) amplitude: Symbol,
     /// The imaginary unit.
     pub(super) unit: Symbol,
-    /// What the orders of the motion are called before their numbers, and the rates of `B` on the
-    /// times.
+    /// The stems of the names of the orders of the motion, and of the rates of `B` on the times.
     pub(super) orders: [String; 2],
 }
 
-impl Names {
+impl ExpansionSymbols {
     pub(super) fn new(taken: &[Symbol], coordinate: Symbol, marker: Option<Symbol>) -> Self {
         let own = fresh("B", taken);
         Self {
             unit: fresh("i", taken),
             orders: [coordinate, own].map(|name| fresh_stem(name.name(), taken)),
-            complex: Amplitude { own, conjugate: fresh("Bc", taken) },
+            complex: ComplexAmplitude { own, conjugate: fresh("Bc", taken) },
             marker: marker.unwrap_or_else(|| fresh("delta", taken)),
             phase: fresh("psi", taken),
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),

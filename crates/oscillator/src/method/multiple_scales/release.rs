@@ -1,4 +1,5 @@
-//! Where a motion released at rest begins, in powers of what is small.
+//! The initial amplitude and phase of a motion released from rest, as series in the small
+//! parameter.
 //!
 //! ```text
 //! x(a, theta) = A,   x' = a' x_a + theta' x_theta = 0 at t = 0,   x = a cos(theta) + ...
@@ -7,7 +8,7 @@
 
 use num_traits::Zero as _;
 
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
@@ -16,12 +17,12 @@ use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 
 /// `a(0)` and `theta(0)` in `A`, up to an order of the marker, from the motion and its slow
-/// equations; `None` where they have powers of the amplitude below zero.
+/// equations; `None` if they have powers of the amplitude below zero.
 pub(super) fn release(
     motion: &FourierSeries<Polynomials>,
     [amplitude_rate, phase_rate]: [&Polynomial; 2],
     linear_frequency: &Polynomial,
-    names: &Names,
+    names: &ExpansionSymbols,
     order: usize,
 ) -> Option<[Polynomial; 2]> {
     let highest = i32::try_from(order).ok()?;

@@ -1,4 +1,4 @@
-//! What counts as small, and in which power: the force as terms of an expansion.
+//! The small terms of a force and their orders: the force as terms of an expansion.
 //!
 //! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing
 //! leaves the linear oscillator marks the orders; several that have to vanish together count as
@@ -15,16 +15,16 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Definition, Method, Note};
 use crate::symbol::{Symbol, fresh};
 
 /// A force with its orders.
 pub(in crate::method) struct Scaling {
     pub(in crate::method) force: PerturbedForce,
-    /// What marks the orders; `None` where it is the amplitude.
+    /// The bookkeeping parameter; `None` if it is the amplitude.
     pub(in crate::method) marker: Option<Symbol>,
-    /// What stands for the marker in the answer, where the equation does not have it.
+    /// The value of the bookkeeping parameter in the answer, if the equation does not have it.
     pub(in crate::method) marks: Option<Rational>,
     /// The small parameter of the answer.
     pub(in crate::method) small: Symbol,
@@ -56,9 +56,9 @@ impl Scaling {
         result
     }
 
-    /// The same with the small parameter, or the number, in the coefficients and a marker that is
-    /// one: for a motion in which something is small without having it, such as the detuning. An
-    /// expansion in the amplitude stays as it is.
+    /// Returns the scaling with the small parameter, or the number, in the coefficients and a
+    /// bookkeeping parameter that is one: for a motion with a small quantity that does not contain
+    /// it, such as the detuning. An expansion in the amplitude stays as it is.
     pub(super) fn spelt_out(mut self, taken: &[Symbol]) -> Self {
         let (Some(marker), None) = (self.marker, &self.marks) else {
             return self;
@@ -83,13 +83,13 @@ impl Scaling {
         (self.order as usize) < self.small_order
     }
 
-    /// How the expansion is cut.
+    /// The note of the truncation.
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
         let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
         // The marker itself is the small parameter where no letter is one.
         let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
-        Note::Cut(Cut::Truncated {
+        Note::Cut(Truncation::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
             order: self.order,
             marks: bookkeeping.or_else(|| marker().map(Expr::number)),
@@ -129,14 +129,15 @@ pub(super) fn scaling(
                 });
             }
             Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
-            // A name alone says little: what is no polynomial may be one for small motions.
+            // A name alone says little: what is not a polynomial may be one for small motions.
             Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => {
                 refused = Some(error)
             }
             Err(error) => return Err(error.into()),
         }
     }
-    if let Some(found) = together(oscillator, parts, options, small, [default[0], highest[0]])? {
+    if let Some(found) = jointly_small(oscillator, parts, options, small, [default[0], highest[0]])?
+    {
         return Ok(found);
     }
     let times = order_of_shift(oscillator) / SHIFT_OF_A_CUBE;
@@ -153,9 +154,9 @@ pub(super) fn scaling(
 }
 
 /// The expansion in parameters that are small together, or in one that marks all terms but the
-/// linear one of an equation that may have a limit cycle; `None` where the amplitude is to be the
+/// linear one of an equation that may have a limit cycle; `None` if the amplitude is to be the
 /// small parameter.
-fn together(
+fn jointly_small(
     oscillator: &Oscillator,
     parts: &Parts,
     options: &Options,
@@ -284,9 +285,8 @@ pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Par
     linear_damping(&parts.damping, oscillator).is_ok_and(is_all)
 }
 
-/// What is linear at rest of the terms that damp in proportion to the velocity: of
-/// `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function of the velocity, as for dry friction, is
-/// no small damping.
+/// The linear part at rest of the terms that damp in proportion to the velocity: `4*nu*x'` for
+/// `4*nu*x'/(1 + x)^2`. A steep function of the velocity, as for dry friction, is no small damping.
 fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprError> {
     let velocity = Expr::from(oscillator.velocity());
     let mut linear = Vec::new();
@@ -321,7 +321,7 @@ fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusa
     }
 }
 
-/// An error where powers are so high that an expansion would take too long.
+/// An error if powers are so high that an expansion would take too long.
 fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::SecularError> {
     let terms = force.terms.iter();
     bounded(terms.map(|term| term.position + term.velocity), order)

@@ -2,13 +2,13 @@
 
 use num_traits::Zero as _;
 
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::scaling::Scaling;
-use super::slow_times::Expansion;
+use super::slow_times::MultipleScalesExpansion;
 use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::method::limit_cycle::{AmplitudeEquation, Cycle, Units, chosen};
+use crate::method::limit_cycle::{AmplitudeEquation, Cycle, FrequencyUnits, chosen};
 use crate::method::{Options, Reason, Refusal};
 use crate::symbol::{Symbol, fresh};
 
@@ -19,7 +19,11 @@ pub(super) struct SlowEquations {
 }
 
 impl SlowEquations {
-    pub(super) fn new(expansion: &Expansion, linear_frequency: &Polynomial, names: &Names) -> Self {
+    pub(super) fn new(
+        expansion: &MultipleScalesExpansion,
+        linear_frequency: &Polynomial,
+        names: &ExpansionSymbols,
+    ) -> Self {
         let (mut amplitude, mut phase) = (Polynomial::zero(), linear_frequency.clone());
         let two = Polynomial::constant(ratio(2, 1));
         for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
@@ -32,14 +36,14 @@ impl SlowEquations {
         Self { amplitude, phase }
     }
 
-    /// The amplitude at which `a' = 0`, in powers of the marker; `None` where it needs a quotient
-    /// that is no polynomial.
+    /// The amplitude at which `a' = 0`, in powers of the marker; `None` if it needs a quotient that
+    /// is not a polynomial.
     pub(super) fn at_cycle(
         &self,
         cycle: &Cycle,
         linear_frequency: &Polynomial,
         order: usize,
-        names: &Names,
+        names: &ExpansionSymbols,
     ) -> Option<Polynomial> {
         let mut amplitude = cycle.unit.clone();
         let coefficient = |polynomial: &Polynomial, order: usize| {
@@ -79,13 +83,13 @@ pub(super) struct Cycles {
     pub(super) number: usize,
 }
 
-/// The limit cycles of an equation whose amplitude is not free; `None` where it has none.
+/// The limit cycles of an equation whose amplitude is not free; `None` if it has none.
 ///
 /// # Errors
 /// The amplitudes have no closed form, or one that is not there is asked for.
 pub(super) fn cycles(
     scaling: &Scaling,
-    units: &Units,
+    units: &FrequencyUnits,
     options: &Options,
     taken: &[Symbol],
 ) -> Result<Option<Cycles>, Refusal> {

@@ -31,15 +31,15 @@ use crate::symbol::Symbol;
 /// A complex number whose parts are polynomials in the real symbols, in `B` and in its conjugate.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Complex {
-    /// What stands without `i`.
+    /// Real part.
     pub real: Polynomial,
-    /// What stands with it.
+    /// Imaginary part.
     pub imaginary: Polynomial,
 }
 
 /// `B` and its conjugate, as symbols.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Amplitude {
+pub(super) struct ComplexAmplitude {
     /// `B`.
     pub own: Symbol,
     /// Its conjugate.
@@ -47,7 +47,7 @@ pub(super) struct Amplitude {
 }
 
 /// A real function of the fast phase: the coefficient of `e^(i m phi)` by `m`, of both signs.
-pub(super) type Wave = BTreeMap<i32, Complex>;
+pub(super) type FastPhaseSeries = BTreeMap<i32, Complex>;
 
 /// A term of the force on the left side, `eps^order coefficient x^position x'^velocity` times a
 /// wave of the drive.
@@ -66,15 +66,15 @@ pub(super) struct DrivenTerm {
     pub drive: Option<(i32, Quadrature)>,
 }
 
-/// What is expanded.
-pub(super) struct Scaled {
+/// The problem to be expanded.
+pub(super) struct ScaledProblem {
     /// The terms of the force beside the linear one.
     pub terms: Vec<DrivenTerm>,
     /// `omega0`, a single term.
     pub linear_frequency: Polynomial,
     /// `s`: the harmonic of the fast phase at which the motion swings freely.
     pub own: i32,
-    /// How much faster than `omega0/s` the fast phase turns, and at which order.
+    /// The order of the detuning and its size: the rate of the fast phase less `omega0/s`.
     pub detuning: Option<(usize, Polynomial)>,
     /// Motions that drives far from resonance force at leading order: their harmonics `r`, and
     /// `Lambda` of each.
@@ -84,12 +84,12 @@ pub(super) struct Scaled {
 }
 
 /// The expansion, order by order.
-pub(super) struct Expansion {
+pub(super) struct MultipleScalesExpansion {
     /// `x_0`, `x_1`, ...
-    pub displacement: Vec<Wave>,
+    pub displacement: Vec<FastPhaseSeries>,
     /// `D_k B`; the first entry, that of the fast time, is zero.
     pub rates: Vec<Complex>,
-    /// What stood at `e^(i s phi)` before `D_k B` took it away, by order.
+    /// The coefficient of `e^(i s phi)` that `D_k B` removes, by order.
     pub resonant: Vec<Complex>,
 }
 
@@ -138,10 +138,10 @@ impl Complex {
         Self { real, imaginary: self.real.clone() }
     }
 
-    pub(super) fn conjugate(&self, amplitude: Amplitude) -> Self {
-        let mut imaginary = amplitude.exchanged(&self.imaginary);
+    pub(super) fn conjugate(&self, amplitude: ComplexAmplitude) -> Self {
+        let mut imaginary = amplitude.conjugated(&self.imaginary);
         imaginary.negate();
-        Self { real: amplitude.exchanged(&self.real), imaginary }
+        Self { real: amplitude.conjugated(&self.real), imaginary }
     }
 
     /// Its derivative with respect to a symbol.
@@ -150,9 +150,9 @@ impl Complex {
     }
 }
 
-impl Amplitude {
+impl ComplexAmplitude {
     /// `B` and its conjugate exchanged.
-    fn exchanged(self, polynomial: &Polynomial) -> Polynomial {
+    fn conjugated(self, polynomial: &Polynomial) -> Polynomial {
         let mut result = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
             let (p, q) = (monomial.exponent(self.own), monomial.exponent(self.conjugate));
@@ -169,7 +169,7 @@ fn number(value: i64) -> Polynomial {
     Polynomial::constant(Rational::from_integer(value.into()))
 }
 
-fn add(wave: &mut Wave, harmonic: i32, term: &Complex) {
+fn add(wave: &mut FastPhaseSeries, harmonic: i32, term: &Complex) {
     let known = wave.entry(harmonic).or_insert_with(Complex::zero);
     known.accumulate(term);
     if known.is_zero() {
@@ -177,15 +177,19 @@ fn add(wave: &mut Wave, harmonic: i32, term: &Complex) {
     }
 }
 
-fn accumulate(sum: &mut Wave, wave: &Wave) {
+fn accumulate(sum: &mut FastPhaseSeries, wave: &FastPhaseSeries) {
     for (harmonic, term) in wave {
         add(sum, *harmonic, term);
     }
 }
 
 /// The product of two real waves: harmonics below zero are conjugates of those above.
-fn product(left: &Wave, right: &Wave, amplitude: Amplitude) -> Wave {
-    let mut result = Wave::new();
+fn product(
+    left: &FastPhaseSeries,
+    right: &FastPhaseSeries,
+    amplitude: ComplexAmplitude,
+) -> FastPhaseSeries {
+    let mut result = FastPhaseSeries::new();
     for (m, a) in left {
         for (n, b) in right {
             if m + n >= 0 {
@@ -197,7 +201,7 @@ fn product(left: &Wave, right: &Wave, amplitude: Amplitude) -> Wave {
 }
 
 /// A real wave from its harmonics from zero on.
-fn mirrored(mut wave: Wave, amplitude: Amplitude) -> Wave {
+fn mirrored(mut wave: FastPhaseSeries, amplitude: ComplexAmplitude) -> FastPhaseSeries {
     let above: Vec<(i32, Complex)> = wave
         .iter()
         .filter(|entry| *entry.0 > 0)
@@ -209,12 +213,12 @@ fn mirrored(mut wave: Wave, amplitude: Amplitude) -> Wave {
 
 /// Power series of waves, cut after `highest`.
 fn series_product(
-    left: &[Wave],
-    right: &[Wave],
+    left: &[FastPhaseSeries],
+    right: &[FastPhaseSeries],
     highest: usize,
-    amplitude: Amplitude,
-) -> Vec<Wave> {
-    let mut result = vec![Wave::new(); highest + 1];
+    amplitude: ComplexAmplitude,
+) -> Vec<FastPhaseSeries> {
+    let mut result = vec![FastPhaseSeries::new(); highest + 1];
     for (i, a) in left.iter().enumerate() {
         for (j, b) in right.iter().enumerate().take((highest + 1).saturating_sub(i)) {
             if !a.is_empty() && !b.is_empty() {
@@ -225,8 +229,14 @@ fn series_product(
     result
 }
 
-fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitude) -> Vec<Wave> {
-    let mut result = vec![Wave::from([(0, Complex::real(Polynomial::constant(Rational::one())))])];
+fn series_power(
+    base: &[FastPhaseSeries],
+    exponent: u32,
+    highest: usize,
+    amplitude: ComplexAmplitude,
+) -> Vec<FastPhaseSeries> {
+    let mut result =
+        vec![FastPhaseSeries::from([(0, Complex::real(Polynomial::constant(Rational::one())))])];
     let mut square = base.to_vec();
     let mut rest = exponent;
     while rest > 0 {
@@ -241,13 +251,13 @@ fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitu
     result
 }
 
-impl Scaled {
+impl ScaledProblem {
     /// Expands to the highest order.
-    pub(super) fn expand(&self, amplitude: Amplitude) -> Expansion {
+    pub(super) fn expand(&self, amplitude: ComplexAmplitude) -> MultipleScalesExpansion {
         let inverse = self.linear_frequency.power(-1).unwrap_or_else(Polynomial::zero);
         let own = Complex::real(Polynomial::symbol(amplitude.own));
-        let mut found = Expansion {
-            displacement: vec![mirrored(Wave::from([(self.own, own)]), amplitude)],
+        let mut found = MultipleScalesExpansion {
+            displacement: vec![mirrored(FastPhaseSeries::from([(self.own, own)]), amplitude)],
             rates: vec![Complex::zero()],
             resonant: vec![Complex::zero()],
         };
@@ -257,7 +267,7 @@ impl Scaled {
         for order in 1..=self.order {
             // With D_k B left out: it is what the resonant terms are to fix.
             found.rates.push(Complex::zero());
-            let mut moving = Wave::new();
+            let mut moving = FastPhaseSeries::new();
             for j in 1..=order {
                 let part = self.derivative(&found, j, &found.displacement[order - j], amplitude);
                 accumulate(&mut moving, &part);
@@ -269,14 +279,15 @@ impl Scaled {
                     &self.derivative(&found, j, &velocity[order - j], amplitude),
                 );
             }
-            let total = |own: &[Wave], forced: &[Wave]| -> Vec<Wave> {
-                let sum = |k: usize| {
-                    let mut sum = own.get(k).cloned().unwrap_or_default();
-                    accumulate(&mut sum, forced.get(k).unwrap_or(&Wave::new()));
-                    sum
+            let total =
+                |own: &[FastPhaseSeries], forced: &[FastPhaseSeries]| -> Vec<FastPhaseSeries> {
+                    let sum = |k: usize| {
+                        let mut sum = own.get(k).cloned().unwrap_or_default();
+                        accumulate(&mut sum, forced.get(k).unwrap_or(&FastPhaseSeries::new()));
+                        sum
+                    };
+                    (0..order).map(sum).collect()
                 };
-                (0..order).map(sum).collect()
-            };
             let positions = total(&found.displacement, &forced);
             let velocities = total(&velocity, &forced_velocity);
             accumulate(&mut right, &self.force(order, &positions, &velocities, amplitude));
@@ -290,7 +301,7 @@ impl Scaled {
             let displacement = self.particular(&right, &inverse);
             let mut fast = self.derivative(&found, 0, &displacement, amplitude);
             accumulate(&mut fast, &moving);
-            let turned = Wave::from([(self.own, rate.clone())]);
+            let turned = FastPhaseSeries::from([(self.own, rate.clone())]);
             accumulate(&mut fast, &mirrored(turned, amplitude));
             velocity.push(fast);
             found.displacement.push(displacement);
@@ -305,12 +316,15 @@ impl Scaled {
     }
 
     /// The forced part and its velocity, order by order.
-    fn forced_motion(&self, amplitude: Amplitude) -> (Vec<Wave>, Vec<Wave>) {
+    fn forced_motion(
+        &self,
+        amplitude: ComplexAmplitude,
+    ) -> (Vec<FastPhaseSeries>, Vec<FastPhaseSeries>) {
         if self.forced.is_empty() {
             return (vec![], vec![]);
         }
         let wave = mirrored(self.forced.iter().cloned().collect(), amplitude);
-        let still = Expansion {
+        let still = MultipleScalesExpansion {
             displacement: vec![],
             rates: vec![Complex::zero(); self.order + 1],
             resonant: vec![],
@@ -320,8 +334,14 @@ impl Scaled {
     }
 
     /// `D_j` of a wave, with the `D_k B` that are known.
-    fn derivative(&self, found: &Expansion, j: usize, wave: &Wave, amplitude: Amplitude) -> Wave {
-        let mut result = Wave::new();
+    fn derivative(
+        &self,
+        found: &MultipleScalesExpansion,
+        j: usize,
+        wave: &FastPhaseSeries,
+        amplitude: ComplexAmplitude,
+    ) -> FastPhaseSeries {
+        let mut result = FastPhaseSeries::new();
         let turning = match &self.detuning {
             _ if j == 0 => Some(
                 self.linear_frequency.product(&Polynomial::constant(ratio(1, self.own.into()))),
@@ -348,11 +368,11 @@ impl Scaled {
     fn force(
         &self,
         order: usize,
-        positions: &[Wave],
-        velocities: &[Wave],
-        amplitude: Amplitude,
-    ) -> Wave {
-        let mut sum = Wave::new();
+        positions: &[FastPhaseSeries],
+        velocities: &[FastPhaseSeries],
+        amplitude: ComplexAmplitude,
+    ) -> FastPhaseSeries {
+        let mut sum = FastPhaseSeries::new();
         for term in self.terms.iter().filter(|term| term.order <= order) {
             let highest = order - term.order;
             let x = series_power(positions, term.position, highest, amplitude);
@@ -373,7 +393,7 @@ impl Scaled {
     }
 
     /// The particular solution, without what is resonant: divided by `omega0^2 (1 - (m/s)^2)`.
-    fn particular(&self, right: &Wave, inverse: &Polynomial) -> Wave {
+    fn particular(&self, right: &FastPhaseSeries, inverse: &Polynomial) -> FastPhaseSeries {
         let own = i64::from(self.own);
         let solved = right.iter().filter(|entry| entry.0.abs() != self.own).map(|(m, value)| {
             let m = i64::from(*m);
@@ -392,7 +412,7 @@ impl Complex {
 }
 
 /// `cos(m phi)` or `sin(m phi)`.
-fn drive(harmonic: i32, quadrature: Quadrature) -> Wave {
+fn drive(harmonic: i32, quadrature: Quadrature) -> FastPhaseSeries {
     let half = Polynomial::constant(ratio(1, 2));
     let above = match quadrature {
         Quadrature::Cosine => Complex::real(half),
@@ -400,5 +420,5 @@ fn drive(harmonic: i32, quadrature: Quadrature) -> Wave {
     };
     let below =
         Complex { real: above.real.clone(), imaginary: Complex::zero().minus(&above).imaginary };
-    Wave::from([(harmonic, above), (-harmonic, below)])
+    FastPhaseSeries::from([(harmonic, above), (-harmonic, below)])
 }

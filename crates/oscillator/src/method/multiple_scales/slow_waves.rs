@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use num_integer::Integer as _;
 use num_traits::Zero;
 
-use super::driven::Question;
-use super::names::Names;
-use super::slow_times::{Complex, Expansion};
+use super::driven::DrivenProblem;
+use super::names::ExpansionSymbols;
+use super::slow_times::{Complex, MultipleScalesExpansion};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, Rational};
@@ -20,20 +20,20 @@ use crate::solution::response::Plane;
 use crate::symbol::{Symbol, fresh};
 
 /// `a'` and `a psi'/p` as waves of the slow phase, by its multiple: cosines and sines.
-pub(super) struct Slow {
+pub(super) struct SlowRates {
     pub(super) amplitude: PhaseWaves,
     pub(super) phase: PhaseWaves,
 }
 
-impl Slow {
-    pub(super) fn new(expansion: &Expansion, question: &Question) -> Self {
+impl SlowRates {
+    pub(super) fn new(expansion: &MultipleScalesExpansion, question: &DrivenProblem) -> Self {
         Self::of_orders(expansion, question, |_| true)
     }
 
-    /// What some of the orders add.
+    /// The contribution of some of the orders.
     pub(super) fn of_orders(
-        expansion: &Expansion,
-        question: &Question,
+        expansion: &MultipleScalesExpansion,
+        question: &DrivenProblem,
         wanted: impl Fn(usize) -> bool,
     ) -> Self {
         let zero = || [Polynomial::zero(), Polynomial::zero()];
@@ -103,13 +103,13 @@ impl Slow {
         })
     }
 
-    /// What does not turn with the phase: `P` or `Q`.
-    pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
+    /// The constant part of the waves: `P` or `Q`.
+    pub(super) fn constant_part(waves: &PhaseWaves) -> Polynomial {
         waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
 
     /// `a'` and `psi'`.
-    pub(super) fn rates(&self, question: &Question) -> Result<[Expr; 2], Refusal> {
+    pub(super) fn rates(&self, question: &DrivenProblem) -> Result<[Expr; 2], Refusal> {
         let names = &question.names;
         let times = Rational::from_integer(question.resonance.0.into());
         let over = Polynomial::term(Monomial::power_of(names.amplitude, -1), times);
@@ -138,7 +138,7 @@ impl Slow {
 
 /// The frequency of the motion itself where `Q = 0` without damping and drive, in powers of the
 /// marker: `omega0 + sigma/p`.
-pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
+pub(super) fn backbone(still: &Polynomial, question: &DrivenProblem) -> Polynomial {
     let names = &question.names;
     let order = question.scaling.order as i32;
     let (sigma, a) = (question.sigma, names.amplitude);
@@ -169,9 +169,9 @@ pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
 /// Everything that follows from the slow equations of a steady motion, which is itself written to
 /// an order of its own.
 pub(super) fn response(
-    question: &Question,
-    expansion: &Expansion,
-    slow: &Slow,
+    question: &DrivenProblem,
+    expansion: &MultipleScalesExpansion,
+    slow: &SlowRates,
     highest: usize,
 ) -> Result<Response, Refusal> {
     let a = question.names.amplitude;
@@ -186,9 +186,9 @@ pub(super) fn response(
     };
     let found = match rates.iter().all(is_simple) {
         true => {
-            let still = rates.each_ref().map(|waves| unmarked(Slow::still(waves)));
+            let still = rates.each_ref().map(|waves| unmarked(SlowRates::constant_part(waves)));
             let waves = rates.each_ref().map(|waves| turning(waves).map(unmarked));
-            FrequencyResponse::of(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
+            FrequencyResponse::from_rates(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
         }
         false => FrequencyResponse::of_relation(cut, a),
     };
@@ -205,10 +205,10 @@ pub(super) fn response(
     })
 }
 
-/// What some of the orders add to `x(t)`, in `t`, the amplitude and the phase.
+/// The contribution of some of the orders to `x(t)`, in `t`, the amplitude and the phase.
 pub(super) fn motion(
-    question: &Question,
-    expansion: &Expansion,
+    question: &DrivenProblem,
+    expansion: &MultipleScalesExpansion,
     wanted: impl Fn(usize) -> bool,
 ) -> Result<Expr, Refusal> {
     let names = &question.names;
@@ -250,7 +250,11 @@ pub(super) fn motion(
 
 /// The slow equations in `u = a cos(psi/p)` and `v = -a sin(psi/p)`, that is `2 B = u + i v`:
 /// without a singular origin.
-fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -> Plane {
+fn plane(
+    question: &DrivenProblem,
+    expansion: &MultipleScalesExpansion,
+    coordinates: [Symbol; 2],
+) -> Plane {
     let names = &question.names;
     let mut parts: BTreeMap<SlowPart, BTreeMap<usize, Complex>> = BTreeMap::new();
     for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
@@ -289,19 +293,24 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
     Plane { coordinates, rates: unmarked(&rates), parts: if several { parts } else { vec![] } }
 }
 
-/// What slow equations are made of, each part with an order of its own that leads.
+/// The parts of the slow equations, each with a leading order of its own.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum SlowPart {
     /// `a'` without the phase.
     Drains,
     /// `psi'` without the phase.
     Turns,
-    /// What turns so many times with the phase.
+    /// The harmonic of the phase with this number.
     Wave(u32),
 }
 
 /// A term of `2 B'` in `u` and `v`.
-fn in_plane(monomial: &Monomial, number: &Rational, names: &Names, [u, v]: [Symbol; 2]) -> Complex {
+fn in_plane(
+    monomial: &Monomial,
+    number: &Rational,
+    names: &ExpansionSymbols,
+    [u, v]: [Symbol; 2],
+) -> Complex {
     let half = Polynomial::constant(ratio(1, 2));
     let of = |sign: i64| Complex {
         real: Polynomial::symbol(u).product(&half),

@@ -24,8 +24,8 @@ static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
 pub(in crate::method) struct Factored(Vec<(u64, u64)>);
 
 impl Factored {
-    /// The factors of a number whose primes are all small; `None` of another.
-    pub fn of(number: &Integer) -> Option<Self> {
+    /// The factors of a number whose primes are all small; `None` for another.
+    pub fn factorize(number: &Integer) -> Option<Self> {
         let mut rest = number.clone();
         let mut factored = Self::default();
         let halvings = remove(&mut rest, 2, u64::MAX);
@@ -41,7 +41,7 @@ impl Factored {
         rest.is_one().then_some(factored)
     }
 
-    /// The product with a word whose primes are all small; `None` of another.
+    /// The product with a word whose primes are all small; `None` for another.
     fn with_factors_of(mut self, word: u64) -> Option<Self> {
         let mut rest = word;
         for prime in SMALL.iter() {
@@ -98,7 +98,7 @@ impl Factored {
     }
 
     /// The product.
-    pub fn times(&self, other: &Self) -> Self {
+    pub fn product(&self, other: &Self) -> Self {
         let mut product = self.clone();
         for &(prime, exponent) in &other.0 {
             product.set(prime, product.exponent(prime) + exponent);
@@ -107,7 +107,7 @@ impl Factored {
     }
 
     /// The quotient, where what the divisor has more of is left out.
-    pub fn over(&self, divisor: &Self) -> Self {
+    pub fn quotient(&self, divisor: &Self) -> Self {
         let left = self
             .0
             .iter()
@@ -126,7 +126,7 @@ impl Factored {
     }
 
     /// As residues of it are formed.
-    pub(super) fn ladder(&self) -> Ladder {
+    pub(super) fn ladder(&self) -> ExponentBits {
         let digits = self.0.iter().map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
         let digits = digits.max().unwrap_or(0);
         let with_digit = |digit: u32| -> Vec<u64> {
@@ -134,7 +134,7 @@ impl Factored {
             let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
             words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
         };
-        Ladder((0..digits).rev().map(with_digit).collect())
+        ExponentBits((0..digits).rev().map(with_digit).collect())
     }
 
     /// The number of its binary digits.
@@ -173,11 +173,11 @@ impl Factored {
             numerator /= &divisor;
             denominator /= &divisor;
             // Of a prime no more than a word was looked for.
-            left = left.over(&common);
+            left = left.quotient(&common);
         }
     }
 
-    /// What all of these numbers have in common with this one.
+    /// Greatest common divisor of this number and all of the others.
     pub fn common(&self, numbers: &[Integer]) -> Self {
         let numbers: Vec<&Integer> = numbers.iter().filter(|number| !number.is_zero()).collect();
         let mut common = Self::default();
@@ -238,9 +238,9 @@ impl Factored {
 
 /// A number by the binary digits of the exponents of its primes, the highest first: for each digit
 /// the product of the primes that have it, in words. A square for each digit serves all primes.
-pub(super) struct Ladder(Vec<Vec<u64>>);
+pub(super) struct ExponentBits(Vec<Vec<u64>>);
 
-impl Ladder {
+impl ExponentBits {
     /// The residue of the number.
     pub fn residue(&self, modulus: &Modulus) -> u64 {
         self.0.iter().fold(modulus.one, |power, words| {
@@ -324,10 +324,10 @@ fn remove(number: &mut Integer, prime: u64, most: u64) -> u64 {
     removed
 }
 
-/// How denominators grow with the order, beside a factor `c^n`.
+/// The growth of denominators with the order, beside a factor `c^n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Growth {
-    /// Not at all.
+    /// No growth beside that factor.
     Power,
     /// As `(2n+1)!`.
     Factorial,
@@ -338,7 +338,7 @@ pub(super) enum Growth {
 }
 
 impl Growth {
-    /// From the one with the shortest numbers on.
+    /// All kinds, that with the shortest numbers first.
     pub const ALL: [Self; 4] =
         [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 
@@ -354,8 +354,9 @@ impl Growth {
             let mut number = numbers[order - 1].clone();
             if matches!(self, Self::Factorial | Self::FactorialMultiples) {
                 let twice = 2 * order as u64;
-                number =
-                    number.times(&Factored::of_word(twice)).times(&Factored::of_word(twice + 1));
+                number = number
+                    .product(&Factored::of_word(twice))
+                    .product(&Factored::of_word(twice + 1));
             }
             if matches!(self, Self::Multiples | Self::FactorialMultiples) {
                 let last = largest_factor(order);
@@ -382,7 +383,7 @@ impl Growth {
         let fitted = |count: usize| {
             let mut base = Factored::default();
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
-                let rest = own.over(&numbers[order]);
+                let rest = own.quotient(&numbers[order]);
                 for (prime, exponent) in rest.0 {
                     base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
                 }
@@ -408,7 +409,7 @@ impl Growth {
             None => {
                 let mut power = base.clone();
                 power.0.iter_mut().for_each(|factor| factor.1 *= order as u64);
-                power.times(&numbers[order])
+                power.product(&numbers[order])
             }
         };
         Some((0..=highest).map(denominator).collect())
@@ -426,19 +427,19 @@ mod tests {
 
     #[test]
     fn factors_and_lowest_terms() {
-        let number = Factored::of(&integer(720_720)).expect("small factors");
+        let number = Factored::factorize(&integer(720_720)).expect("small factors");
         assert_eq!(number.value(), integer(720_720));
         assert_eq!(number.lowest_terms(integer(-1001 * 9)), (integer(-1), integer(80)));
         assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
-        assert_eq!(number.over(&common).value(), integer(60_060));
+        assert_eq!(number.quotient(&common).value(), integer(60_060));
         let modulus = Modulus::new(1_073_741_789, 32);
         for number in [
             &number,
             &common,
             &Factored::default(),
-            &Factored::of(&integer(6).pow(77)).expect("small factors"),
+            &Factored::factorize(&integer(6).pow(77)).expect("small factors"),
         ] {
             assert_eq!(number.ladder().residue(&modulus), modulus.integer(&number.value()));
         }
@@ -446,17 +447,17 @@ mod tests {
         assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
         assert_eq!(ratio(0), Rational::zero());
         // More of one prime than a word holds.
-        let power = Factored::of(&integer(3).pow(90)).expect("small factors");
+        let power = Factored::factorize(&integer(3).pow(90)).expect("small factors");
         let long = power.fraction(&(integer(3).pow(85) * integer(-14)), &power.value());
         assert_eq!(long, Rational::new(integer(-14), integer(243)));
-        assert!(Factored::of(&integer(1_000_003)).is_none());
+        assert!(Factored::factorize(&integer(1_000_003)).is_none());
     }
 
     #[test]
     fn growth_is_told_from_the_first_orders() {
         let divisors = |order: usize| order as u64 + 1;
         let known = |denominator: &dyn Fn(u32) -> Integer| -> Vec<Factored> {
-            (0..=10).map(|n| Factored::of(&denominator(n)).expect("small factors")).collect()
+            (0..=10).map(|n| Factored::factorize(&denominator(n)).expect("small factors")).collect()
         };
         let powers = known(&|n| integer(32).pow(n));
         let found = Growth::Power.denominators(&powers, 20, &divisors).expect("a power");

@@ -7,42 +7,42 @@
 //! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics;
 //! two words hold Duffing's equation to order 25.
 
-use super::plan::{Plan, Term};
-use super::{Amplitude, Detuning};
+use super::plan::{Plan, PlannedTerm};
+use super::{AmplitudeKind, Detuning};
 use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;
-use crate::series::fixed_width::{Harmonics, ShortSeries, combination, convolution, square};
+use crate::series::fixed_width::{HarmonicParity, ShortSeries, combination, convolution, square};
 use crate::series::waves::Wave;
 use crate::solution::AmplitudeConvention;
 use num_traits::ToPrimitive;
 
 /// One order.
-pub(super) struct Order {
+pub(super) struct FixedWidthOrder {
     pub displacement: ShortSeries,
     /// `W_n` and `omega_n`, constants.
     pub frequency_squared: ShortSeries,
     pub frequency: ShortSeries,
 }
 
-/// What was found.
+/// The first orders of an expansion in integers of fixed width.
 #[derive(Default)]
-pub(super) struct Beginning {
-    /// From order zero on; fewer than asked for where a number does not fit.
-    pub orders: Vec<Order>,
+pub(super) struct FirstOrders {
+    /// The orders from zero on; fewer than asked for if a number does not fit.
+    pub orders: Vec<FixedWidthOrder>,
     /// The derivative of the secular sine in the amplitude, where that is determined.
     pub slope: Option<ShortSeries>,
 }
 
-/// Beyond, two words are too short for anything that is known.
+/// Order beyond which two words are too short.
 const LONG: usize = 28;
 
 /// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than
 /// show how it goes on.
-pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
-    /// So many orders are enough of a long one.
+pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
+    /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
-    let mut beginning = Beginning::default();
+    let mut beginning = FirstOrders::default();
     if let Some(mut recursion) = Recursion::new(plan) {
         while recursion.complete <= last && !interrupt.is_requested() {
             if recursion.next_order().is_none() {
@@ -59,7 +59,7 @@ struct Recursion<'a> {
     plan: &'a Plan<'a>,
     /// The terms with their coefficients, each over the power whose derivative is meant; without
     /// one that does not fit.
-    terms: Vec<(&'a Term, Option<(i128, i128)>)>,
+    terms: Vec<(&'a PlannedTerm, Option<(i128, i128)>)>,
     /// The tables of the plan, an entry for each order; the first is the motion.
     tables: Vec<Vec<ShortSeries>>,
     detuned: Vec<ShortSeries>,
@@ -71,11 +71,11 @@ struct Recursion<'a> {
     /// A sine beside the terms.
     sine: Option<Sine>,
     variation: Option<Variation>,
-    /// How many orders are known with their amplitudes.
+    /// Number of orders whose amplitudes are known, too.
     complete: usize,
 }
 
-/// How everything changes with the amplitude of `y_0`, for limit cycles.
+/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
     tables: Vec<ShortSeries>,
     right_side: ShortSeries,
@@ -85,7 +85,7 @@ struct Variation {
 
 impl<'a> Recursion<'a> {
     fn new(plan: &'a Plan<'a>) -> Option<Self> {
-        let coefficient = |term: &Term, derivative: bool| {
+        let coefficient = |term: &PlannedTerm, derivative: bool| {
             let power = if derivative { i128::from(term.position) + 1 } else { 1 };
             let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
             Some((term.coefficient.numer().to_i128()?, denominator))
@@ -121,33 +121,33 @@ impl<'a> Recursion<'a> {
         let start = ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?;
         recursion.push_displacement(0, start)?;
         match plan.scheme.amplitude {
-            Amplitude::Free => recursion.complete = 1,
-            Amplitude::Determined => recursion.variation = Some(recursion.variation()?),
+            AmplitudeKind::Free => recursion.complete = 1,
+            AmplitudeKind::Determined => recursion.variation = Some(recursion.variation()?),
         }
         Some(recursion)
     }
 
-    fn harmonics(&self) -> Harmonics {
+    fn harmonics(&self) -> HarmonicParity {
         match self.plan.half_wave {
-            true => Harmonics::Odd,
-            false => Harmonics::All,
+            true => HarmonicParity::Odd,
+            false => HarmonicParity::All,
         }
     }
 
     fn constant(&self, value: i128) -> Option<ShortSeries> {
         let harmonics = match self.plan.half_wave {
-            true => Harmonics::Even,
-            false => Harmonics::All,
+            true => HarmonicParity::Even,
+            false => HarmonicParity::All,
         };
         ShortSeries::constant(harmonics, value, 1)
     }
 
-    /// What is complete.
-    fn orders(mut self) -> Vec<Order> {
+    /// Returns the orders that are complete.
+    fn orders(mut self) -> Vec<FixedWidthOrder> {
         let numbers = self.frequency_squared.into_iter().zip(self.frequency);
         let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);
         orders
-            .map(|(displacement, (frequency_squared, frequency))| Order {
+            .map(|(displacement, (frequency_squared, frequency))| FixedWidthOrder {
                 displacement,
                 frequency_squared,
                 frequency,
@@ -156,7 +156,7 @@ impl<'a> Recursion<'a> {
     }
 
     /// Solves the order after those that are known; the last one of a limit cycle gives nothing but
-    /// the amplitude before it. `None` where a number does not fit, and where a secular sine stays.
+    /// the amplitude before it. `None` if a number does not fit, and if a secular sine stays.
     fn next_order(&mut self) -> Option<()> {
         let (plan, order) = (self.plan, self.tables[0].len());
         let mut right_side = self.right_side(order)?;
@@ -206,10 +206,14 @@ impl<'a> Recursion<'a> {
         if let Some(sine) = &mut self.sine {
             sine.prepare(order)?;
         }
-        let at = |term: &Term, table: usize| self.tables[table].get(order.checked_sub(term.order)?);
+        let at = |term: &PlannedTerm, table: usize| {
+            self.tables[table].get(order.checked_sub(term.order)?)
+        };
         let damped = derivative_of_parts(&self.parts(true, at)?)?;
         self.damped.push(damped);
-        let at = |term: &Term, table: usize| self.tables[table].get(order.checked_sub(term.order)?);
+        let at = |term: &PlannedTerm, table: usize| {
+            self.tables[table].get(order.checked_sub(term.order)?)
+        };
         let mut parts = self.parts(false, at)?;
         parts.reserve(2 * order);
         let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
@@ -242,7 +246,7 @@ impl<'a> Recursion<'a> {
     fn parts<'b>(
         &'b self,
         derivative: bool,
-        at: impl Fn(&Term, usize) -> Option<&'b ShortSeries>,
+        at: impl Fn(&PlannedTerm, usize) -> Option<&'b ShortSeries>,
     ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
         let mut parts = Vec::new();
         for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
@@ -285,7 +289,7 @@ impl<'a> Recursion<'a> {
             *damped = changed(damped, by)?;
         }
         let right_side = changed(&right_side, &variation.right_side)?;
-        self.detuned[order - 1] = detuned(plan, &corrected)?;
+        self.detuned[order - 1] = frequency_factor(plan, &corrected)?;
         if plan.has_velocity {
             self.derived[order - 1] = corrected.derivative()?;
         }
@@ -302,8 +306,8 @@ impl<'a> Recursion<'a> {
         for (index, numerator) in particular.numerators().iter().enumerate() {
             let weight = match (particular.wave, plan.scheme.amplitude) {
                 (Wave::Sine, _) => i128::try_from(plan.harmonic(index)).ok()?,
-                (Wave::Cosine, Amplitude::Free) => 1,
-                (Wave::Cosine, Amplitude::Determined) => return Some(particular),
+                (Wave::Cosine, AmplitudeKind::Free) => 1,
+                (Wave::Cosine, AmplitudeKind::Determined) => return Some(particular),
             };
             at_zero = at_zero.checked_add(numerator.checked_mul(weight)?)?;
         }
@@ -312,7 +316,7 @@ impl<'a> Recursion<'a> {
 
     fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {
         let plan = self.plan;
-        self.detuned.push(detuned(plan, &displacement)?);
+        self.detuned.push(frequency_factor(plan, &displacement)?);
         if plan.has_velocity {
             self.derived.push(displacement.derivative()?);
             let velocity = match plan.scheme.detuning {
@@ -350,7 +354,7 @@ impl<'a> Recursion<'a> {
         sum.map(ShortSeries::reduced)
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// The first variation at order zero; `None` if the secular sine does not depend on the
     /// amplitude.
     fn variation(&self) -> Option<Variation> {
         let plan = self.plan;
@@ -368,7 +372,7 @@ impl<'a> Recursion<'a> {
             let series = combination(&[(1, 1, &left), (1, 1, &right)])?.reduced();
             tables.push(series);
         }
-        let at = |term: &Term, table: usize| tables.get(table).filter(|_| term.order == 1);
+        let at = |term: &PlannedTerm, table: usize| tables.get(table).filter(|_| term.order == 1);
         let plain = sum_of_parts(&self.parts(false, at)?)?;
         let damped = derivative_of_parts(&self.parts(true, at)?)?;
         let parts: Vec<_> = plain.iter().chain(&damped).map(|part| (-1, 1, part)).collect();
@@ -379,7 +383,7 @@ impl<'a> Recursion<'a> {
 }
 
 /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
-fn detuned(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
+fn frequency_factor(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
     match plan.scheme.detuning {
         Detuning::Acceleration => displacement.second_derivative(),
         Detuning::Displacement => combination(&[(-1, 1, displacement)]),

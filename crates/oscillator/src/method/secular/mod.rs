@@ -25,16 +25,16 @@ mod sine;
 mod symbolic;
 
 pub(super) use denominators::Factored;
-pub use reconstruct::Extent;
+pub use reconstruct::ExpansionScope;
 
 use std::collections::HashMap;
 
 use num_integer::Integer as _;
 
-use crate::exact::ring::Indivisible;
+use crate::exact::ring::NotInvertible;
 use crate::exact::{Integers, Polynomials, Ring};
 use crate::interrupt::Supervision;
-use crate::series::convolution::{Convolutions, Node};
+use crate::series::convolution::{Convolutions, SeriesNode};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
 
@@ -55,7 +55,7 @@ pub struct ForceTerm<R: Ring> {
 
 /// Whether the amplitude is free (conservative) or determined by the equation (self-excited).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Amplitude {
+pub enum AmplitudeKind {
     /// A family of periodic motions, one for every amplitude.
     Free,
     /// An isolated limit cycle: `y = cos tau` already has the amplitude at which the first order
@@ -63,7 +63,7 @@ pub enum Amplitude {
     Determined,
 }
 
-/// Which series the frequency's corrections `W_i` multiply.
+/// The series that the corrections `W_i` of the frequency multiply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detuning {
     /// `omega^2 = 1 + delta W_1 + ...` before `y''`: Lindstedt and Poincare.
@@ -76,18 +76,18 @@ pub enum Detuning {
 /// The choices that tell one method from another.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
-    /// What pins down the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first harmonic
-    /// of `y` is `cos tau` exactly.
+    /// The condition that fixes the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first
+    /// harmonic of `y` is `cos tau` exactly.
     pub normalisation: AmplitudeConvention,
     /// Free or determined.
-    pub amplitude: Amplitude,
-    /// Where the frequency is expanded.
+    pub amplitude: AmplitudeKind,
+    /// The term of the equation in which the frequency is expanded.
     pub detuning: Detuning,
 }
 
 /// The result, order by order.
 #[derive(Clone, Debug)]
-pub struct Expansion<R: Ring> {
+pub struct SecularExpansion<R: Ring> {
     /// `W_n`: omega^2 in powers of the small parameter, constant series; `W_0 = 1`.
     pub frequency_squared: Vec<FourierSeries<R>>,
     /// omega itself, likewise.
@@ -96,8 +96,8 @@ pub struct Expansion<R: Ring> {
     pub displacement: Vec<FourierSeries<R>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
     pub removed: Vec<FourierSeries<R>>,
-    /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where
-    /// it is free.
+    /// The condition that fixed the amplitude of each `y_n` of a limit cycle, from order one on;
+    /// empty if the amplitude is free.
     pub amplitudes: Vec<SecularSine<R>>,
 }
 
@@ -112,7 +112,7 @@ pub struct SecularSine<R: Ring> {
     pub amplitude: FourierSeries<R>,
 }
 
-/// Why no periodic expansion exists.
+/// The reason why no periodic expansion exists.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SecularError {
@@ -138,9 +138,9 @@ pub enum SecularError {
         /// The order at which it fails.
         order: usize,
         /// The divisor and the ring.
-        indivisible: Indivisible,
+        indivisible: NotInvertible,
     },
-    /// Far more algebra than anyone waits for.
+    /// The expansion would take far too long.
     #[error(
         "the power {degree} in the equation gives {harmonics} harmonics at this order, with coefficients of hundreds of digits"
     )]
@@ -152,8 +152,8 @@ pub enum SecularError {
     },
 }
 
-/// An error where a high power makes an expansion to this order far too long; `terms` are the order
-/// of each term of the force and its power of position and velocity together.
+/// An error if a high power makes an expansion to this order far too long; `terms` are the order of
+/// each term of the force and its power of position and velocity together.
 ///
 /// # Errors
 /// [`SecularError::TooManyHarmonics`].
@@ -171,8 +171,8 @@ pub fn bounded(
         return Ok(());
     }
     let harmonics = highest.saturating_mul(degree.saturating_sub(1) as usize).saturating_add(1);
-    // Products of series of so many harmonics, whose coefficients are as long as binomials of that
-    // size.
+    // Products of series of this many harmonics, whose coefficients are as long as binomials of
+    // that size.
     let (orders, length) = (highest as f64, harmonics as f64);
     let work = (orders * length).powi(2) * f64::from(degree).log2() * (length / 32.0).max(1.0);
     match work > MOST_WORK {
@@ -192,14 +192,14 @@ pub fn bounded(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
-/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // x'' + x + delta x^3 = 0
 /// let cubic = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::constant(Doubles, 1.0) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::Initial,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
 /// let found = expand(&Doubles, &[cubic], 1, &scheme)?;
@@ -211,12 +211,12 @@ pub fn expand<R: Ring>(
     force: &[ForceTerm<R>],
     highest: usize,
     scheme: &Scheme,
-) -> Result<Expansion<R>, SecularError> {
+) -> Result<SecularExpansion<R>, SecularError> {
     expand_from_root(ring, force, highest, scheme, None)
 }
 
 /// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are
-/// long. Of the [frequency alone](Extent::Frequency) where no more is wanted.
+/// long. Of the [frequency alone](ExpansionScope::Frequency) where no more is wanted.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -224,17 +224,17 @@ pub fn expand<R: Ring>(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Integer};
-/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_numbers};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, expand_numbers};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // Duffing: y'' + y + delta y^3 = 0
 /// let cube = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::integer(Integers, 1) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::Initial,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
-/// let found = expand_numbers(&[cube], 40, &scheme, Extent::Frequency)?;
+/// let found = expand_numbers(&[cube], 40, &scheme, ExpansionScope::Frequency)?;
 /// assert_eq!(found.frequency_squared[1].mean(), (Integer::from(3), &Integer::from(4)));
 /// assert!(found.frequency_squared[40].mean().1.bits() > 150);
 /// # Ok::<(), lindstedt::method::secular::SecularError>(())
@@ -243,8 +243,8 @@ pub fn expand_numbers(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
-) -> Result<Expansion<Integers>, SecularError> {
+    extent: ExpansionScope,
+) -> Result<SecularExpansion<Integers>, SecularError> {
     expand_numbers_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
@@ -256,12 +256,12 @@ pub(crate) fn expand_numbers_supervised(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Result<Expansion<Integers>, SecularError> {
+) -> Result<SecularExpansion<Integers>, SecularError> {
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
-    // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so
-    // does everything.
+    // If all terms have orders that are multiples of one number, as for an amplitude that enters
+    // squared, so has the solution.
     let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
     let compressed: Vec<ForceTerm<Integers>> =
         force.iter().map(|term| ForceTerm { order: term.order / step, ..term.clone() }).collect();
@@ -271,7 +271,7 @@ pub(crate) fn expand_numbers_supervised(
         Some(expansion) => expansion,
         None => expand_supervised(&Integers, &compressed, orders, scheme, None, supervision)?,
     };
-    if extent == Extent::Frequency {
+    if extent == ExpansionScope::Frequency {
         expansion.forget_motion();
     }
     Ok(match step {
@@ -292,7 +292,7 @@ pub(crate) fn expand_numbers_supervised(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Polynomial, Polynomials};
-/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_polynomials};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, expand_polynomials};
 /// use lindstedt::{Symbol, series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // y'' + y + delta (a y^2 + b y^3) = 0
@@ -302,10 +302,10 @@ pub(crate) fn expand_numbers_supervised(
 /// };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::FirstHarmonic,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
-/// let found = expand_polynomials(&[term(2, "a"), term(3, "b")], 6, &scheme, Extent::Frequency)?;
+/// let found = expand_polynomials(&[term(2, "a"), term(3, "b")], 6, &scheme, ExpansionScope::Frequency)?;
 /// let (numerator, denominator) = found.frequency_squared[2].mean();
 /// // -5/6 a^2 + 3/128 b^2
 /// assert_eq!((numerator.terms().len(), denominator.to_string().as_str()), (2, "384"));
@@ -315,8 +315,8 @@ pub fn expand_polynomials(
     force: &[ForceTerm<Polynomials<Integers>>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
-) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
+    extent: ExpansionScope,
+) -> Result<SecularExpansion<Polynomials<Integers>>, SecularError> {
     expand_polynomials_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
@@ -328,10 +328,10 @@ pub(crate) fn expand_polynomials_supervised(
     force: &[ForceTerm<Polynomials<Integers>>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
-    /// Below, there are few products.
+) -> Result<SecularExpansion<Polynomials<Integers>>, SecularError> {
+    /// Number of terms below which there are few products.
     const MANY: usize = 2;
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
     if highest >= MANY
@@ -341,13 +341,13 @@ pub(crate) fn expand_polynomials_supervised(
     }
     let mut expansion =
         expand_supervised(&Polynomials(Integers), force, highest, scheme, None, supervision)?;
-    if extent == Extent::Frequency {
+    if extent == ExpansionScope::Frequency {
         expansion.forget_motion();
     }
     Ok(expansion)
 }
 
-impl<R: Ring> Expansion<R> {
+impl<R: Ring> SecularExpansion<R> {
     /// Leaves the frequency alone.
     pub fn forget_motion(&mut self) {
         self.displacement.clear();
@@ -356,8 +356,8 @@ impl<R: Ring> Expansion<R> {
     }
 }
 
-impl Expansion<Integers> {
-    /// The same with every order at so many times its place, up to `highest`.
+impl SecularExpansion<Integers> {
+    /// Returns the expansion with order n moved to order `step * n`, up to `highest`.
     fn spread(self, step: usize, highest: usize) -> Self {
         let zero = || FourierSeries::zero(Integers);
         let from = |first: usize, series: Vec<FourierSeries<Integers>>| {
@@ -368,7 +368,7 @@ impl Expansion<Integers> {
             }
             spread
         };
-        // Where the amplitude is determined, the first order is damping, and nothing is spread.
+        // If the amplitude is determined, the first order is damping, and nothing is spread.
         Self {
             frequency_squared: from(0, self.frequency_squared),
             frequency: from(0, self.frequency),
@@ -389,7 +389,7 @@ impl Expansion<Integers> {
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
-/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_from_root};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand_from_root};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // The cycle of van der Pol, x = 2 y: y'' + y - delta y' + 4 delta y^2 y' = 0
@@ -397,7 +397,7 @@ impl Expansion<Integers> {
 /// let term = |position, coefficient| ForceTerm { order: 1, position, velocity: 1, coefficient: number(coefficient) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::FirstHarmonic,
-///     amplitude: Amplitude::Determined,
+///     amplitude: AmplitudeKind::Determined,
 ///     detuning: Detuning::Acceleration,
 /// };
 /// // Along a*cos(tau) the secular sine is a^3 - a: its slope at a = 1 is 2.
@@ -411,7 +411,7 @@ pub fn expand_from_root<R: Ring>(
     highest: usize,
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
-) -> Result<Expansion<R>, SecularError> {
+) -> Result<SecularExpansion<R>, SecularError> {
     expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
 }
 
@@ -427,8 +427,8 @@ pub(crate) fn expand_supervised<R: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
     supervision: Supervision,
-) -> Result<Expansion<R>, SecularError> {
-    let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
+) -> Result<SecularExpansion<R>, SecularError> {
+    let of_amplitude = usize::from(scheme.amplitude == AmplitudeKind::Determined);
     let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
@@ -446,18 +446,18 @@ pub(crate) fn expand_supervised<R: Ring>(
 struct OrderByOrder<'a, R: Ring> {
     ring: &'a R,
     force: &'a [ForceTerm<R>],
-    products: Vec<Option<Node>>,
+    products: Vec<Option<SeriesNode>>,
     convolutions: Convolutions<R>,
-    position: Node,
-    velocity: Node,
+    position: SeriesNode,
+    velocity: SeriesNode,
     scheme: Scheme,
     /// `1/J`, where it was given.
     inverse_slope: Option<FourierSeries<R>>,
-    /// How each series changes when the amplitude of `y_0` does.
+    /// Derivatives of the series by the amplitude of `y_0`.
     variations: Vec<FourierSeries<R>>,
     /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
     detuned: Vec<FourierSeries<R>>,
-    result: Expansion<R>,
+    result: SecularExpansion<R>,
 }
 
 impl<'a, R: Ring> OrderByOrder<'a, R> {
@@ -471,11 +471,12 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let mut convolutions = Convolutions::new(ring.clone());
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
-        let last = if scheme.amplitude == Amplitude::Determined { highest + 1 } else { highest };
+        let last =
+            if scheme.amplitude == AmplitudeKind::Determined { highest + 1 } else { highest };
         let mut product_of = |term: &ForceTerm<R>| {
             let powers = [(position, term.position), (velocity, term.velocity)];
             let powers = powers.into_iter().filter(|power| power.1 > 0);
-            let nodes: Vec<Node> =
+            let nodes: Vec<SeriesNode> =
                 powers.map(|(node, exponent)| convolutions.power(node, exponent)).collect();
             let node = nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
             if let Some(needed) = last.checked_sub(term.order) {
@@ -490,7 +491,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         convolutions.advance(0);
         let leaves = HashMap::from([(position, start.clone()), (velocity, start.derivative())]);
         let variations = convolutions.variations(&leaves);
-        let result = Expansion {
+        let result = SecularExpansion {
             frequency_squared: vec![FourierSeries::integer(ring.clone(), 1)],
             frequency: vec![FourierSeries::integer(ring.clone(), 1)],
             displacement: vec![start.clone()],
@@ -516,7 +517,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 
     fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
         let mut right_side = divided(order, self.right_side(order))?;
-        if self.scheme.amplitude == Amplitude::Determined && order > 1 {
+        if self.scheme.amplitude == AmplitudeKind::Determined && order > 1 {
             right_side = self.fix_amplitude(order, right_side)?;
         }
         let (particular, resonance) = right_side.solve_oscillator();
@@ -588,14 +589,15 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let correction = divided(order, correction)?;
         self.result.amplitudes.push(SecularSine { sine, slope, amplitude: correction.clone() });
         self.convolutions.correct(order - 1, &correction, &self.variations);
-        let corrected = self.result.displacement[order - 1].sum(&correction.product(&self.wave()));
-        self.detuned[order - 1] = self.detuned(&corrected);
+        let corrected =
+            self.result.displacement[order - 1].sum(&correction.product(&self.cos_tau()));
+        self.detuned[order - 1] = self.frequency_factor(&corrected);
         self.result.displacement[order - 1] = corrected;
         divided(order, right_side.sum(&correction.product(&change)))
     }
 
     fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
-        if self.scheme.amplitude == Amplitude::Determined && highest > 0 {
+        if self.scheme.amplitude == AmplitudeKind::Determined && highest > 0 {
             let right_side = divided(highest + 1, self.right_side(highest + 1))?;
             self.fix_amplitude(highest + 1, right_side)?;
         }
@@ -612,11 +614,11 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
     }
 
     /// `cos tau`.
-    fn wave(&self) -> FourierSeries<R> {
+    fn cos_tau(&self) -> FourierSeries<R> {
         FourierSeries::cos(self.ring.clone(), 1)
     }
 
-    fn detuned(&self, displacement: &FourierSeries<R>) -> FourierSeries<R> {
+    fn frequency_factor(&self, displacement: &FourierSeries<R>) -> FourierSeries<R> {
         match self.scheme.detuning {
             Detuning::Acceleration => displacement.derivative().derivative(),
             Detuning::Displacement => displacement.times(-1),
@@ -632,13 +634,15 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let with_phase =
             particular.difference(&sine.product(&FourierSeries::sin(self.ring.clone(), 1)));
         match self.scheme.amplitude {
-            Amplitude::Determined => with_phase,
-            Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&self.wave())),
+            AmplitudeKind::Determined => with_phase,
+            AmplitudeKind::Free => {
+                with_phase.difference(&with_phase.at_zero().product(&self.cos_tau()))
+            }
         }
     }
 
     fn push_displacement(&mut self, order: usize, displacement: FourierSeries<R>) {
-        let detuned = self.detuned(&displacement);
+        let detuned = self.frequency_factor(&displacement);
         self.detuned.push(detuned);
         self.convolutions.push(self.position, displacement.clone());
         self.result.displacement.push(displacement.clone());
@@ -689,7 +693,7 @@ mod tests {
         ForceTerm { order, position, velocity, coefficient }
     }
 
-    fn scheme(amplitude: Amplitude) -> Scheme {
+    fn scheme(amplitude: AmplitudeKind) -> Scheme {
         Scheme {
             normalisation: AmplitudeConvention::Initial,
             amplitude,
@@ -699,15 +703,15 @@ mod tests {
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free))
+        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(AmplitudeKind::Free))
             .expect("periodic");
         let expected =
             [ratio(1, 1), ratio(3, 4), ratio(-3, 128), ratio(9, 512), ratio(-1779, 131_072)];
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
-        let cycle =
-            expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
+        let cycle = expand(&Integers, &force, 4, &scheme(AmplitudeKind::Determined))
+            .expect("a limit cycle");
         let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
         let amplitudes: Vec<_> =
@@ -718,7 +722,7 @@ mod tests {
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
+        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(AmplitudeKind::Free));
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

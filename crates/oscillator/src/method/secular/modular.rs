@@ -1,7 +1,7 @@
 //! The elimination of secular terms modulo eight primes at once, on values at points.
 //!
-//! The same recursion as in [the ring's own](super), with three changes that make it fast. Products
-//! of series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
+//! The recursion of [the ring's own](super) with three changes that make it fast. Products of
+//! series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
 //! instead of products of Fourier series. A term `y^p (omega y')` is the derivative of
 //! `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a
 //! [residue](crate::exact::residue), of eight runs side by side: modulo eight primes, or modulo one
@@ -15,24 +15,25 @@ use std::ops::Range;
 
 use pulp::NullaryFnOnce;
 
-use super::plan::{Harmonics, Plan};
+use super::plan::{HarmonicTable, Plan};
 use super::sine::SineFactors;
-use super::{Amplitude, Detuning};
+use super::{AmplitudeKind, Detuning};
 use crate::exact::Rational;
 use crate::exact::residue::sums::{
-    Part, TOGETHER, add_multiple, convolve, mixture, multiply, reversed_products, subtract, vary,
+    MixtureTerm, TOGETHER, add_multiple, convolve, mixture, multiply, reversed_products, subtract,
+    vary,
 };
 use crate::exact::residue::{Arithmetic, Lanes, Moduli, Modulus, Residues, Tables};
 use crate::interrupt::Interrupt;
 use crate::series::waves::{Wave, Waves};
 use crate::solution::AmplitudeConvention;
 
-/// What one prime sees: plain residues, order by order.
-pub(super) struct Image {
+/// The expansion modulo one prime: plain residues, order by order.
+pub(super) struct PrimeImage {
     pub modulus: Modulus,
     /// The coefficients of the harmonics of `y_n` from the order on that is wanted from this prime.
     displacement: Vec<u64>,
-    /// Where the first of them stands among those of all orders.
+    /// Index of the first of them among the coefficients of all orders.
     start: usize,
     /// `W_n`.
     pub frequency_squared: Vec<u64>,
@@ -40,10 +41,10 @@ pub(super) struct Image {
     pub frequency: Vec<u64>,
 }
 
-impl Image {
-    /// The coefficients of an order; empty where nobody wants them from this prime.
+impl PrimeImage {
+    /// The coefficients of an order; empty if they are not wanted from this prime.
     pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
-        let places = plan.places(order);
+        let places = plan.coefficient_range(order);
         let Some(start) = places.start.checked_sub(self.start) else {
             return &[];
         };
@@ -60,31 +61,31 @@ pub(super) struct Recursion<'a, A> {
     /// latest alone.
     tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
-    motion: Harmonics<'a>,
-    /// Those of the derivative of all terms with one velocity.
-    damped: Harmonics<'a>,
+    motion: HarmonicTable<'a>,
+    /// The coefficients of the derivative of all terms with one velocity.
+    damped: HarmonicTable<'a>,
     frequency_squared: Vec<Lanes>,
     frequency: Vec<Lanes>,
     of_amplitude: Option<Variation>,
     values: Vec<Lanes>,
     reversed: Vec<Lanes>,
-    parts: Vec<Part>,
+    parts: Vec<MixtureTerm>,
     right_side: Vec<Lanes>,
     change: Vec<Lanes>,
 }
 
-/// What there is of eight primes before anything is expanded.
-pub(super) struct Field<A> {
+/// Constants of the recursion modulo eight primes.
+pub(super) struct ResidueField<A> {
     pub residues: Residues<A>,
     waves: Waves,
     factors: Factors,
-    /// Those of the terms, each over the power whose derivative is meant.
+    /// The coefficients of the terms, each over the power whose derivative is meant.
     pub coefficients: Vec<Lanes>,
     sine: Option<SineFactors>,
 }
 
-impl<A: Arithmetic> Field<A> {
-    /// For up to eight primes; `None` where a divisor is a multiple of one of them.
+impl<A: Arithmetic> ResidueField<A> {
+    /// Prepares up to eight primes; `None` if a divisor is a multiple of one of them.
     pub fn new(arithmetic: A, plan: &Plan, moduli: &[Modulus]) -> Option<Self> {
         arithmetic.vectorize(Prepare(arithmetic, plan, moduli))
     }
@@ -93,18 +94,18 @@ impl<A: Arithmetic> Field<A> {
 struct Prepare<'a, A>(A, &'a Plan<'a>, &'a [Modulus]);
 
 impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
-    type Output = Option<Field<A>>;
+    type Output = Option<ResidueField<A>>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Self(arithmetic, plan, moduli) = self;
-        let residues = Residues { arithmetic, moduli: Moduli::of(moduli) };
+        let residues = Residues { arithmetic, moduli: Moduli::from_primes(moduli) };
         let mut coefficients = Vec::with_capacity(plan.terms.len());
         for (term, (_, derivative)) in plan.terms.iter().zip(&plan.of_terms) {
             let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
             coefficients.push(coefficient(moduli, &term.coefficient, power)?);
         }
-        Some(Field {
+        Some(ResidueField {
             residues,
             waves: Waves::new(&residues, plan.grid)?,
             factors: Factors::new(&residues, plan)?,
@@ -119,7 +120,7 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
     }
 }
 
-/// A number over a power, modulo each prime; `None` where a prime divides its denominator.
+/// A number over a power, modulo each prime; `None` if a prime divides its denominator.
 fn coefficient(moduli: &[Modulus], number: &Rational, power: i64) -> Option<Lanes> {
     let mut lanes = Lanes::default();
     let mut last = 0;
@@ -140,7 +141,7 @@ fn coefficient(moduli: &[Modulus], number: &Rational, power: i64) -> Option<Lane
     Some(lanes)
 }
 
-/// What the coefficients of the harmonics are multiplied by, one by one.
+/// Factors of the coefficients of the harmonics, one by one.
 struct Factors {
     /// `1/(1 - k^2)`, zero for the first harmonic.
     solution: Vec<Lanes>,
@@ -177,7 +178,7 @@ impl Factors {
         Some(Self { solution, detuning, rising, falling })
     }
 
-    /// For the derivative of a sum of these waves.
+    /// The factors of the derivative of a sum of these waves.
     fn derivative(&self, of: Wave) -> &[Lanes] {
         match of {
             Wave::Cosine => &self.falling,
@@ -186,21 +187,21 @@ impl Factors {
     }
 }
 
-/// How everything changes with the amplitude of `y_0`, for limit cycles.
+/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
-    /// Of each table, its values.
+    /// The values of each table.
     tables: Vec<Vec<Lanes>>,
-    /// Of the right side without the terms with one velocity, and of those.
+    /// The right side without the terms with one velocity, and those terms.
     plain: Vec<Lanes>,
     damped: Vec<Lanes>,
     /// `1/J`.
     inverse_slope: Lanes,
 }
 
-/// What was expanded last becomes plain.
-struct Plain<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r Residues<A>);
+/// Converts the last expansion from Montgomery's form to plain residues.
+struct ToPlainResidues<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r Residues<A>);
 
-impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
+impl<A: Arithmetic> NullaryFnOnce for ToPlainResidues<'_, '_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -217,9 +218,9 @@ impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
     }
 }
 
-struct Expand<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r mut Field<A>, &'r [Lanes]);
+struct ExpandOrders<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r mut ResidueField<A>, &'r [Lanes]);
 
-impl<A: Arithmetic> NullaryFnOnce for Expand<'_, '_, A> {
+impl<A: Arithmetic> NullaryFnOnce for ExpandOrders<'_, '_, A> {
     type Output = Option<()>;
 
     #[inline(always)]
@@ -230,11 +231,14 @@ impl<A: Arithmetic> NullaryFnOnce for Expand<'_, '_, A> {
 }
 
 impl<'a, A: Arithmetic> Recursion<'a, A> {
-    /// How much room all orders take.
-    pub fn room(plan: &Plan) -> usize {
-        let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
+    /// Number of entries that all orders take.
+    pub fn entry_count(plan: &Plan) -> usize {
+        let tables = Tables::entry_count(plan.grid.size(), &Self::lengths(plan));
         tables
-            + Self::harmonics(plan).map(|count| Harmonics::room(plan, count)).iter().sum::<usize>()
+            + Self::harmonics(plan)
+                .map(|count| HarmonicTable::entry_count(plan, count))
+                .iter()
+                .sum::<usize>()
     }
 
     /// The entries in a row of each table.
@@ -252,13 +256,13 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         lengths
     }
 
-    /// How many harmonics are kept of the motion, and of the terms with one velocity.
+    /// Numbers of harmonics of the motion, and of the terms with one velocity.
     fn harmonics(plan: &Plan) -> [usize; 2] {
         let has_damping = plan.of_terms.iter().any(|(_, derivative)| *derivative);
         [plan.most_harmonics(), if has_damping { plan.most_harmonics() } else { 0 }]
     }
 
-    /// All orders in that much [room](Self::room).
+    /// All orders in that much [room](Self::entry_count).
     pub fn new(
         arithmetic: A,
         plan: &'a Plan<'a>,
@@ -269,16 +273,16 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let points = plan.grid.size();
         let none = Lanes::default();
         let lengths = Self::lengths(plan);
-        let (tables, rest) = memory.split_at_mut(Tables::room(points, &lengths));
+        let (tables, rest) = memory.split_at_mut(Tables::entry_count(points, &lengths));
         let [harmonics, of_damped] = Self::harmonics(plan);
-        let (motion, damped) = rest.split_at_mut(Harmonics::room(plan, harmonics));
+        let (motion, damped) = rest.split_at_mut(HarmonicTable::entry_count(plan, harmonics));
         Self {
             arithmetic,
             plan,
             interrupt,
             tables: Tables::new(points, &lengths, tables),
-            motion: Harmonics::new(plan, harmonics, motion),
-            damped: Harmonics::new(plan, of_damped, damped),
+            motion: HarmonicTable::new(plan, harmonics, motion),
+            damped: HarmonicTable::new(plan, of_damped, damped),
             frequency_squared: Vec::with_capacity(orders),
             frequency: Vec::with_capacity(orders),
             of_amplitude: None,
@@ -291,19 +295,19 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 
     /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on
-    /// that is `wanted` of each. `None` where a divisor is a multiple of a prime, where a secular
-    /// sine stays (the ring's own recursion says which), and where it is stopped.
+    /// that is `wanted` of each. `None` if a divisor is a multiple of a prime, where a secular sine
+    /// stays (the ring's own recursion says which), and if it is stopped.
     pub fn images(
         &mut self,
         primes: &[u64],
         wanted: &dyn Fn(usize) -> usize,
-    ) -> Option<Vec<Image>> {
+    ) -> Option<Vec<PrimeImage>> {
         let moduli: Vec<Modulus> =
             primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
-        let mut field = Field::new(self.arithmetic, self.plan, &moduli)?;
+        let mut field = ResidueField::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);
         self.expand(&mut field, &coefficients)?;
-        self.arithmetic.vectorize(Plain(self, &field.residues));
+        self.arithmetic.vectorize(ToPlainResidues(self, &field.residues));
         let plan = self.plan;
         let image = |(lane, modulus): (usize, &Modulus)| {
             let own = |residues: &[Lanes]| residues.iter().map(|own| own.0[lane]).collect();
@@ -313,7 +317,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             for order in first..=plan.highest {
                 displacement.extend(self.displacement(order).map(|own| own.0[lane]));
             }
-            Image {
+            PrimeImage {
                 modulus: *modulus,
                 displacement,
                 start,
@@ -337,16 +341,16 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// The coefficients of the harmonics of `y_n`.
     pub fn displacement(&self, order: usize) -> impl Iterator<Item = Lanes> {
         let harmonics = 0..self.plan.harmonics(order);
-        harmonics.map(move |index| self.motion.at(self.plan, index, order))
+        harmonics.map(move |index| self.motion.coefficient(self.plan, index, order))
     }
 
     /// Expands with these coefficients of the terms.
-    pub fn expand(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<()> {
-        self.arithmetic.vectorize(Expand(self, field, coefficients))
+    pub fn expand(&mut self, field: &mut ResidueField<A>, coefficients: &[Lanes]) -> Option<()> {
+        self.arithmetic.vectorize(ExpandOrders(self, field, coefficients))
     }
 
     #[inline(always)]
-    fn expand_here(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<()> {
+    fn expand_here(&mut self, field: &mut ResidueField<A>, coefficients: &[Lanes]) -> Option<()> {
         let (plan, one) = (self.plan, field.residues.one());
         self.frequency_squared.clear();
         self.frequency.clear();
@@ -372,7 +376,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 self.solve_order(field, order)?;
             }
             self.push_displacement(field, order);
-            if order == 0 && plan.scheme.amplitude == Amplitude::Determined {
+            if order == 0 && plan.scheme.amplitude == AmplitudeKind::Determined {
                 self.of_amplitude = Some(self.variation(field, coefficients)?);
                 if plan.highest == 0 {
                     break;
@@ -385,9 +389,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         Some(())
     }
 
-    /// From the right side of an order its solution, in the same place, and the frequency.
+    /// Replaces the right side of an order by its solution, and computes the frequency.
     #[inline(always)]
-    fn solve_order(&mut self, field: &Field<A>, order: usize) -> Option<()> {
+    fn solve_order(&mut self, field: &ResidueField<A>, order: usize) -> Option<()> {
         let (residues, resonant) = (&field.residues, self.plan.resonant());
         let square = match self.plan.wave(order) {
             Wave::Sine if self.right_side[resonant] != Lanes::default() => return None,
@@ -418,7 +422,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// `r_n` as in the head of the module, in the coefficients of its harmonics.
     #[inline(always)]
-    fn form_right_side(&mut self, field: &mut Field<A>, coefficients: &[Lanes], order: usize) {
+    fn form_right_side(
+        &mut self,
+        field: &mut ResidueField<A>,
+        coefficients: &[Lanes],
+        order: usize,
+    ) {
         let residues = field.residues;
         let (plan, wave) = (self.plan, self.plan.wave(order));
         let count = plan.harmonics(order);
@@ -439,13 +448,19 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 multiply(&residues, change_here, field.factors.derivative(own));
                 self.damped.push(plan, order, change_here);
                 if any && plan.scheme.detuning == Detuning::Acceleration {
-                    self.delayed(&residues, Delayed::Damped, order, 1..order + 1, change_here);
+                    self.delayed(
+                        &residues,
+                        FrequencyFactor::Damped,
+                        order,
+                        1..order + 1,
+                        change_here,
+                    );
                 }
             }
             subtract(&residues, out, change_here);
         }
         if order > 1 {
-            self.delayed(&residues, Delayed::Motion, order, 1..order, change_here);
+            self.delayed(&residues, FrequencyFactor::Motion, order, 1..order, change_here);
             multiply(&residues, change_here, &field.factors.detuning);
             subtract(&residues, out, change_here);
         }
@@ -457,7 +472,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     #[inline(always)]
     fn mix(
         &mut self,
-        field: &Field<A>,
+        field: &ResidueField<A>,
         coefficients: &[Lanes],
         order: usize,
         derivative: bool,
@@ -467,7 +482,11 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients)
         {
             if *own == derivative && term.order <= order {
-                self.parts.push(Part { factor: *factor, table: *table, order: order - term.order });
+                self.parts.push(MixtureTerm {
+                    factor: *factor,
+                    table: *table,
+                    order: order - term.order,
+                });
             }
         }
         if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative)
@@ -480,9 +499,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         !self.parts.is_empty()
     }
 
-    /// The sum that `S_n` is, without its last term: nobody knows `y_n` yet.
+    /// The sum of `S_n` without its last term, because `y_n` is not known yet.
     #[inline(always)]
-    fn prepare_sine(&mut self, field: &Field<A>, order: usize) {
+    fn prepare_sine(&mut self, field: &ResidueField<A>, order: usize) {
         if let Some((sine, _)) = &self.plan.sine {
             self.values.fill(Lanes::default());
             self.tables.write(sine.scaled, order, &self.values);
@@ -493,12 +512,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Sine and cosine at an order whose `y_n` stands in its table, the cosine of the next one too.
     #[inline(always)]
-    fn push_sine(&mut self, field: &Field<A>, order: usize) {
+    fn push_sine(&mut self, field: &ResidueField<A>, order: usize) {
         let (Some((sine, _)), Some(factors)) = (&self.plan.sine, &field.sine) else {
             return;
         };
         let residues = &field.residues;
-        let whole = Part { factor: residues.one(), table: 0, order };
+        let whole = MixtureTerm { factor: residues.one(), table: 0, order };
         self.form(residues, &[factors.scaled(order)], (sine.scaled, order));
         match order {
             0 => {
@@ -517,7 +536,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Writes a mixture of tables into one of them.
     #[inline(always)]
-    fn form(&mut self, residues: &Residues<A>, parts: &[Part], (table, order): (usize, usize)) {
+    fn form(
+        &mut self,
+        residues: &Residues<A>,
+        parts: &[MixtureTerm],
+        (table, order): (usize, usize),
+    ) {
         mixture(residues, parts, &self.tables, &mut self.values);
         self.tables.write(table, order, &self.values);
     }
@@ -528,16 +552,16 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     fn delayed(
         &mut self,
         residues: &Residues<A>,
-        series: Delayed,
+        series: FrequencyFactor,
         order: usize,
         range: Range<usize>,
         out: &mut [Lanes],
     ) {
         let plan = self.plan;
         let (harmonics, frequency) = match series {
-            Delayed::Motion => (&self.motion, &self.frequency_squared),
-            Delayed::Velocity => (&self.motion, &self.frequency),
-            Delayed::Damped => (&self.damped, &self.frequency),
+            FrequencyFactor::Motion => (&self.motion, &self.frequency_squared),
+            FrequencyFactor::Velocity => (&self.motion, &self.frequency),
+            FrequencyFactor::Damped => (&self.damped, &self.frequency),
         };
         let step = plan.step();
         // Latest first, as the frequencies stand.
@@ -565,7 +589,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular
     /// sine.
     #[inline(always)]
-    fn fix_amplitude(&mut self, field: &Field<A>, order: usize) {
+    fn fix_amplitude(&mut self, field: &ResidueField<A>, order: usize) {
         let Some(variation) = &self.of_amplitude else {
             return;
         };
@@ -593,7 +617,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Adds to the solution of an order the homogeneous one that the amplitude convention asks for.
     #[inline(always)]
-    fn normalise(&mut self, field: &Field<A>, order: usize) {
+    fn normalise(&mut self, field: &ResidueField<A>, order: usize) {
         if self.plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
             return;
         }
@@ -606,19 +630,19 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                     at_zero = residues.sum(at_zero, residues.product(*value, *k));
                 }
             }
-            (Wave::Cosine, Amplitude::Free) => {
+            (Wave::Cosine, AmplitudeKind::Free) => {
                 for value in displacement.iter() {
                     at_zero = residues.sum(at_zero, *value);
                 }
             }
-            (Wave::Cosine, Amplitude::Determined) => return,
+            (Wave::Cosine, AmplitudeKind::Determined) => return,
         }
         displacement[self.plan.resonant()] = residues.negative(at_zero);
     }
 
     /// Takes what stands in `right_side` for `y_n`.
     #[inline(always)]
-    fn push_displacement(&mut self, field: &mut Field<A>, order: usize) {
+    fn push_displacement(&mut self, field: &mut ResidueField<A>, order: usize) {
         let residues = field.residues;
         let plan = self.plan;
         let (wave, count) = (plan.wave(order), plan.harmonics(order));
@@ -631,7 +655,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             let own = &mut change[..count];
             match plan.scheme.detuning {
                 Detuning::Acceleration => {
-                    self.delayed(&residues, Delayed::Velocity, order, 0..order + 1, own)
+                    self.delayed(&residues, FrequencyFactor::Velocity, order, 0..order + 1, own)
                 }
                 Detuning::Displacement => own.copy_from_slice(displacement),
             }
@@ -644,10 +668,14 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         self.push_sine(field, order);
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// The first variation at order zero; `None` if the secular sine does not depend on the
     /// amplitude.
     #[inline(always)]
-    fn variation(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<Variation> {
+    fn variation(
+        &mut self,
+        field: &mut ResidueField<A>,
+        coefficients: &[Lanes],
+    ) -> Option<Variation> {
         let (residues, plan) = (field.residues, self.plan);
         let points = self.values.len();
         let none = Lanes::default();
@@ -699,10 +727,10 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 }
 
-/// What the frequency of later orders is multiplied by: `y_n`, with which its derivatives go, and
-/// that of the terms with one velocity.
+/// The factor of the frequency corrections of later orders: `y_n`, with which its derivatives go,
+/// and that of the terms with one velocity.
 #[derive(Clone, Copy)]
-enum Delayed {
+enum FrequencyFactor {
     Motion,
     Velocity,
     Damped,

@@ -4,16 +4,16 @@ use num_traits::Zero;
 
 use super::fixed_width;
 use super::plan::Plan;
-use super::reconstruct::Extent;
-use super::{Expansion, SecularSine};
+use super::reconstruct::ExpansionScope;
+use super::{SecularExpansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};
 use crate::series::FourierSeries;
 use crate::series::fixed_width::ShortSeries;
 use crate::series::waves::Wave;
 
 /// One order of the result.
-pub(super) struct Order {
-    /// Of all coefficients of the motion, which have no factor in common with it.
+pub(super) struct ExpansionOrder {
+    /// The common denominator of all coefficients of the motion, in lowest terms.
     pub denominator: Integer,
     pub displacement: Vec<Integer>,
     /// The coefficient of `cos tau`; asked for of limit cycles alone.
@@ -22,9 +22,9 @@ pub(super) struct Order {
     pub frequency: Rational,
 }
 
-impl Order {
-    /// From numbers of a fixed width.
-    pub fn of_short(plan: &Plan, order: &fixed_width::Order) -> Self {
+impl ExpansionOrder {
+    /// Converts an order from numbers of fixed width.
+    pub fn of_short(plan: &Plan, order: &fixed_width::FixedWidthOrder) -> Self {
         let constant = |series: &ShortSeries| {
             Rational::new_raw(series.numerator(0).into(), series.denominator().into())
         };
@@ -46,10 +46,10 @@ impl Order {
 /// The orders as series; `slope` is that of the secular sine in the amplitude.
 pub(super) fn expansion(
     plan: &Plan,
-    orders: Vec<Order>,
+    orders: Vec<ExpansionOrder>,
     slope: Option<&Rational>,
-    extent: Extent,
-) -> Expansion<Integers> {
+    extent: ExpansionScope,
+) -> SecularExpansion<Integers> {
     let constant = |value: &Rational| match value.is_zero() {
         true => FourierSeries::zero(Integers),
         false => FourierSeries::in_lowest_terms(
@@ -78,21 +78,21 @@ pub(super) fn expansion(
     let removed = squares.map(|square| constant(&-square)).collect();
     // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
     let amplitudes = slope.map_or_else(Vec::new, |slope| {
-        let secular_sine = |own: &Order| SecularSine {
+        let secular_sine = |own: &ExpansionOrder| SecularSine {
             sine: constant(&-(&own.first_harmonic * slope)),
             slope: constant(slope),
             amplitude: constant(&own.first_harmonic),
         };
         orders.iter().skip(1).map(secular_sine).collect()
     });
-    let mut expansion = Expansion {
+    let mut expansion = SecularExpansion {
         frequency_squared,
         frequency,
         displacement: vec![],
         removed: vec![],
         amplitudes,
     };
-    if extent == Extent::Motion {
+    if extent == ExpansionScope::Motion {
         expansion.removed = removed;
         let orders = orders.into_iter().enumerate();
         expansion.displacement =

@@ -1,5 +1,4 @@
-//! What an expansion by primes consists of, the same for every prime: products, symmetries and
-//! points.
+//! The plan of an expansion by primes, the same for every prime: products, symmetries and points.
 //!
 //! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time,
 //! where `y_n` consists of cosines (every `q` even) or of cosines for even `n` and of sines for odd
@@ -9,7 +8,7 @@
 use std::ops::Range;
 
 use super::sine::Sine;
-use super::{Amplitude, Scheme};
+use super::{AmplitudeKind, Scheme};
 use crate::exact::Rational;
 use crate::exact::residue::Lanes;
 use crate::exact::residue::sums::Product;
@@ -18,17 +17,17 @@ use crate::solution::AmplitudeConvention;
 
 /// A term `delta^order coefficient y^position (omega y')^velocity` of the force.
 #[derive(Clone, Debug)]
-pub(super) struct Term {
+pub(super) struct PlannedTerm {
     pub order: usize,
     pub position: u32,
     pub velocity: u32,
     pub coefficient: Rational,
 }
 
-/// What is the same for every prime: the products, their symmetries and the points they are formed
-/// at.
+/// The part of an expansion that is the same for every prime: the products, their symmetries and
+/// the points at which they are formed.
 pub(super) struct Plan<'a> {
-    pub terms: &'a [Term],
+    pub terms: &'a [PlannedTerm],
     pub scheme: Scheme,
     /// The highest order that is kept; the amplitude of a limit cycle follows from one order more.
     pub highest: usize,
@@ -36,18 +35,18 @@ pub(super) struct Plan<'a> {
     pub half_wave: bool,
     /// Sines at odd orders.
     alternating: bool,
-    /// How many harmonics an order brings.
+    /// Number of harmonics that each order adds.
     growth: usize,
     pub grid: Grid,
     /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
     pub tables: usize,
     pub products: Vec<Product>,
-    /// Which table belongs to each term, and whether its derivative is meant.
+    /// Index of the table of each term, and whether its derivative is meant.
     pub of_terms: Vec<(usize, bool)>,
     pub has_velocity: bool,
     /// Harmonics that the frequency of the last order does not depend on are left out.
     frequency_alone: bool,
-    /// Where the coefficients of each order start in a list of all, and where the last ends.
+    /// Start of the coefficients of each order in a list of all, and the end of the last.
     pub starts: Vec<usize>,
     /// A sine beside the terms, with its rate.
     pub sine: Option<(Sine, Rational)>,
@@ -58,7 +57,7 @@ impl<'a> Plan<'a> {
     /// terms. With `frequency_alone` nothing but the frequency is right in the image; `sine` is the
     /// rate of a [sine](super::sine) beside the terms, for a free motion.
     pub fn new(
-        terms: &'a [Term],
+        terms: &'a [PlannedTerm],
         sine: Option<Rational>,
         highest: usize,
         scheme: Scheme,
@@ -71,11 +70,11 @@ impl<'a> Plan<'a> {
         {
             return None;
         }
-        let power = |term: &Term| (term.position + term.velocity) as usize;
+        let power = |term: &PlannedTerm| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
         let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
         let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
-        let determined = scheme.amplitude == Amplitude::Determined;
+        let determined = scheme.amplitude == AmplitudeKind::Determined;
         let last = highest + usize::from(determined);
         // The frequency of a limit cycle is the same however its motion is normalised, and without
         // the sum over all harmonics that the initial value is, the high ones are not needed. That
@@ -116,7 +115,7 @@ impl<'a> Plan<'a> {
         Some(plan)
     }
 
-    fn table_of(&mut self, term: &Term) -> (usize, bool) {
+    fn table_of(&mut self, term: &PlannedTerm) -> (usize, bool) {
         let needed = self.last.saturating_sub(term.order);
         match (term.position, term.velocity) {
             (position, 0) => (self.power(0, position, needed), false),
@@ -130,7 +129,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// By steps of two, so that neighbouring powers share their work.
+    /// The power by steps of two, so that neighbouring powers share their products.
     fn power(&mut self, base: usize, exponent: u32, needed: usize) -> usize {
         if exponent <= 1 {
             return base;
@@ -154,36 +153,39 @@ impl<'a> Plan<'a> {
         to
     }
 
-    /// How many harmonics `y_order` has at most: `1, 3, ...` or `0, 1, 2, ...`.
-    fn reach(&self, order: usize) -> usize {
+    /// Largest number of harmonics of `y_order`: `1, 3, ...` or `0, 1, 2, ...`.
+    fn harmonics_in_reach(&self, order: usize) -> usize {
         match self.half_wave {
             true => order * self.growth / 2 + 1,
             false => order * self.growth + 2,
         }
     }
 
-    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it
-    /// reaches, so that what the first harmonic of the last order depends on is below what is left
-    /// to come.
+    /// Number of harmonics of `y_order` that are computed. If only the frequency is wanted, those
+    /// that can no longer reach the first harmonic of the last order are left out: each order
+    /// shifts a harmonic by no more than its own reach.
     pub fn harmonics(&self, order: usize) -> usize {
         match self.frequency_alone {
-            true => self.reach(order).min(self.reach(self.last - order) + 1),
-            false => self.reach(order),
+            true => {
+                self.harmonics_in_reach(order).min(self.harmonics_in_reach(self.last - order) + 1)
+            }
+            false => self.harmonics_in_reach(order),
         }
     }
 
     /// The places of an order's coefficients in a list of those of all orders.
-    pub fn places(&self, order: usize) -> Range<usize> {
+    pub fn coefficient_range(&self, order: usize) -> Range<usize> {
         self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
-    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken
-    /// for `2K - 1 - j` (`2K - j` where all harmonics stand), which must be none that is computed.
+    /// Number of points that tell the harmonics apart: with `K` of them, a product's index `j` is
+    /// aliased to `2K - 1 - j` (`2K - j` if all harmonics stand), which must be none that is
+    /// computed.
     fn points(&self) -> usize {
         match self.frequency_alone {
-            true => self.reach(self.last) / 2 + self.growth + 3,
+            true => self.harmonics_in_reach(self.last) / 2 + self.growth + 3,
             // One more than there are, for the last order is only looked at in its first harmonic.
-            false => self.reach(self.last) + 1,
+            false => self.harmonics_in_reach(self.last) + 1,
         }
     }
 
@@ -203,7 +205,7 @@ impl<'a> Plan<'a> {
         usize::from(!self.half_wave)
     }
 
-    /// What `y_order` consists of.
+    /// The kind of series of `y_order`, cosines or sines.
     pub fn wave(&self, order: usize) -> Wave {
         match self.alternating && order % 2 == 1 {
             true => Wave::Sine,
@@ -211,7 +213,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// What a prime minus one has to be a multiple of.
+    /// The number of which a prime minus one has to be a multiple: the order of a root of unity.
     pub fn circle(&self) -> u64 {
         self.grid.circle() as u64
     }
@@ -219,22 +221,22 @@ impl<'a> Plan<'a> {
     /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above
     /// this.
     pub fn largest_factor(&self, order: usize) -> u64 {
-        let highest = self.harmonic(self.reach(order) - 1) as u64 + 1;
+        let highest = self.harmonic(self.harmonics_in_reach(order) - 1) as u64 + 1;
         if self.half_wave { highest / 2 } else { highest }
     }
 
-    /// The same for the frequency: what comes back to the first harmonic was no further away than
-    /// half of the orders reach, but for the initial value of a free motion, which is a sum over
-    /// all harmonics.
+    /// The largest prime factor of the divisors of the frequency: a contribution that returns to
+    /// the first harmonic was no further away than half of the orders reach, but for the initial
+    /// value of a free motion, which is a sum over all harmonics.
     pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
-        let free = self.scheme.amplitude == Amplitude::Free;
+        let free = self.scheme.amplitude == AmplitudeKind::Free;
         match free && self.scheme.normalisation == AmplitudeConvention::Initial {
             true => self.largest_factor(order),
             false => self.largest_factor(order / 2),
         }
     }
 
-    /// How far orders of the same symmetry are apart.
+    /// The distance of orders of the same symmetry.
     #[inline(always)]
     pub fn step(&self) -> usize {
         if self.alternating { 2 } else { 1 }
@@ -259,21 +261,21 @@ impl<'a> Plan<'a> {
 
 /// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each
 /// symmetry of its own, all in one memory.
-pub(super) struct Harmonics<'m> {
+pub(super) struct HarmonicTable<'m> {
     rows: [Vec<OrderRange>; 2],
     entries: &'m mut [Lanes],
 }
 
-/// Where a row begins, and how many of its orders there are.
+/// Start of a row and the number of its orders.
 #[derive(Clone, Copy)]
 struct OrderRange {
     begin: usize,
     length: usize,
 }
 
-impl<'m> Harmonics<'m> {
-    /// How many entries so many harmonics have.
-    pub fn room(plan: &Plan, count: usize) -> usize {
+impl<'m> HarmonicTable<'m> {
+    /// Number of entries of this many harmonics.
+    pub fn entry_count(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities
             .map(|parity| (0..count).map(|index| Self::orders(plan, index, parity)).sum::<usize>())
@@ -285,7 +287,7 @@ impl<'m> Harmonics<'m> {
         (plan.last + 1).saturating_sub(plan.first(index, parity)).div_ceil(plan.step())
     }
 
-    /// So many harmonics, in that much [room](Self::room).
+    /// A table of this many harmonics, in memory of [this size](Self::entry_count).
     pub fn new(plan: &Plan, count: usize, entries: &'m mut [Lanes]) -> Self {
         let mut end = 0;
         let mut rows = |parity: usize| -> Vec<OrderRange> {
@@ -340,7 +342,7 @@ impl<'m> Harmonics<'m> {
         (plan.first(index, order), &self.entries[row.begin..][..row.length])
     }
 
-    pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
+    pub fn coefficient(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
         let (first, row) = self.row(plan, index, order);
         let place = order.checked_sub(first).map(|after| after / plan.step());
         place.and_then(|place| row.get(place)).copied().unwrap_or_default()

@@ -20,23 +20,23 @@ use num_integer::Integer as _;
 use num_traits::One;
 
 use super::denominators::{Factored, Growth};
-use super::modular::{Image, Recursion};
-use super::orders::{Order, expansion};
-use super::plan::{Plan, Term};
-use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
-use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use super::modular::{PrimeImage, Recursion};
+use super::orders::{ExpansionOrder, expansion};
+use super::plan::{Plan, PlannedTerm};
+use super::{AmplitudeKind, ForceTerm, Scheme, SecularExpansion, fixed_width};
+use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{
     Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
 };
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
-use crate::parallel::{each, threads};
+use crate::parallel::{par_map, threads};
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
-/// What is wanted of an expansion.
+/// The extent of an expansion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum ExpansionScope {
     /// Frequency and motion.
     Motion,
     /// The frequency alone, with half the digits and a part of the harmonics; the lists of
@@ -44,41 +44,44 @@ pub enum Extent {
     Frequency,
 }
 
-/// The expansion by words, or by many primes; `None` where the equation has no symmetry to use,
-/// where the denominators grow in no known way, where numbers are short, and where there is none:
-/// the ring's own recursion answers then.
+/// The expansion by words, or by many primes; `None` if the equation has no symmetry to use, where
+/// the denominators grow in no known way, where numbers are short, and if there is none: the ring's
+/// own recursion answers then.
 pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Option<Expansion<Integers>> {
-    /// Below, whole numbers are short enough.
+) -> Option<SecularExpansion<Integers>> {
+    /// Order below which integers are short enough.
     const LONG: usize = 8;
     let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
     let beginning = fixed_width::beginning(&plan, supervision.interrupt);
     let slope = match (scheme.amplitude, extent) {
-        (Amplitude::Free, _) | (_, Extent::Frequency) => None,
-        (Amplitude::Determined, Extent::Motion) => Some(slope(force, scheme, &beginning)?),
+        (AmplitudeKind::Free, _) | (_, ExpansionScope::Frequency) => None,
+        (AmplitudeKind::Determined, ExpansionScope::Motion) => {
+            Some(slope(force, scheme, &beginning)?)
+        }
     };
-    let orders: Vec<Order> =
-        beginning.orders.iter().map(|order| Order::of_short(&plan, order)).collect();
+    let orders: Vec<ExpansionOrder> =
+        beginning.orders.iter().map(|order| ExpansionOrder::of_short(&plan, order)).collect();
     if orders.len() > highest {
         return Some(expansion(&plan, orders, slope.as_ref(), extent));
     }
     if highest < LONG {
         return None;
     }
-    by_widest(Expand { equation: &equation, plan: &plan, slope, orders, supervision })
+    by_widest(ExpandByPrimes { equation: &equation, plan: &plan, slope, orders, supervision })
 }
 
-/// Where the amplitude is determined, its condition has the same slope at every order.
+/// The derivative of the secular sine by the amplitude: if the amplitude is determined, its
+/// condition has the same slope at every order.
 fn slope(
     force: &[ForceTerm<Integers>],
     scheme: &Scheme,
-    beginning: &fixed_width::Beginning,
+    beginning: &fixed_width::FirstOrders,
 ) -> Option<Rational> {
     if let Some(slope) = &beginning.slope {
         return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
@@ -88,65 +91,70 @@ fn slope(
     Some(in_lowest_terms(&numerator, denominator))
 }
 
-/// Up to this order one thread is done before others have begun.
+/// Order up to which one thread is done before others have begun.
 const ALONE: usize = 40;
 
 /// The order to which long expansions are first derived to see how their denominators grow.
 const GUESSED: usize = 32;
 
-/// What is to be expanded.
+/// The equation to be expanded.
 struct SecularEquation {
-    terms: Vec<Term>,
+    terms: Vec<PlannedTerm>,
     /// The rate of a sine beside the terms.
     sine: Option<Rational>,
     scheme: Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
 }
 
 impl SecularEquation {
-    fn new(force: &[ForceTerm<Integers>], highest: usize, scheme: Scheme, extent: Extent) -> Self {
+    fn new(
+        force: &[ForceTerm<Integers>],
+        highest: usize,
+        scheme: Scheme,
+        extent: ExpansionScope,
+    ) -> Self {
         let terms = force.iter().map(|term| {
             let (numerator, denominator) = term.coefficient.mean();
-            Term {
+            PlannedTerm {
                 order: term.order,
                 position: term.position,
                 velocity: term.velocity,
                 coefficient: in_lowest_terms(&numerator, denominator),
             }
         });
-        let terms: Vec<Term> = terms.collect();
+        let terms: Vec<PlannedTerm> = terms.collect();
         let (sine, terms) = match scheme.amplitude {
-            Amplitude::Free => super::sine::split(terms, highest),
-            Amplitude::Determined => (None, terms),
+            AmplitudeKind::Free => super::sine::split(terms, highest),
+            AmplitudeKind::Determined => (None, terms),
         };
         Self { terms, sine, scheme, extent }
     }
 
     fn plan(&self, highest: usize) -> Option<Plan<'_>> {
-        let frequency_alone = self.extent == Extent::Frequency;
+        let frequency_alone = self.extent == ExpansionScope::Frequency;
         Plan::new(&self.terms, self.sine.clone(), highest, self.scheme, frequency_alone)
     }
 }
 
-struct Expand<'a> {
+struct ExpandByPrimes<'a> {
     equation: &'a SecularEquation,
     plan: &'a Plan<'a>,
     slope: Option<Rational>,
     /// The first ones, in numbers of a fixed width.
-    orders: Vec<Order>,
+    orders: Vec<ExpansionOrder>,
     supervision: Supervision,
 }
 
-impl Work for Expand<'_> {
-    type Output = Option<Expansion<Integers>>;
+impl Work for ExpandByPrimes<'_> {
+    type Output = Option<SecularExpansion<Integers>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        /// So many show how denominators grow.
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+        /// Number of orders that show the growth of denominators.
         const SOME: usize = 8;
         let Self { equation, plan, slope, orders: short, supervision } = self;
         let extent = equation.extent;
         let beginning = match short.len() >= SOME {
-            true => Some(Beginning::of(&short)?),
+            true => Some(FirstGuesses::from_orders(&short)?),
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
@@ -159,7 +167,7 @@ impl Work for Expand<'_> {
                 let shorter =
                     Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
                 orders.extend(shorter.orders_from(orders.len(), beginning)?);
-                (Some(Beginning::of(&orders)?), orders)
+                (Some(FirstGuesses::from_orders(&orders)?), orders)
             }
         };
         let longer = Reconstruction::new(arithmetic, plan, extent, supervision);
@@ -175,16 +183,21 @@ impl Work for Expand<'_> {
 struct Reconstruction<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
     primes: Vec<u64>,
     source: Box<dyn Iterator<Item = u64> + Send + Sync>,
-    /// What the first primes see, of all orders.
-    first: Vec<Image>,
+    /// The expansions modulo the first primes, of all orders.
+    first: Vec<PrimeImage>,
 }
 
 impl<'a, A: Arithmetic> Reconstruction<'a, A> {
-    fn new(arithmetic: A, plan: &'a Plan<'a>, extent: Extent, supervision: Supervision) -> Self {
+    fn new(
+        arithmetic: A,
+        plan: &'a Plan<'a>,
+        extent: ExpansionScope,
+        supervision: Supervision,
+    ) -> Self {
         Self {
             arithmetic,
             plan,
@@ -197,7 +210,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The orders from `first` on; those before are known.
-    fn orders_from(mut self, first: usize, beginning: Option<Beginning>) -> Option<Vec<Order>> {
+    fn orders_from(
+        mut self,
+        first: usize,
+        beginning: Option<FirstGuesses>,
+    ) -> Option<Vec<ExpansionOrder>> {
         let beginning = match beginning {
             Some(beginning) => beginning,
             None => self.beginning()?,
@@ -205,15 +222,17 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let highest = self.plan.highest;
         let of_motion = |order| self.plan.largest_factor(order);
         let of_frequency = |order| self.plan.largest_factor_of_frequency(order);
-        // One guess about a motion that nobody wants is enough.
+        // One guess is enough about a motion that is not wanted.
         let guesses = match self.extent {
-            Extent::Frequency => &Growth::ALL[..1],
-            Extent::Motion => &Growth::ALL[..],
+            ExpansionScope::Frequency => &Growth::ALL[..1],
+            ExpansionScope::Motion => &Growth::ALL[..],
         };
         for growth in guesses {
             let motion = match self.extent {
-                Extent::Frequency => Some(vec![Factored::default(); highest + 1]),
-                Extent::Motion => growth.denominators(&beginning.motion.known, highest, &of_motion),
+                ExpansionScope::Frequency => Some(vec![Factored::default(); highest + 1]),
+                ExpansionScope::Motion => {
+                    growth.denominators(&beginning.motion.known, highest, &of_motion)
+                }
             };
             let Some(motion) = motion else { continue };
             for growth in Growth::ALL {
@@ -232,8 +251,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         beginning.shrinks().then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
-    /// The number of primes whose product has more than so many binary digits; `None` where there
-    /// are not enough.
+    /// The number of primes whose product has more than so many binary digits; `None` if there are
+    /// not enough.
     fn primes_for(&mut self, bits: f64) -> Option<usize> {
         let mut product = 0.0;
         let mut count = 0;
@@ -253,8 +272,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         &mut self,
         count: usize,
         wanted: &(dyn Fn(usize) -> usize + Sync),
-    ) -> Option<Vec<Image>> {
-        /// Eights of a lot use the same memory; after so many lots for each thread all threads
+    ) -> Option<Vec<PrimeImage>> {
+        /// Eights of a lot use the same memory; after this many lots for each thread all threads
         /// meet, so that what is there when the work is stopped has no gaps.
         const LOT: usize = 8;
         const LOTS: usize = 4;
@@ -269,8 +288,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let places: Vec<usize> = (begun..end.min(self.primes.len())).collect();
         let this = &*self;
         let interrupt = this.supervision.interrupt;
-        let lot = |places: &[usize]| -> Option<Vec<Image>> {
-            let mut memory = Memory::zeroed(Recursion::<A>::room(this.plan));
+        let lot = |places: &[usize]| -> Option<Vec<PrimeImage>> {
+            let mut memory = Memory::zeroed(Recursion::<A>::entry_count(this.plan));
             let mut recursion =
                 Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
             let mut images = Vec::with_capacity(places.len());
@@ -293,8 +312,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let mut images = Vec::with_capacity(places.len());
             for block in places.chunks(length * LOTS * threads) {
                 let lots: Vec<&[usize]> = block.chunks(length).collect();
-                let found: Option<Vec<Vec<Image>>> =
-                    each(&lots, |places| lot(places)).into_iter().collect();
+                let found: Option<Vec<Vec<PrimeImage>>> =
+                    par_map(&lots, |places| lot(places)).into_iter().collect();
                 for (own, places) in found?.into_iter().zip(lots) {
                     let whole = own.len() == places.len();
                     images.extend(own);
@@ -309,20 +328,20 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The first orders as fractions, by as many primes as they need.
-    fn beginning(&mut self) -> Option<Beginning> {
+    fn beginning(&mut self) -> Option<FirstGuesses> {
         /// Enough to see how denominators grow.
         const ORDERS: usize = 10;
         /// More than any such beginning needs: its denominators are no small numbers.
         const MOST_PRIMES: usize = 100;
         let last = self.plan.highest.min(ORDERS);
-        let mut beginning = Beginning::default();
+        let mut beginning = FirstGuesses::default();
         let mut digits = if last > 5 { 200.0 } else { 100.0 };
         while beginning.frequency.known.len() <= last {
             let count = self.primes_for(digits)?;
             if count > MOST_PRIMES {
                 return None;
             }
-            let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
+            let from = if self.extent == ExpansionScope::Motion { 0 } else { usize::MAX };
             let more = self.images(count, &|_| from)?;
             self.first.extend(more);
             if self.first.len() < count {
@@ -334,14 +353,14 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let remainders = Remainders::new(self.arithmetic, &moduli);
             let product: Integer =
                 moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            let known = |count, number: &dyn Fn(&Image, usize) -> u64| {
-                known(images, count, &remainders, &product, number)
+            let known = |count, number: &dyn Fn(&PrimeImage, usize) -> u64| {
+                denominator_and_digits(images, count, &remainders, &product, number)
             };
             while beginning.frequency.known.len() <= last {
                 let order = beginning.frequency.known.len();
                 let count = match self.extent {
-                    Extent::Motion => self.plan.harmonics(order),
-                    Extent::Frequency => 0,
+                    ExpansionScope::Motion => self.plan.harmonics(order),
+                    ExpansionScope::Frequency => 0,
                 };
                 let motion =
                     known(count, &|image, index| image.displacement(self.plan, order)[index]);
@@ -360,14 +379,14 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The orders from `first` on over these denominators of motion and frequency, with numerators
-    /// of so many binary digits; `None` where a number fails the test of the extra prime.
+    /// of so many binary digits; `None` if a number fails the test of the extra prime.
     fn lifted(
         &mut self,
         first: usize,
         motion: &[Factored],
         frequency: &[Factored],
         bits: &[f64],
-    ) -> Option<Vec<Order>> {
+    ) -> Option<Vec<ExpansionOrder>> {
         /// Residues kept at once, four gigabytes of them.
         const MOST_RESIDUES: usize = 1 << 29;
         let mut counts = Vec::with_capacity(bits.len());
@@ -383,7 +402,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             least = count.next_multiple_of(step).min(longest).max(least);
             *count = least;
         }
-        if self.extent == Extent::Motion {
+        if self.extent == ExpansionScope::Motion {
             let orders = counts.iter().enumerate();
             let kept: usize = orders.map(|(order, count)| self.plan.harmonics(order) * count).sum();
             if kept > MOST_RESIDUES {
@@ -393,12 +412,12 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let most = *counts.last()?;
         let extent = self.extent;
         let wanted = |place: usize| match extent {
-            Extent::Motion => counts.partition_point(|count| *count < place).max(first),
-            Extent::Frequency => usize::MAX,
+            ExpansionScope::Motion => counts.partition_point(|count| *count < place).max(first),
+            ExpansionScope::Frequency => usize::MAX,
         };
         self.supervision.progress.begin((most + 1).saturating_sub(self.first.len()));
-        let images: Vec<Image> = self.images(most + 1, &wanted)?;
-        let all: Vec<&Image> = self.first.iter().chain(&images).collect();
+        let images: Vec<PrimeImage> = self.images(most + 1, &wanted)?;
+        let all: Vec<&PrimeImage> = self.first.iter().chain(&images).collect();
         let stopped = self.supervision.interrupt.is_requested();
         if all.len() <= most && !stopped {
             return None;
@@ -413,28 +432,28 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let group = |(count, orders): &(usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, self.plan, &all[..=*count]).orders(
+            LiftOrders::new(self.arithmetic, self.plan, &all[..=*count]).orders(
                 orders.clone(),
                 motion,
                 frequency,
             )
         };
-        let lifted: Option<Vec<Vec<Order>>> = match self.plan.highest > ALONE {
-            true => each(&groups, group).into_iter().collect(),
+        let lifted: Option<Vec<Vec<ExpansionOrder>>> = match self.plan.highest > ALONE {
+            true => par_map(&groups, group).into_iter().collect(),
             false => groups.iter().map(group).collect(),
         };
         Some(lifted?.into_iter().flatten().collect())
     }
 }
 
-/// The common denominator of so many numbers and the digits that the largest has before the point;
-/// `None` where the primes are too few.
-fn known<A: Arithmetic>(
-    images: &[Image],
+/// The common denominator of this many numbers and the digits that the largest has before the
+/// point; `None` if the primes are too few.
+fn denominator_and_digits<A: Arithmetic>(
+    images: &[PrimeImage],
     count: usize,
     remainders: &Remainders<A>,
     product: &Integer,
-    number: &dyn Fn(&Image, usize) -> u64,
+    number: &dyn Fn(&PrimeImage, usize) -> u64,
 ) -> Option<(Integer, f64)> {
     let mut denominator = Integer::one();
     let mut largest = 0.0_f64;
@@ -455,12 +474,12 @@ fn known<A: Arithmetic>(
 
 /// The first orders of motion and frequency.
 #[derive(Default)]
-struct Beginning {
+struct FirstGuesses {
     motion: Guess,
     frequency: Guess,
 }
 
-impl Beginning {
+impl FirstGuesses {
     /// The binary digits of the numerators of all orders over these denominators, and room for the
     /// factor before the growth.
     fn bits(&self, motion: &[Factored], frequency: &[Factored]) -> Vec<f64> {
@@ -494,17 +513,17 @@ impl Beginning {
         [&self.motion, &self.frequency].into_iter().all(fits)
     }
 
-    /// From the orders of a shorter expansion.
-    fn of(orders: &[Order]) -> Option<Self> {
+    /// Guesses from the orders of a shorter expansion.
+    fn from_orders(orders: &[ExpansionOrder]) -> Option<Self> {
         let mut beginning = Self::default();
         for order in orders {
             let bits = |numbers: &mut dyn Iterator<Item = &Integer>| {
                 numbers.map(Integer::bits).max().unwrap_or(0) as f64
             };
             let size = bits(&mut order.displacement.iter()) - order.denominator.bits() as f64;
-            beginning.motion.push(Factored::of(&order.denominator)?, size);
+            beginning.motion.push(Factored::factorize(&order.denominator)?, size);
             let both = [&order.frequency, &order.frequency_squared];
-            let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
+            let denominator = Factored::factorize(&both[0].denom().lcm(both[1].denom()))?;
             let sizes =
                 both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
             beginning.frequency.push(denominator, sizes[0].max(sizes[1]));
@@ -513,22 +532,22 @@ impl Beginning {
     }
 }
 
-/// What the first orders show.
+/// Denominators and sizes of further orders, guessed from the first ones.
 #[derive(Default)]
 struct Guess {
     /// The common denominators of the first orders.
     known: Vec<Factored>,
-    /// How many binary digits the largest number of each of them has before the point.
+    /// Number of binary digits before the point of the largest number of each of them.
     sizes: Vec<f64>,
-    /// By how many it grows with each order, at most.
+    /// Largest growth of that number with each order.
     growth: f64,
-    /// By how many it shrinks, where it clearly does.
+    /// Decrease of that number with each order, if it clearly decreases.
     decay: f64,
 }
 
 impl Guess {
     fn add(&mut self, (denominator, size): (Integer, f64)) -> Option<()> {
-        self.push(Factored::of(&denominator)?, size);
+        self.push(Factored::factorize(&denominator)?, size);
         Some(())
     }
 
@@ -544,7 +563,7 @@ impl Guess {
         self.decay = if order >= Self::ENOUGH { (slope + 1.0).min(0.0) } else { 0.0 };
     }
 
-    /// Below so many orders nothing is said of shrinking.
+    /// Least number of orders from which a decrease is inferred.
     const ENOUGH: usize = 8;
 
     /// The binary digits before the point of the largest number of an order, at most; negative
@@ -561,20 +580,20 @@ impl Guess {
 }
 
 /// The way back for orders that share their primes.
-struct Lift<'a, A> {
+struct LiftOrders<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
-    images: &'a [&'a Image],
+    images: &'a [&'a PrimeImage],
     remainders: Remainders<A>,
     /// The prime that only tests.
-    test: &'a Image,
+    test: &'a PrimeImage,
     /// The residues of the powers of a digit modulo that prime.
     powers: Vec<u64>,
 }
 
-impl<'a, A: Arithmetic> Lift<'a, A> {
+impl<'a, A: Arithmetic> LiftOrders<'a, A> {
     /// The last of the images is the one that tests.
-    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a Image]) -> Self {
+    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a PrimeImage]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
         let digit = test.modulus.residue(1 << A::DIGIT);
@@ -595,30 +614,31 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         orders: std::ops::Range<usize>,
         motion: &[Factored],
         frequency: &[Factored],
-    ) -> Option<Vec<Order>> {
-        // What the guessed denominators had too much of in the order before they mostly have in the
-        // next as well.
+    ) -> Option<Vec<ExpansionOrder>> {
+        // Factors that the guessed denominator had in excess at one order are mostly in excess at
+        // the next as well.
         let mut excess = Factored::default();
         let (mut of_motion, mut of_frequency) = (None, None);
         let mut lifted = Vec::with_capacity(orders.len());
         for order in orders {
             let whole = &motion[order];
-            let mut denominator = whole.over(&excess);
-            let over = self.over(&denominator, of_motion.take());
+            let mut denominator = whole.quotient(&excess);
+            let over = self.weighted_denominator(&denominator, of_motion.take());
             let mut displacement = self.displacement(order, of_motion.insert(over));
             if displacement.is_none() && !excess.is_one() {
                 (excess, denominator) = (Factored::default(), whole.clone());
-                displacement = self.displacement(order, of_motion.insert(self.over(whole, None)));
+                displacement = self
+                    .displacement(order, of_motion.insert(self.weighted_denominator(whole, None)));
             }
             let mut displacement = displacement?;
             let common = denominator.common(&displacement);
             if !common.is_one() {
                 let divisor = common.value();
                 displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
-                excess = excess.times(&common);
+                excess = excess.product(&common);
             }
             let whole = &frequency[order];
-            let over = self.over(whole, of_frequency.take());
+            let over = self.weighted_denominator(whole, of_frequency.take());
             let constants = self.numbers(of_frequency.insert(over), 2, |image, _, lanes| {
                 (lanes.0[0], lanes.0[1]) = (image.frequency[order], image.frequency_squared[order]);
             });
@@ -627,15 +647,15 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 Rational::new_raw(numerator, denominator)
             });
             let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
-            let denominator = denominator.over(&common);
+            let denominator = denominator.quotient(&common);
             let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
-                (Amplitude::Determined, Wave::Cosine) => {
+                (AmplitudeKind::Determined, Wave::Cosine) => {
                     displacement.get(self.plan.resonant()).cloned()
                 }
                 _ => None,
             };
             let (numerator, over_first) = denominator.lowest_terms(first.unwrap_or_default());
-            lifted.push(Order {
+            lifted.push(ExpansionOrder {
                 denominator: denominator.value(),
                 displacement,
                 first_harmonic: Rational::new_raw(numerator, over_first),
@@ -647,7 +667,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     }
 
     /// Empty where no prime keeps the motion.
-    fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
+    fn displacement(&self, order: usize, over: &WeightedDenominator) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
         self.numbers(over, count, |image, block, lanes| {
             let own = image.displacement(self.plan, order).iter().skip(block * WIDTH);
@@ -655,16 +675,20 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         })
     }
 
-    /// From what the last order needed, where that divides.
-    fn over(&self, denominator: &Factored, last: Option<Over>) -> Over {
-        match last.filter(|last| last.denominator.over(denominator).is_one()) {
+    /// The weighted denominator, from that of the last order if it divides this one.
+    fn weighted_denominator(
+        &self,
+        denominator: &Factored,
+        last: Option<WeightedDenominator>,
+    ) -> WeightedDenominator {
+        match last.filter(|last| last.denominator.quotient(denominator).is_one()) {
             Some(mut last) => {
-                let ratio = denominator.over(&last.denominator).ladder();
+                let ratio = denominator.quotient(&last.denominator).ladder();
                 for (weight, image) in last.weights.iter_mut().zip(self.images) {
                     *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
                 }
                 let test = &self.test.modulus;
-                Over {
+                WeightedDenominator {
                     denominator: denominator.clone(),
                     in_test: test.product(last.in_test, ratio.residue(test)),
                     ..last
@@ -672,7 +696,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             }
             None => {
                 let ladder = denominator.ladder();
-                Over {
+                WeightedDenominator {
                     denominator: denominator.clone(),
                     weights: self.remainders.weights(|modulus| ladder.residue(modulus)).collect(),
                     in_test: ladder.residue(&self.test.modulus),
@@ -681,18 +705,18 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         }
     }
 
-    /// The numerators of so many numbers over a denominator; `eight` writes a block of their
+    /// The numerators of this many numbers over a denominator; `eight` writes a block of their
     /// residues.
     fn numbers(
         &self,
-        over: &Over,
+        over: &WeightedDenominator,
         count: usize,
-        eight: impl Fn(&Image, usize, &mut Lanes),
+        eight: impl Fn(&PrimeImage, usize, &mut Lanes),
     ) -> Option<Vec<Integer>> {
         let modulus = &self.test.modulus;
         let mut numerators = Vec::with_capacity(count);
         let mut residues = vec![Lanes::default(); self.images.len()];
-        let mut numbers = Numbers::default();
+        let mut numbers = ReconstructedIntegers::default();
         for block in 0..count.div_ceil(WIDTH) {
             for (own, image) in residues.iter_mut().zip(self.images) {
                 eight(image, block, own);
@@ -714,9 +738,9 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
 }
 
 /// A denominator, as the way back needs it.
-struct Over {
+struct WeightedDenominator {
     denominator: Factored,
-    /// By which residues are multiplied.
+    /// The factors of the residues.
     weights: Vec<u64>,
     /// Its residue modulo the prime that tests.
     in_test: u64,
@@ -733,29 +757,34 @@ mod tests {
 
     /// Every number of the expansion, its steps included, is that of the recursion over whole
     /// numbers.
-    fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: Amplitude) {
+    fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: AmplitudeKind) {
         for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
                 let scheme = Scheme { normalisation, amplitude, detuning };
                 let exact =
                     super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest =
-                    super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
+                let widest = super::expand(
+                    force,
+                    highest,
+                    &scheme,
+                    ExpansionScope::Motion,
+                    Supervision::default(),
+                );
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                let equation = SecularEquation::new(force, highest, scheme, Extent::Motion);
-                let by_primes = Expand {
+                let equation = SecularEquation::new(force, highest, scheme, ExpansionScope::Motion);
+                let by_primes = ExpandByPrimes {
                     equation: &equation,
                     plan: &equation.plan(highest).expect("a symmetry"),
-                    slope: slope(force, &scheme, &fixed_width::Beginning::default()),
+                    slope: slope(force, &scheme, &fixed_width::FirstOrders::default()),
                     orders: vec![],
                     supervision: Supervision::default(),
                 };
-                let portable = by_primes.by(Portable).expect("the same by primes");
+                let portable = by_primes.run(Portable).expect("the same by primes");
                 let alone = super::expand(
                     force,
                     highest,
                     &scheme,
-                    Extent::Frequency,
+                    ExpansionScope::Frequency,
                     Supervision::default(),
                 );
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
@@ -768,15 +797,20 @@ mod tests {
                 for low in [1, 2, 5] {
                     let exact =
                         super::super::expand(&Integers, force, low, &scheme).expect("an expansion");
-                    let short =
-                        super::expand(force, low, &scheme, Extent::Motion, Supervision::default());
+                    let short = super::expand(
+                        force,
+                        low,
+                        &scheme,
+                        ExpansionScope::Motion,
+                        Supervision::default(),
+                    );
                     assert_same(&short.expect("numbers of a fixed width"), &exact);
                 }
             }
         }
     }
 
-    fn assert_same(found: &Expansion<Integers>, exact: &Expansion<Integers>) {
+    fn assert_same(found: &SecularExpansion<Integers>, exact: &SecularExpansion<Integers>) {
         assert_eq!(found.frequency_squared, exact.frequency_squared);
         assert_eq!(found.frequency, exact.frequency);
         assert_eq!(found.displacement, exact.displacement);
@@ -791,7 +825,7 @@ mod tests {
 
     #[test]
     fn primes_agree_with_whole_numbers() {
-        let free = Amplitude::Free;
+        let free = AmplitudeKind::Free;
         // Duffing; a quadratic force, whose motions have all harmonics; several orders, x x'^2
         // among them; the pendulum.
         agrees(&[term(1, 3, 0, (1, 1))], 24, free);
@@ -815,7 +849,7 @@ mod tests {
         sine.push(term(1, 1, 2, (1, 2)));
         agrees(&sine, 10, free);
         agrees(&sine[..8], 12, free);
-        let cycle = Amplitude::Determined;
+        let cycle = AmplitudeKind::Determined;
         // van der Pol, x = 2 y; Rayleigh; both with a nonlinear spring of the second order.
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);
         agrees(&[term(1, 0, 3, (4, 3)), term(1, 0, 1, (-1, 1))], 13, cycle);
@@ -835,8 +869,8 @@ mod tests {
             expand(
                 &mixed,
                 12,
-                &scheme(Amplitude::Determined),
-                Extent::Motion,
+                &scheme(AmplitudeKind::Determined),
+                ExpansionScope::Motion,
                 Supervision::default()
             )
             .is_none()
@@ -845,8 +879,8 @@ mod tests {
             expand(
                 &[term(1, 0, 1, (2, 1))],
                 12,
-                &scheme(Amplitude::Free),
-                Extent::Motion,
+                &scheme(AmplitudeKind::Free),
+                ExpansionScope::Motion,
                 Supervision::default()
             )
             .is_none()

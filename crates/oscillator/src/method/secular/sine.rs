@@ -12,12 +12,12 @@
 
 use num_traits::{One, Zero};
 
-use super::plan::Term;
-use crate::exact::residue::sums::{Part, Product};
+use super::plan::PlannedTerm;
+use crate::exact::residue::sums::{MixtureTerm, Product};
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 use crate::exact::{Integer, Rational};
 
-/// Where the tables of the sine stand.
+/// Indices of the tables of the sine.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sine {
     /// `V`.
@@ -33,7 +33,7 @@ pub(super) struct Sine {
 }
 
 impl Sine {
-    /// From the table `first` on; how many there are is [`Self::TABLES`].
+    /// Tables from `first` on; their number is [`Self::TABLES`].
     pub fn new(first: usize, last: usize) -> Self {
         let product = |left, to| Product { left, right: first, to, needed: last };
         Self {
@@ -45,31 +45,34 @@ impl Sine {
         }
     }
 
-    /// How many tables it takes.
+    /// Number of tables.
     pub const TABLES: usize = 5;
 }
 
 /// The rate `k` of a sine that the terms contain up to an order, and the terms beside it.
-pub(super) fn split(mut terms: Vec<Term>, highest: usize) -> (Option<Rational>, Vec<Term>) {
-    /// Below, powers are as fast.
+pub(super) fn split(
+    mut terms: Vec<PlannedTerm>,
+    highest: usize,
+) -> (Option<Rational>, Vec<PlannedTerm>) {
+    /// Number of terms below which powers are as fast.
     const LONG: usize = 6;
     let enough = (LONG..=terms.len()).contains(&highest);
     let rate = if enough { rate(&terms, highest) } else { None };
     if rate.is_some() {
-        terms.retain(|term| place(term).is_none());
+        terms.retain(|term| sine_index(term).is_none());
     }
     (rate, terms)
 }
 
-/// Which term of the sine it is: `n` of `delta^n y^(2n+1)`.
-fn place(term: &Term) -> Option<usize> {
+/// The index of a term in the series of the sine: `n` for `delta^n y^(2n+1)`.
+fn sine_index(term: &PlannedTerm) -> Option<usize> {
     let own = term.velocity == 0 && term.position as usize == 2 * term.order + 1;
     own.then_some(term.order)
 }
 
-fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
+fn rate(terms: &[PlannedTerm], highest: usize) -> Option<Rational> {
     let coefficient = |n: usize| {
-        let mut own = terms.iter().filter(|term| place(term) == Some(n));
+        let mut own = terms.iter().filter(|term| sine_index(term) == Some(n));
         own.next().filter(|_| own.next().is_none()).map(|term| &term.coefficient)
     };
     let rate = coefficient(1)? * Rational::from_integer(Integer::from(6));
@@ -86,7 +89,7 @@ fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
     (!rate.is_zero()).then_some(rate)
 }
 
-/// What the recursion multiplies by, modulo eight primes.
+/// Factors of the recursion, modulo eight primes.
 pub(super) struct SineFactors {
     /// `n + 1/2`.
     scaled: Vec<Lanes>,
@@ -97,7 +100,7 @@ pub(super) struct SineFactors {
 }
 
 impl SineFactors {
-    /// `None` where a prime divides a denominator.
+    /// `None` if a prime divides a denominator.
     #[inline(always)]
     pub fn new<A: Arithmetic>(residues: &Residues<A>, rate: Lanes, last: usize) -> Option<Self> {
         let one = residues.one();
@@ -121,18 +124,18 @@ impl SineFactors {
     }
 
     /// `V_n` from `y_n`, which stands in the first table.
-    pub fn scaled(&self, order: usize) -> Part {
-        Part { factor: self.scaled[order], table: 0, order }
+    pub fn scaled(&self, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.scaled[order], table: 0, order }
     }
 
     /// `S_n` without what it has of `y_n`.
-    pub fn sine(&self, sine: &Sine, order: usize) -> Part {
-        Part { factor: self.sine[order], table: sine.of_sine.to, order }
+    pub fn sine(&self, sine: &Sine, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.sine[order], table: sine.of_sine.to, order }
     }
 
     /// `C_(n+1)`.
-    pub fn cosine(&self, sine: &Sine, order: usize) -> Part {
-        Part { factor: self.cosine[order], table: sine.of_cosine.to, order }
+    pub fn cosine(&self, sine: &Sine, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.cosine[order], table: sine.of_cosine.to, order }
     }
 }
 
@@ -143,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_sine_is_known_by_all_of_its_terms() {
-        let term = |order: usize, coefficient: Rational| Term {
+        let term = |order: usize, coefficient: Rational| PlannedTerm {
             order,
             position: 2 * order as u32 + 1,
             velocity: 0,
@@ -151,17 +154,22 @@ mod tests {
         };
         let third = Rational::new(Integer::from(-1), Integer::from(3));
         let mut power = Rational::one();
-        let mut terms: Vec<Term> = (1..=8)
+        let mut terms: Vec<PlannedTerm> = (1..=8)
             .map(|n| {
                 power *= &third;
                 term(n, &power / Rational::from_integer(factorial(2 * n as u32 + 1)))
             })
             .collect();
-        terms.push(Term { order: 1, position: 1, velocity: 2, coefficient: Rational::one() });
+        terms.push(PlannedTerm {
+            order: 1,
+            position: 1,
+            velocity: 2,
+            coefficient: Rational::one(),
+        });
         let (rate, others) = split(terms.clone(), 8);
         assert_eq!(rate, Some(third));
         assert_eq!((others.len(), others[0].velocity), (1, 2));
-        // One term too few, and one that is no term of a sine.
+        // One term too few, and one that is not a term of a sine.
         assert_eq!(split(terms.clone(), 9).0, None);
         terms[4].coefficient *= Rational::from_integer(Integer::from(2));
         let (rate, others) = split(terms.clone(), 8);

@@ -25,47 +25,48 @@ use std::collections::HashMap;
 
 use num_traits::{One, Zero};
 
-use super::modular::{Field, Recursion};
-use super::plan::{Plan, Term};
-use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
-use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use super::modular::{Recursion, ResidueField};
+use super::plan::{Plan, PlannedTerm};
+use super::{AmplitudeKind, ExpansionScope, ForceTerm, Scheme, SecularExpansion};
+use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{
     Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
 };
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::interrupt::Supervision;
-use crate::parallel::{each, threads};
+use crate::parallel::{par_map, threads};
 use crate::series::FourierSeries;
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
 
-/// Up to so many points times orders one thread is done before others have begun.
+/// Number of points times orders up to which one thread is done before others have begun.
 const ALONE: usize = 200;
 
-/// The expansion, to the order that it has reached where it is stopped; `None` where the equation
-/// has no symmetry to use, no term of the first order, an amplitude that is determined, or too many
-/// symbols, and where it is stopped before any order is there: the ring's own recursion answers
-/// then.
+/// The expansion, to the order that it has reached where it is stopped; `None` if the equation has
+/// no symmetry to use, no term of the first order, an amplitude that is determined, or too many
+/// symbols, and if it is stopped before any order is there: the ring's own recursion answers then.
 pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Option<Expansion<Symbols>> {
+) -> Option<SecularExpansion<Symbols>> {
     match scheme.amplitude {
-        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent, supervision)),
-        Amplitude::Determined => None,
+        AmplitudeKind::Free => {
+            by_widest(ExpandSymbols(force, highest, *scheme, extent, supervision))
+        }
+        AmplitudeKind::Determined => None,
     }
 }
 
-struct Expand<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, Extent, Supervision);
+struct ExpandSymbols<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, ExpansionScope, Supervision);
 
-impl Work for Expand<'_> {
-    type Output = Option<Expansion<Symbols>>;
+impl Work for ExpandSymbols<'_> {
+    type Output = Option<SecularExpansion<Symbols>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// More are as slow as polynomials.
         const MOST_POINTS: usize = 5000;
         /// Expansions to this order are done at once.
@@ -81,11 +82,12 @@ impl Work for Expand<'_> {
         let stages: Vec<usize> = halves.collect();
         let lower_set = |highest: usize| LowerSet::new(&weights, base, highest, MOST_POINTS);
         lower_set(highest)?;
-        let mut best: Option<Expansion<Symbols>> = None;
+        let mut best: Option<SecularExpansion<Symbols>> = None;
         for highest in stages.into_iter().rev() {
             let lower_set = lower_set(highest)?;
-            let plan = Plan::new(&terms, None, highest, scheme, extent == Extent::Frequency)?;
-            let mut search = Search {
+            let plan =
+                Plan::new(&terms, None, highest, scheme, extent == ExpansionScope::Frequency)?;
+            let mut search = PrimeSearch {
                 arithmetic,
                 plan: &plan,
                 groups: &groups,
@@ -109,16 +111,16 @@ impl Work for Expand<'_> {
     }
 }
 
-/// What the symbols of the terms are.
+/// The symbols of the terms.
 struct Groups {
     /// Power of the small parameter and product of symbols.
     kinds: Vec<(usize, Monomial)>,
-    /// Which of them each term belongs to.
+    /// Index of the group of each term.
     of_terms: Vec<usize>,
 }
 
 /// The terms of the force with numbers for coefficients, and what symbols each of them has.
-fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
+fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<PlannedTerm>, Groups)> {
     let mut terms = Vec::new();
     let mut groups = Groups { kinds: vec![], of_terms: vec![] };
     for own in force {
@@ -130,7 +132,7 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
             if known.is_none() {
                 groups.kinds.push(kind);
             }
-            terms.push(Term {
+            terms.push(PlannedTerm {
                 order: own.order,
                 position: own.position,
                 velocity: own.velocity,
@@ -145,9 +147,9 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
 struct LowerSet {
     /// One list of exponents a point; that of the group whose value is one is zero.
     points: Vec<Vec<usize>>,
-    /// How many points belong to each order.
+    /// Number of points of each order.
     counts: Vec<usize>,
-    /// For each group the places of all points along a line in its direction, from exponent zero
+    /// The indices of all points along each line in the direction of a group, from exponent zero
     /// on.
     lines: Vec<Vec<Vec<usize>>>,
 }
@@ -201,8 +203,8 @@ impl LowerSet {
         Some(Self { points, counts, lines })
     }
 
-    /// From values at the points of an order, `numbers` side by side at each, to coefficients, in
-    /// place. `inverses` are those of `1, 2, ...`.
+    /// Interpolation from values at the points of an order, `numbers` side by side at each, to
+    /// coefficients, in place. `inverses` are those of `1, 2, ...`.
     fn interpolate(
         &self,
         modulus: &Modulus,
@@ -263,45 +265,46 @@ impl LowerSet {
     }
 }
 
-/// What one prime sees of all orders, or of the lower ones where it was stopped: for each the plain
-/// residues of the coefficients, point by point; of the frequency, of its square, and of the
-/// harmonics where they are wanted.
-struct Image {
+/// The expansion modulo one prime, of all orders or of the lower ones if it was stopped: for each
+/// order the plain residues of the coefficients, point by point; of the frequency, of its square,
+/// and of the harmonics if they are wanted.
+struct SymbolicImage {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
 }
 
-/// One order: the numbers as numerators over one denominator, point by point as in an [`Image`].
-struct Order {
+/// One order: the numbers as numerators over one denominator, point by point as in a
+/// [`SymbolicImage`].
+struct SymbolicOrder {
     denominator: Integer,
     numerators: Vec<Integer>,
-    /// How many numbers there are at each point.
+    /// Number of coefficients at each point.
     numbers: usize,
 }
 
-struct Search<'a, A> {
+struct PrimeSearch<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     groups: &'a Groups,
     lower_set: &'a LowerSet,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
     primes: Box<dyn Iterator<Item = u64> + Send + Sync>,
-    images: Vec<Image>,
+    images: Vec<SymbolicImage>,
 }
 
-impl<A: Arithmetic> Search<'_, A> {
+impl<A: Arithmetic> PrimeSearch<'_, A> {
     fn numbers(&self, order: usize) -> usize {
         match self.extent {
-            Extent::Frequency => 2,
-            Extent::Motion => 2 + self.plan.harmonics(order),
+            ExpansionScope::Frequency => 2,
+            ExpansionScope::Motion => 2 + self.plan.harmonics(order),
         }
     }
 
     /// The numbers of all orders at these points, as far as the work is not stopped.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
-        let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
-        let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
+        let mut field = ResidueField::new(self.arithmetic, self.plan, &[modulus])?;
+        let mut memory = Memory::zeroed(Recursion::<A>::entry_count(self.plan));
         let mut recursion =
             Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
         let own = std::mem::take(&mut field.coefficients);
@@ -332,7 +335,7 @@ impl<A: Arithmetic> Search<'_, A> {
                 for order in weight..=self.plan.highest {
                     values.push(recursion.frequency()[order].0[lane]);
                     values.push(recursion.frequency_squared()[order].0[lane]);
-                    if self.extent == Extent::Motion {
+                    if self.extent == ExpansionScope::Motion {
                         values.extend(recursion.displacement(order).map(|own| own.0[lane]));
                     }
                 }
@@ -348,11 +351,11 @@ impl<A: Arithmetic> Search<'_, A> {
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
         if points.len() * self.plan.highest > ALONE {
-            /// So many lots for each thread let none of them wait for long.
+            /// Number of lots for each thread, so that none of them waits for long.
             const LOTS: usize = 4;
             let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
             let lots: Vec<_> = points.chunks(length).collect();
-            let found = each(&lots, |points| self.values(modulus, points));
+            let found = par_map(&lots, |points| self.values(modulus, points));
             let found: Option<Vec<Vec<Vec<u64>>>> = found.into_iter().collect();
             let mut values = Vec::with_capacity(points.len());
             for (own, points) in found?.into_iter().zip(lots) {
@@ -367,13 +370,13 @@ impl<A: Arithmetic> Search<'_, A> {
         self.values(modulus, points)
     }
 
-    fn image(&self, prime: u64) -> Option<Image> {
+    fn image(&self, prime: u64) -> Option<SymbolicImage> {
         let modulus = Modulus::new(prime, A::RADIX);
         self.interpolated(modulus, &self.values_at_points(modulus)?)
     }
 
     /// The orders that these numbers at the first points are enough for.
-    fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<Image> {
+    fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<SymbolicImage> {
         let highest = self.plan.highest;
         let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
         modulus.invert(&mut inverses)?;
@@ -394,12 +397,12 @@ impl<A: Arithmetic> Search<'_, A> {
             values.iter_mut().for_each(|value| *value = modulus.plain(*value));
             orders.push(values);
         }
-        Some(Image { modulus, orders })
+        Some(SymbolicImage { modulus, orders })
     }
 
     /// All orders, by as many primes as their fractions need; those for which there are enough
     /// where the work is stopped.
-    fn orders(&mut self) -> Option<Vec<Order>> {
+    fn orders(&mut self) -> Option<Vec<SymbolicOrder>> {
         /// Residues kept at once, half a gigabyte of them.
         const MOST_RESIDUES: usize = 1 << 26;
         let plan = self.plan;
@@ -435,7 +438,7 @@ impl<A: Arithmetic> Search<'_, A> {
                 let Some(found) = fractions(images, &remainders, &product, order) else {
                     break;
                 };
-                let found = Order { numbers: self.numbers(order), ..found };
+                let found = SymbolicOrder { numbers: self.numbers(order), ..found };
                 if !found.agrees(&test.modulus, in_test) {
                     break;
                 }
@@ -447,19 +450,19 @@ impl<A: Arithmetic> Search<'_, A> {
     }
 }
 
-/// The numbers of an order as fractions; `None` where the primes are too few.
+/// The numbers of an order as fractions; `None` if the primes are too few.
 fn fractions<A: Arithmetic>(
-    images: &[Image],
+    images: &[SymbolicImage],
     remainders: &Remainders<A>,
     product: &Integer,
     order: usize,
-) -> Option<Order> {
+) -> Option<SymbolicOrder> {
     let mut denominator = Integer::one();
     let mut over: Vec<Integer> = vec![];
     let mut numerators = Vec::new();
     let mut weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
     let mut residues = vec![Lanes::default(); images.len()];
-    let mut eight = Numbers::default();
+    let mut eight = ReconstructedIntegers::default();
     // The place of the first of eight that were put together over the present denominator.
     let mut first = None;
     for index in 0..images[0].orders[order].len() {
@@ -491,10 +494,10 @@ fn fractions<A: Arithmetic>(
     for (numerator, over) in numerators.iter_mut().zip(over) {
         *numerator *= &denominator / over;
     }
-    Some(Order { denominator, numerators, numbers: 0 })
+    Some(SymbolicOrder { denominator, numerators, numbers: 0 })
 }
 
-impl Order {
+impl SymbolicOrder {
     /// Whether a prime that knows nothing of these numbers sees the same.
     fn agrees(&self, modulus: &Modulus, plain: &[u64]) -> bool {
         let denominator = modulus.integer(&self.denominator);
@@ -527,10 +530,10 @@ impl Order {
 /// The orders as series.
 fn expansion(
     plan: &Plan,
-    orders: &[Order],
+    orders: &[SymbolicOrder],
     monomials: &(Vec<(Monomial, usize)>, Monomial),
-    extent: Extent,
-) -> Expansion<Symbols> {
+    extent: ExpansionScope,
+) -> SecularExpansion<Symbols> {
     let ring = Polynomials(Integers);
     let constant = |number: usize| -> Vec<FourierSeries<Symbols>> {
         let orders = orders.iter().enumerate();
@@ -541,17 +544,17 @@ fn expansion(
             })
             .collect()
     };
-    let mut expansion = Expansion {
+    let mut expansion = SecularExpansion {
         frequency: constant(0),
         frequency_squared: constant(1),
         displacement: vec![],
         removed: vec![],
         amplitudes: vec![],
     };
-    if extent == Extent::Motion {
+    if extent == ExpansionScope::Motion {
         let squares = expansion.frequency_squared.iter().skip(1);
         expansion.removed = squares.map(|square| square.times(-1)).collect();
-        let series = |(order, own): (usize, &Order)| {
+        let series = |(order, own): (usize, &SymbolicOrder)| {
             let mut coefficients = Vec::new();
             for index in 0..plan.harmonics(order) {
                 coefficients.resize(plan.harmonic(index), Polynomial::zero());
@@ -599,14 +602,16 @@ mod tests {
     fn agrees(force: &[ForceTerm<Symbols>], highest: usize) {
         for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
-                let scheme = Scheme { normalisation, amplitude: Amplitude::Free, detuning };
+                let scheme = Scheme { normalisation, amplitude: AmplitudeKind::Free, detuning };
                 let exact = super::super::expand(&Polynomials(Integers), force, highest, &scheme)
                     .expect("an expansion");
                 let nobody = Supervision::default();
-                let widest = expand(force, highest, &scheme, Extent::Motion, nobody)
+                let widest = expand(force, highest, &scheme, ExpansionScope::Motion, nobody)
                     .expect("the same by primes");
-                let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable);
-                let alone = expand(force, highest, &scheme, Extent::Frequency, nobody)
+                let portable =
+                    ExpandSymbols(force, highest, scheme, ExpansionScope::Motion, nobody)
+                        .run(Portable);
+                let alone = expand(force, highest, &scheme, ExpansionScope::Frequency, nobody)
                     .expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);
                 assert_eq!(alone.frequency, exact.frequency);
@@ -675,8 +680,7 @@ mod tests {
         assert_eq!(values, expected);
     }
 
-    /// What is there when the work is stopped, after any number of points, are the lower orders as
-    /// they are.
+    /// If the work is stopped after any number of points, the lower orders are available unchanged.
     #[test]
     fn the_first_points_are_enough_for_the_lower_orders() {
         let [a, b] = ["a", "b"].map(letter);
@@ -684,19 +688,19 @@ mod tests {
             [term(1, 2, 0, (a.clone(), 1)), term(1, 3, 0, (b.clone(), 3)), term(2, 5, 0, (a, 7))];
         let scheme = Scheme {
             normalisation: AmplitudeConvention::Initial,
-            amplitude: Amplitude::Free,
+            amplitude: AmplitudeKind::Free,
             detuning: Detuning::Acceleration,
         };
         let (terms, groups) = grouped(&force).expect("terms");
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
         let lower_set = LowerSet::new(&weights, 0, 6, 1000).expect("few points");
         let plan = Plan::new(&terms, None, 6, scheme, false).expect("symmetry");
-        let search = Search {
+        let search = PrimeSearch {
             arithmetic: Portable,
             plan: &plan,
             groups: &groups,
             lower_set: &lower_set,
-            extent: Extent::Motion,
+            extent: ExpansionScope::Motion,
             supervision: Supervision::default(),
             primes: Box::new(primes_below(30, plan.circle())),
             images: vec![],
@@ -718,12 +722,16 @@ mod tests {
     fn what_has_no_term_of_the_first_order_is_left_to_the_ring() {
         let scheme = Scheme {
             normalisation: AmplitudeConvention::Initial,
-            amplitude: Amplitude::Free,
+            amplitude: AmplitudeKind::Free,
             detuning: Detuning::Acceleration,
         };
         let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
-        assert!(expand(&terms, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
+        assert!(
+            expand(&terms, 6, &scheme, ExpansionScope::Motion, Supervision::default()).is_none()
+        );
         let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
-        assert!(expand(&damped, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
+        assert!(
+            expand(&damped, 6, &scheme, ExpansionScope::Motion, Supervision::default()).is_none()
+        );
     }
 }

@@ -9,15 +9,15 @@ use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
 
 use super::{Field, HermitePade};
-use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Rational};
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the
 /// highest order: whole numbers without a common factor, a list for each series, the lowest power
-/// first. `None` where there is none whose first number is not zero, or more than one, or one of
-/// more digits than anybody waits for.
+/// first. `None` if there is none whose first number is not zero, or more than one, or if its
+/// digits would take too long.
 pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
     by_widest(Exact(series))
 }
@@ -25,9 +25,9 @@ pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
 struct Exact<'a>(&'a [(Vec<Rational>, usize)]);
 
 /// Residues modulo a prime.
-struct Residues(Modulus);
+struct PrimeField(Modulus);
 
-impl Field for Residues {
+impl Field for PrimeField {
     type Element = u64;
 
     fn zero(&self) -> u64 {
@@ -50,14 +50,14 @@ impl Field for Residues {
     }
 }
 
-/// What a prime sees: the coefficients over the first of them, plain residues.
-struct Image {
+/// The coefficients modulo one prime: plain residues, over the first of them.
+struct CoefficientImage {
     modulus: Modulus,
     numbers: Vec<u64>,
 }
 
 impl Exact<'_> {
-    fn image(&self, modulus: Modulus) -> Option<Image> {
+    fn image(&self, modulus: Modulus) -> Option<CoefficientImage> {
         let order = self.0.iter().map(|(_, degree)| degree + 1).sum::<usize>() - 1;
         let residues = |numbers: &[Rational]| {
             let mut inverses: Vec<u64> =
@@ -77,7 +77,7 @@ impl Exact<'_> {
             .iter()
             .map(|(numbers, degree)| Some((residues(numbers.get(..order)?)?, *degree)))
             .collect();
-        let mut work = HermitePade::new(Residues(modulus), series?);
+        let mut work = HermitePade::new(PrimeField(modulus), series?);
         while work.order() < order {
             work.advance();
         }
@@ -92,7 +92,7 @@ impl Exact<'_> {
         }
         let first = *numbers.first().filter(|first| **first != 0)?;
         let inverse = modulus.inverse(first);
-        Some(Image {
+        Some(CoefficientImage {
             numbers: numbers
                 .into_iter()
                 .map(|number| modulus.plain(modulus.product(number, inverse)))
@@ -105,20 +105,20 @@ impl Exact<'_> {
 impl Work for Exact<'_> {
     type Output = Option<Vec<Vec<Integer>>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// As many as [`Remainders`] takes.
         const MOST: usize = 1 << 13;
         /// If so many see nothing there is nothing.
         const BLIND: usize = 4;
         let mut source = primes_below(A::BITS, 2);
-        let mut images: Vec<Image> = vec![];
+        let mut images: Vec<CoefficientImage> = vec![];
         let mut count = 8;
         while count < MOST {
             let mut blind = 0;
             while images.len() <= count {
                 let primes: Vec<u64> = source.by_ref().take(count + 1 - images.len()).collect();
-                let seen: Vec<Option<Image>> =
-                    each(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
+                let seen: Vec<Option<CoefficientImage>> =
+                    par_map(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
                 blind += seen.iter().filter(|image| image.is_none()).count();
                 if seen.is_empty() || blind > BLIND + images.len() / 100 {
                     return None;
@@ -137,9 +137,9 @@ impl Work for Exact<'_> {
     }
 }
 
-/// All numbers over their common denominator, which is the first of them; `None` where the images,
-/// of which the last only tests, are too few.
-fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>> {
+/// All numbers over their common denominator, which is the first of them; `None` if the images, of
+/// which the last only tests, are too few.
+fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<Vec<Integer>> {
     let (test, images) = images.split_last()?;
     let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
     let remainders = Remainders::new(arithmetic, &moduli);
@@ -161,7 +161,7 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
     let mut first = true;
     // Eight numbers down to a place, over the present denominator.
     let mut residues = vec![Lanes::default(); images.len()];
-    let mut eight = Numbers::default();
+    let mut eight = ReconstructedIntegers::default();
     let mut lifted = None;
     let mut in_test = [0; WIDTH];
     while numerators.len() < length {
@@ -191,7 +191,7 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
             return None;
         }
         lifted = None;
-        // What was found before is over the shorter denominator.
+        // The earlier numerators are over the shorter denominator.
         numerators.iter_mut().for_each(|numerator: &mut Integer| *numerator *= &more);
         denominator *= more;
         over = weights(&denominator);

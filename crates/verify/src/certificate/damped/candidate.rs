@@ -9,11 +9,11 @@ use num_traits::{Signed as _, Zero as _};
 
 use super::super::candidate::{
     BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted,
-    iterate, judged, not_proved, shorten, subtract, unclaimed, units, weight, written_out,
+    iterate, judged, not_proved, shorten, subtract, units, weight, without_claims, written_out,
 };
 use super::super::force::{is_even, is_odd};
 use super::super::formula::JudgedFormula;
-use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::law;
 use super::super::radii_polynomial::NotProved;
 use super::super::{Certified, HIGHEST_HARMONIC, coordinate};
@@ -95,7 +95,7 @@ fn certified_cycle(
         cosines: coefficients(&harmonics.cosines),
         sines: coefficients(&harmonics.sines),
         // Many harmonics bring it near in few steps; how many a proof needs is another question.
-        highest: (3 * seen / 2).clamp(15, most(odd)) | 1,
+        highest: (3 * seen / 2).clamp(15, last_harmonic_of_largest_block(odd)) | 1,
         inverse_bits: INVERSE_BITS,
         inverse: vec![],
         sigma: 0,
@@ -140,7 +140,7 @@ pub fn certify_driven(
     let frequency = frequency.ok_or_else(|| NotCertified::DrivingFrequency(given.to_string()))?;
     let [damping, force] = driven_parts(oscillator, &values, &frequency)?;
     let samples = verify::motions(oscillator, solution, at)?.ok_or(NotCertified::NoSteadyMotion)?;
-    let places = |samples: &[verify::Sample]| -> Vec<f64> {
+    let places = |samples: &[verify::TimedState]| -> Vec<f64> {
         samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect()
     };
     let truth = harmonics_of(&places(&samples.truth));
@@ -188,7 +188,8 @@ pub fn certify_driven(
             list.iter_mut().step_by(2).for_each(|even| *even = Integer::zero());
         }
     }
-    certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
+    certificate.highest =
+        (3 * seen / 2).clamp(15, last_harmonic_of_largest_block(certificate.odd)) | 1;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
 }
@@ -202,7 +203,7 @@ fn judged_driven(
     drive: &Drive,
     bits: usize,
 ) -> JudgedFormula {
-    let mut judged = unclaimed([&harmonics.cosines, &harmonics.sines], bits);
+    let mut judged = without_claims([&harmonics.cosines, &harmonics.sines], bits);
     judged.law = solution.title();
     let (Some(response), Some(slow)) = (&solution.response, &solution.modulation) else {
         return judged;
@@ -306,7 +307,7 @@ pub(super) fn proved_by_some_block(
     refine(certificate)
         .map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
-    let most = most(certificate.odd);
+    let most = last_harmonic_of_largest_block(certificate.odd);
     for highest in blocks(seen).take_while(|highest| *highest <= most) {
         certificate.highest = highest;
         match proved(certificate) {
@@ -319,7 +320,7 @@ pub(super) fn proved_by_some_block(
 }
 
 /// The last harmonic of the largest block; without symmetry one has twice as many unknowns.
-const fn most(odd: bool) -> usize {
+const fn last_harmonic_of_largest_block(odd: bool) -> usize {
     match odd {
         true => HIGHEST_HARMONIC - 1,
         false => HIGHEST_HARMONIC / 2 - 1,
@@ -329,9 +330,9 @@ const fn most(odd: bool) -> usize {
 /// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics
 /// and with its square the time grow with them.
 fn digits(seen: usize) -> usize {
-    /// A motion of so many harmonics in doubles has all digits.
+    /// A motion of this many harmonics in doubles has all digits.
     const MANY: usize = 120;
-    /// No fewer: those of the doubles.
+    /// The least number of bits: those of doubles.
     const FEWEST: usize = 60;
     (BITS * MANY / seen.max(1)).clamp(FEWEST, BITS)
 }
@@ -389,7 +390,7 @@ fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
 }
 
 /// `1/omega` and the harmonics of one period, turned so that the first one is a positive cosine.
-fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
+fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Harmonics) {
     let count = samples.len() - 1;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
     let found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
@@ -427,7 +428,7 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
     iterate(certificate, few_units(bits), step, |certificate, step| {
         let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
         let block = certificate.problem().block();
-        // That of 1/omega is the first, where the drive does not give it.
+        // If the drive does not give the frequency, 1/omega is the first unknown of the block.
         let first = usize::from(certificate.drive.is_none());
         if certificate.drive.is_none() {
             certificate.reciprocal -= short(&step.block[0]);
@@ -435,8 +436,8 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
         let corrections = block[first..].iter().zip(&step.block[first..]);
         for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
             match *wave {
-                Wave::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
-                Wave::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
+                BasisFunction::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
+                BasisFunction::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
             }
         }
         shorten(&mut certificate.cosines);

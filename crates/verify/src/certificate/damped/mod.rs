@@ -23,14 +23,14 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
-use theorem::Problem;
+use theorem::DampedProblem;
 
 /// The drive of a motion, whose period is a whole number of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Drive {
     /// Omega, a positive fraction.
     pub frequency: Rational,
-    /// How many periods of the drive the motion takes, n.
+    /// Number n of drive periods in one period of the motion.
     pub periods: usize,
     /// The harmonic of the motion whose amplitude the formula is about.
     pub harmonic: usize,
@@ -45,28 +45,28 @@ pub struct DampedCertificate {
     /// `h`, likewise; of a driven equation it has the letters `c` and `s` too, `cos(Omega t)` and
     /// `sin(Omega t)`.
     pub force: Expr,
-    /// What drives the motion; `None` of a limit cycle.
+    /// The drive; `None` for a limit cycle.
     pub drive: Option<Drive>,
     /// Whether the motion has odd harmonics alone, as it may where half a period later the equation
     /// is its mirror image: `g` is even and `h` odd.
     pub odd: bool,
     /// `reciprocal` and the coefficients are integers times `2^-bits`.
     pub bits: usize,
-    /// About `1/omega`; zero where the drive gives it.
+    /// Approximate `1/omega`; zero if the drive gives it.
     pub reciprocal: Integer,
-    /// About the cosine coefficients of the motion, that of the constant first.
+    /// Approximate cosine coefficients of the motion, the constant first.
     pub cosines: Vec<Integer>,
-    /// About the sine coefficients by harmonic; that of the constant is zero, and of a limit cycle
-    /// that of the first harmonic too.
+    /// Approximate sine coefficients by harmonic; that of the constant is zero, and for a limit
+    /// cycle that of the first harmonic, too.
     pub sines: Vec<Integer>,
     /// The last harmonic of the block, odd where `odd`.
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on the block, row by row. The columns are those of the
-    /// equations: the sine of the first harmonic, then of each harmonic the cosine and the sine, as
-    /// far as they are left. The rows are those of the unknowns: `1/omega`, then the same. With a
-    /// drive both are of each harmonic the cosine and the sine.
+    /// Approximate inverse of the derivative on the block, row by row. The columns belong to the
+    /// equations: the sine of the first harmonic, then the remaining cosines and sines of each
+    /// harmonic. The rows belong to the unknowns: `1/omega`, then the same coefficients. With a
+    /// drive both are the cosine and the sine of each harmonic.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `1/omega` in the norm is `2^sigma`; zero where the drive gives it.
     pub sigma: i32,
@@ -104,9 +104,10 @@ pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckE
 }
 
 impl DampedCertificate {
-    /// What is to be proved, and from what.
-    fn problem(&self) -> Problem<'_> {
-        Problem {
+    /// Returns the equation and the approximate motion of this certificate in the form that the
+    /// theorem takes.
+    fn problem(&self) -> DampedProblem<'_> {
+        DampedProblem {
             damping: &self.damping,
             force: &self.force,
             drive: self.drive.as_ref().map(|drive| drive.periods),
@@ -158,7 +159,7 @@ impl DampedCertificate {
         FourierSeries::exactly(balls(&self.cosines), balls(&self.sines)).of_digits(self.bits)
     }
 
-    /// What does not fit together.
+    /// Checks that sizes, letters and numbers fit together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
         let drive = self.drive.as_ref();
         let waves = drive.map(|_| theorem::waves_of_drive()).into_iter().flatten();
@@ -217,7 +218,7 @@ impl DampedCertificate {
     /// A law that gives others.
     fn law_is_held(&self, formula: &JudgedFormula) -> Result<bool, &'static str> {
         match &self.drive {
-            None => law::hold(formula, self.bits),
+            None => law::law_matches_frequency(formula, self.bits),
             Some(drive) => {
                 let exact = waves::displacement(&formula.law, &formula.values, drive);
                 law::hold_displacement(exact.as_ref(), formula, self.bits)
@@ -237,7 +238,7 @@ impl DampedCertificate {
         let angles = formula::waves(periods, WORKING);
         let later = |j: usize| match j {
             0 => motion.clone(),
-            _ => motion.turned(&angles[j]),
+            _ => motion.phase_shifted(&angles[j]),
         };
         let mut copies: Vec<FourierSeries> = (0..periods).map(|m| later(2 * m)).collect();
         if alone {
@@ -268,7 +269,7 @@ impl DampedCertificate {
         })
     }
 
-    /// What follows from a proof.
+    /// Returns the frequency, the motion and the errors of the formula that follow from a proof.
     ///
     /// # Errors
     /// A frequency without a value, or a damping without one.
@@ -292,10 +293,10 @@ impl DampedCertificate {
                 let errors = |formula: &JudgedFormula| {
                     truth.errors(
                         &formula.frequency_ball(self.bits),
-                        &turned(formula.motion(self.bits)),
+                        &with_cosine_phase(formula.motion(self.bits)),
                     )
                 };
-                let exponent = Enclosure::of(&self.exponent(&motion, proof.radius)?);
+                let exponent = Enclosure::from_ball(&self.exponent(&motion, proof.radius)?);
                 (Some(exponent), None, formula.map(errors))
             }
             Some(drive) => {
@@ -306,12 +307,12 @@ impl DampedCertificate {
                     truth.errors_of_driven(&own, [&amplitude_of(&own, drive.harmonic), &amplitude])
                 };
                 let errors = formula.map(errors);
-                (None, Some(Enclosure::of(&amplitude)), errors)
+                (None, Some(Enclosure::from_ball(&amplitude)), errors)
             }
         };
         Ok(Certified {
             proof,
-            frequency: Enclosure::of(&frequency),
+            frequency: Enclosure::from_ball(&frequency),
             exponent,
             amplitude,
             copies: copies.len().max(1),
@@ -367,9 +368,9 @@ fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
     })
 }
 
-/// The same motion with another phase: that where the first harmonic is a positive cosine; as it is
-/// where it has no first harmonic.
-fn turned(motion: FourierSeries) -> FourierSeries {
+/// The motion with its phase shifted so that the first harmonic is a positive cosine; unchanged if
+/// it has no first harmonic.
+fn with_cosine_phase(motion: FourierSeries) -> FourierSeries {
     let (cosine, sine) = (motion.cosine(1), motion.sine(1));
     if sine.is_zero() && cosine.middle.is_positive() {
         return motion;
@@ -377,7 +378,7 @@ fn turned(motion: FourierSeries) -> FourierSeries {
     let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
     let part = |ball: &Ball| WORKING.quotient(ball, &WORKING.root(&square, 2)?);
     match part(&cosine).zip(part(&sine)) {
-        Some((cosine, sine)) => motion.turned(&[cosine, sine]),
+        Some((cosine, sine)) => motion.phase_shifted(&[cosine, sine]),
         None => motion,
     }
 }

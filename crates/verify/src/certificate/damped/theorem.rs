@@ -28,8 +28,9 @@
 //!
 //! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X),
 //! and the norms of Z2 are over the ball of radius R. Z2 bounds the second derivative of F at u =
-//! (q, v) and u' = (q', v'), `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v
-//! v')' + p^2 h'' v v'`, term by term.
+//! (q, v) and u' = (q', v'),
+//! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by
+//! term.
 //!
 //! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and
 //! `r < a_1`, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
@@ -48,11 +49,12 @@
 //! and the solution above would have odd harmonics.
 //!
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
-//! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is no unknown,
-//! b_1 is one, and all that belongs to p above is left out: its column, the first two terms of Z2,
-//! and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n theta)`; its
-//! derivative is that by x. The zero in the ball is a motion that repeats itself after n periods of
-//! the drive; that it takes fewer, and that it attracts, are not excluded.
+//! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is not an
+//! unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two
+//! terms of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and
+//! `sin(n theta)`; its derivative is that by x. The zero in the ball is a motion that repeats
+//! itself after n periods of the drive; that it takes fewer, and that it attracts, are not
+//! excluded.
 //!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
 //! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),
@@ -63,7 +65,7 @@ use num_traits::Signed as _;
 
 use super::super::approximate_inverse::{Inverse, SHORT, image};
 use super::super::force::{NoValue, along, along_all, is_even, is_odd};
-use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::radii_polynomial::{Correction, NotProved, Proof, radius};
 use super::super::{HIGHEST_HARMONIC, coordinate};
 use crate::exact::Integer;
@@ -83,13 +85,13 @@ pub(super) fn waves_of_drive() -> [Symbol; 2] {
     ["c", "s"].map(Symbol::new)
 }
 
-/// What a certificate says, whatever kind it is of.
-pub(super) struct Problem<'a> {
+/// A certificate in the form that the theorem takes, of a limit cycle or of a driven motion.
+pub(super) struct DampedProblem<'a> {
     /// g.
     pub(super) damping: &'a Expr,
     /// h, with the letters of the [drive](waves_of_drive) where there is one.
     pub(super) force: &'a Expr,
-    /// How many periods the drive has in one of the motion; `None` of a limit cycle, of which p is
+    /// Number of drive periods in one period of the motion; `None` for a limit cycle, of which p is
     /// an unknown.
     pub(super) drive: Option<usize>,
     /// Whether the motion has odd harmonics alone.
@@ -107,7 +109,7 @@ pub(super) struct Problem<'a> {
     pub(super) sigma: i32,
 }
 
-impl Problem<'_> {
+impl DampedProblem<'_> {
     /// Whether p is an unknown.
     const fn is_free(&self) -> bool {
         self.drive.is_none()
@@ -120,21 +122,25 @@ impl Problem<'_> {
 
     /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the
     /// first: there p has its place among the unknowns.
-    pub(super) fn block(&self) -> Vec<Wave> {
+    pub(super) fn block(&self) -> Vec<BasisFunction> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
-        let waves = harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)]);
-        let waves = waves.filter(|wave| *wave != Wave::Sine(0));
+        let waves = harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)]);
+        let waves = waves.filter(|wave| *wave != BasisFunction::Sine(0));
         match self.is_free() {
-            true => [Wave::Sine(1)]
+            true => [BasisFunction::Sine(1)]
                 .into_iter()
-                .chain(waves.filter(|wave| *wave != Wave::Sine(1)))
+                .chain(waves.filter(|wave| *wave != BasisFunction::Sine(1)))
                 .collect(),
             false => waves.collect(),
         }
     }
 
     /// The values of an expression along a motion.
-    fn along(&self, expression: &Expr, motion: &FourierSeries) -> Result<FourierSeries, NoValue> {
+    fn values_along(
+        &self,
+        expression: &Expr,
+        motion: &FourierSeries,
+    ) -> Result<FourierSeries, NoValue> {
         let Some(periods) = self.drive else {
             return along(expression, motion);
         };
@@ -186,11 +192,11 @@ impl Problem<'_> {
 ///
 /// # Errors
 /// [`NotProved`].
-pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
+pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
     if problem.odd && !problem.is_odd()? {
         return Err(NotProved::NotOdd);
     }
-    let system = System::of(problem)?;
+    let system = DampedBoundData::new(problem)?;
     let problem = &system.equations.problem;
     let x = coordinate();
     let slope = problem.force.differentiate(x)?;
@@ -207,7 +213,7 @@ pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
         let ball = problem.motion.clone().shortened(ROUGH).widened(within);
         let mut norms = [Bound::ZERO; 5];
         for (norm, expression) in norms.iter_mut().zip(&derivatives) {
-            *norm = problem.along(expression, &ball)?.norm();
+            *norm = problem.values_along(expression, &ball)?.norm();
         }
         Ok(system.curvature(norms, within))
     };
@@ -215,27 +221,28 @@ pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
     radius(defect, contraction, curvature, distinct)
 }
 
-/// What is to be subtracted from p and the harmonics of a certificate, so that it is nearer to the
-/// solution; nothing is proved of it.
+/// The Newton correction: subtracted from p and the harmonics of a certificate, it brings them
+/// nearer to the solution. It proves nothing.
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(problem: Problem) -> Result<Correction<Wave>, NotProved> {
-    Ok(System::of(problem)?.correction())
+pub(super) fn correction(problem: DampedProblem) -> Result<Correction<BasisFunction>, NotProved> {
+    Ok(DampedBoundData::new(problem)?.correction())
 }
 
-/// About the derivative on the block, row by row, for what is not proved.
+/// The approximate derivative on the block, row by row, for steps that need no proof.
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn derivative_of_block(problem: Problem) -> Result<Vec<Vec<f64>>, NotProved> {
-    let equations = Equations::of(problem)?;
+pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>>, NotProved> {
+    let equations = DampedEquations::new(problem)?;
     let derivative = equations.derivative()?;
-    let entry = |row: Wave, place: usize| match place < equations.unknowns_before_waves() {
+    let entry = |row: BasisFunction, place: usize| match place < equations.unknowns_before_waves() {
         true => WORKING.nearest(&equations.by_reciprocal(row)),
         false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
-    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
+    let row =
+        |row: &BasisFunction| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
     Ok(equations.block.iter().map(row).collect())
 }
 
@@ -246,7 +253,7 @@ struct Multiplier {
 }
 
 impl Multiplier {
-    fn of(series: &FourierSeries) -> Self {
+    fn new(series: &FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
             let half = if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
             SHORT.converted(&half, WORKING)
@@ -256,7 +263,7 @@ impl Multiplier {
     }
 
     /// The coefficient of one wave in the product with another.
-    fn at(&self, row: Wave, column: Wave) -> Ball {
+    fn coefficient(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let cosine = |m: usize| self.cosines.get(m).cloned().unwrap_or_else(Ball::zero);
         let sine = |m: usize| match m {
             0 => Ball::zero(),
@@ -268,12 +275,18 @@ impl Multiplier {
             false => sine(k.abs_diff(j)),
         };
         let both = match (row, column) {
-            (Wave::Cosine(_), Wave::Cosine(_)) => SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j)),
-            (Wave::Sine(_), Wave::Sine(_)) => {
+            (BasisFunction::Cosine(_), BasisFunction::Cosine(_)) => {
+                SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j))
+            }
+            (BasisFunction::Sine(_), BasisFunction::Sine(_)) => {
                 SHORT.difference(&cosine(k.abs_diff(j)), &cosine(k + j))
             }
-            (Wave::Sine(_), Wave::Cosine(_)) => SHORT.sum(&apart(k < j), &sine(k + j)),
-            (Wave::Cosine(_), Wave::Sine(_)) => SHORT.sum(&apart(j < k), &sine(k + j)),
+            (BasisFunction::Sine(_), BasisFunction::Cosine(_)) => {
+                SHORT.sum(&apart(k < j), &sine(k + j))
+            }
+            (BasisFunction::Cosine(_), BasisFunction::Sine(_)) => {
+                SHORT.sum(&apart(j < k), &sine(k + j))
+            }
         };
         // Of the constant both are one.
         if k == 0 { SHORT.divided(&both, 2) } else { both }
@@ -295,31 +308,31 @@ struct Derivative {
 }
 
 impl Derivative {
-    /// How many harmonics g(X) and h'(X) have.
+    /// Number of harmonics that g(X) or h'(X) have, the larger of the two.
     fn width(&self) -> usize {
         self.damping.length().max(self.slope.length())
     }
 
     /// The coefficient of one wave in `p (g e)' + p^2 h' e` of another, e.
-    fn bent(&self, row: Wave, column: Wave) -> Ball {
+    fn bent(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let k = row.harmonic() as i64;
         // (cos)' = -k sin, (sin)' = k cos.
         let drag = match row {
-            Wave::Cosine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(Wave::Sine(harmonic), column), k)
+            BasisFunction::Cosine(harmonic) => {
+                SHORT.scaled(&self.by_damping.coefficient(BasisFunction::Sine(harmonic), column), k)
             }
-            Wave::Sine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(Wave::Cosine(harmonic), column), -k)
-            }
+            BasisFunction::Sine(harmonic) => SHORT
+                .scaled(&self.by_damping.coefficient(BasisFunction::Cosine(harmonic), column), -k),
         };
         SHORT.sum(
             &SHORT.product(&self.reciprocal, &drag),
-            &SHORT.product(&self.squared, &self.by_slope.at(row, column)),
+            &SHORT.product(&self.squared, &self.by_slope.coefficient(row, column)),
         )
     }
 
-    /// The same with `e''`.
-    fn entry(&self, row: Wave, column: Wave) -> Ball {
+    /// The entry of the derivative, `e'' + p (g e)' + p^2 h' e`: that of [`Self::bent`] and on the
+    /// diagonal `-k^2` of `e''`.
+    fn entry(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let bent = self.bent(row, column);
         match row == column {
             true => SHORT.difference(&bent, &SHORT.integer(i64::from(row.squared()))),
@@ -329,24 +342,24 @@ impl Derivative {
 }
 
 /// F at the approximate motion.
-struct Equations<'a> {
-    problem: Problem<'a>,
+struct DampedEquations<'a> {
+    problem: DampedProblem<'a>,
     /// p^2.
     squared: Ball,
     /// g(X) X'.
     drag: FourierSeries,
     /// h(X).
     force: FourierSeries,
-    /// Those of the block, that of the sine of the first harmonic first; of the unknowns p has its
-    /// place.
-    block: Vec<Wave>,
+    /// The equations of the block, the sine of the first harmonic first. Among the unknowns p takes
+    /// the place of that sine.
+    block: Vec<BasisFunction>,
 }
 
-impl<'a> Equations<'a> {
-    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+impl<'a> DampedEquations<'a> {
+    fn new(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
-        let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
-        let force = problem.along(problem.force, motion)?;
+        let drag = problem.values_along(problem.damping, motion)?.product(&motion.derivative());
+        let force = problem.values_along(problem.force, motion)?;
         Ok(Self {
             squared: WORKING.product(&problem.reciprocal, &problem.reciprocal),
             drag,
@@ -356,7 +369,8 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// How many of the unknowns are no waves: p, where it is one.
+    /// Number of unknowns in front of the Fourier coefficients: one if p is an unknown, otherwise
+    /// zero.
     fn unknowns_before_waves(&self) -> usize {
         usize::from(self.problem.is_free())
     }
@@ -364,28 +378,28 @@ impl<'a> Equations<'a> {
     fn derivative(&self) -> Result<Derivative, NotProved> {
         let problem = &self.problem;
         let slope = problem.force.differentiate(coordinate())?;
-        let damping = problem.along(problem.damping, &problem.motion)?.shortened(ROUGH);
-        let slope = problem.along(&slope, &problem.motion)?.shortened(ROUGH);
+        let damping = problem.values_along(problem.damping, &problem.motion)?.shortened(ROUGH);
+        let slope = problem.values_along(&slope, &problem.motion)?.shortened(ROUGH);
         Ok(Derivative {
             reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
             squared: SHORT.converted(&self.squared, WORKING),
-            by_damping: Multiplier::of(&damping),
-            by_slope: Multiplier::of(&slope),
+            by_damping: Multiplier::new(&damping),
+            by_slope: Multiplier::new(&slope),
             damping,
             slope,
         })
     }
 
     /// Both waves of the harmonics from one beyond the block up to another.
-    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
+    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = BasisFunction> + use<> {
         let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
         let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
-        harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
+        harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)])
     }
 
     /// `p D_k + p^2 h_k`.
-    fn bent(&self, wave: Wave) -> Ball {
+    fn bent(&self, wave: BasisFunction) -> Ball {
         WORKING.sum(
             &WORKING.product(&self.problem.reciprocal, &self.drag.coefficient(wave)),
             &WORKING.product(&self.squared, &self.force.coefficient(wave)),
@@ -393,7 +407,7 @@ impl<'a> Equations<'a> {
     }
 
     /// `D_k + 2 p h_k`, the derivative by p.
-    fn by_reciprocal(&self, wave: Wave) -> Ball {
+    fn by_reciprocal(&self, wave: BasisFunction) -> Ball {
         let twice = WORKING
             .scaled(&WORKING.product(&self.problem.reciprocal, &self.force.coefficient(wave)), 2);
         WORKING.sum(&self.drag.coefficient(wave), &twice)
@@ -405,9 +419,9 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// What the bounds are made of.
-struct System<'a> {
-    equations: Equations<'a>,
+/// The quantities from which the bounds Y0, Z1 and Z2 are computed.
+struct DampedBoundData<'a> {
+    equations: DampedEquations<'a>,
     inverse: Inverse,
     /// alpha.
     size: Bound,
@@ -415,13 +429,13 @@ struct System<'a> {
     size_of_derivative: Bound,
 }
 
-impl<'a> System<'a> {
-    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+impl<'a> DampedBoundData<'a> {
+    fn new(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         // Without p among the unknowns all weigh the same.
         let sigma = if problem.is_free() { problem.sigma } else { 0 };
-        let inverse = Inverse::of(problem.inverse, problem.inverse_bits, sigma);
+        let inverse = Inverse::from_entries(problem.inverse, problem.inverse_bits, sigma);
         let next = (problem.highest + 1) as f64;
-        let equations = Equations::of(problem)?;
+        let equations = DampedEquations::new(problem)?;
         let beyond = Bound::exactly(1.0).over(next);
         let (mut size, mut size_of_derivative) = (beyond.over(next), beyond);
         for (column, wave) in equations.block.iter().enumerate() {
@@ -435,7 +449,7 @@ impl<'a> System<'a> {
 
     /// `B F`: the correction of p and of every harmonic, by which the approximation is the further
     /// off.
-    fn correction(&self) -> Correction<Wave> {
+    fn correction(&self) -> Correction<BasisFunction> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
             (wave, WORKING.difference(&self.equations.problem.motion.coefficient(wave), &image))
@@ -483,7 +497,7 @@ impl<'a> System<'a> {
         let waves_from = self.equations.unknowns_before_waves();
         let in_block = self.equations.block.iter().enumerate().skip(waves_from);
         let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
-        // Where g and h' reach into the block, and beyond.
+        // Columns with entries in the block, first where g and h' couple them to it, then beyond.
         let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
         for (wave, place) in in_block.chain(near) {
             largest = largest.max(self.column(derivative, wave, place));
@@ -534,7 +548,12 @@ impl<'a> System<'a> {
     }
 
     /// The column of a wave, in the block at this place or beyond it.
-    fn column(&self, derivative: &Derivative, column: Wave, place: Option<usize>) -> Bound {
+    fn column(
+        &self,
+        derivative: &Derivative,
+        column: BasisFunction,
+        place: Option<usize>,
+    ) -> Bound {
         let (j, width) = (column.harmonic(), derivative.width());
         let tail: Bound = self
             .equations
@@ -582,7 +601,7 @@ mod tests {
     use super::*;
     use crate::exact::ratio;
     use crate::expr::parse_expression;
-    use crate::numeric::ode::root::{Until, bisect};
+    use crate::numeric::ode::root::{BisectionStop, bisect};
     use crate::{Options, Oscillator, solve};
 
     fn certificate() -> DampedCertificate {
@@ -672,8 +691,12 @@ mod tests {
             const STEP: f64 = 1.0 / 512.0;
             let next = step(state, STEP);
             if state[0] < 0.0 && next[0] >= 0.0 {
-                let [part, _] =
-                    bisect(|part| step(state, part)[0] < 0.0, 0.0, STEP, Until::Halvings(60));
+                let [part, _] = bisect(
+                    |part| step(state, part)[0] < 0.0,
+                    0.0,
+                    STEP,
+                    BisectionStop::Halvings(60),
+                );
                 crossings.push(t + part);
             }
             (state, t) = (next, t + STEP);
@@ -683,12 +706,12 @@ mod tests {
     }
 
     /// The cosine or sine of a harmonic.
-    fn wave(wave: Wave) -> FourierSeries {
+    fn wave(wave: BasisFunction) -> FourierSeries {
         let mut balls = vec![Ball::zero(); wave.harmonic()];
         balls.push(WORKING.integer(1));
         match wave {
-            Wave::Cosine(_) => FourierSeries::exactly(balls, vec![]),
-            Wave::Sine(_) => FourierSeries::exactly(vec![], balls),
+            BasisFunction::Cosine(_) => FourierSeries::exactly(balls, vec![]),
+            BasisFunction::Sine(_) => FourierSeries::exactly(vec![], balls),
         }
     }
 
@@ -701,8 +724,8 @@ mod tests {
     }
 
     impl Place {
-        fn of(problem: &Problem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
-            let value = |expression| problem.along(expression, motion).expect("a value");
+        fn of(problem: &DampedProblem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
+            let value = |expression| problem.values_along(expression, motion).expect("a value");
             let slope = problem.force.differentiate(coordinate()).expect("a slope");
             let reciprocal = FourierSeries::constant(reciprocal.clone());
             let damping = value(problem.damping);
@@ -716,7 +739,7 @@ mod tests {
         }
 
         /// DF on a direction, `None` that of p.
-        fn derivative(&self, direction: Option<Wave>) -> FourierSeries {
+        fn derivative(&self, direction: Option<BasisFunction>) -> FourierSeries {
             let Some(direction) = direction else {
                 return self.by_reciprocal.clone();
             };
@@ -729,18 +752,22 @@ mod tests {
     }
 
     /// The place of a wave among the unknowns of the block.
-    fn place_of(system: &System, wave: Wave) -> Option<usize> {
+    fn place_of(system: &DampedBoundData, wave: BasisFunction) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
         let mut waves = system.equations.block[first..].iter();
         waves.position(|other| *other == wave).map(|place| place + first)
     }
 
     /// The norm of B of a series, less a direction.
-    fn size_of_image(system: &System, series: &FourierSeries, less: Option<Option<Wave>>) -> f64 {
+    fn size_of_image(
+        system: &DampedBoundData,
+        series: &FourierSeries,
+        less: Option<Option<BasisFunction>>,
+    ) -> f64 {
         let block = &system.equations.block;
         let vector: Vec<Ball> = block.iter().map(|wave| series.coefficient(*wave)).collect();
         let mut image = image(&system.inverse.entries, &vector, WORKING);
-        let place = |direction: Option<Wave>| match direction {
+        let place = |direction: Option<BasisFunction>| match direction {
             None => Some(0),
             Some(direction) => place_of(system, direction),
         };
@@ -758,7 +785,7 @@ mod tests {
 
     /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it
     /// has in the norm.
-    fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn directions(system: &DampedBoundData, highest: usize) -> Vec<(Option<BasisFunction>, f64)> {
         let first = system.equations.unknowns_before_waves();
         let block = system.equations.block[first..].iter().copied();
         let waves = block.chain(system.equations.beyond(0, highest)).map(|wave| (Some(wave), 1.0));
@@ -767,7 +794,7 @@ mod tests {
     }
 
     /// Every column of `1 - B DF` by its definition, that of p first.
-    fn columns(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn columns(system: &DampedBoundData, highest: usize) -> Vec<(Option<BasisFunction>, f64)> {
         let equations = &system.equations;
         let place =
             Place::of(&equations.problem, &equations.problem.motion, &equations.problem.reciprocal);
@@ -791,7 +818,7 @@ mod tests {
                 Some(_) => light = spoilt.clone(),
             }
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
-                let system = System::of(certificate.problem()).expect("a system");
+                let system = DampedBoundData::new(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
                 let contraction =
                     system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
@@ -801,7 +828,7 @@ mod tests {
                         None => system.column_of_reciprocal(),
                         Some(wave) => system.column(&derivative, wave, place_of(&system, wave)),
                     };
-                    // What was cut from g and h' is not in the column, but in the sum.
+                    // The truncated part of g and h' is in the norm `size`, not in the column.
                     assert!(size <= bound.value() + 1e-9, "{direction:?}: {size}, {bound:?}");
                     assert!(size > 0.99 * bound.value() - 1e-9, "{direction:?}: {size}, {bound:?}");
                     assert!(size <= contraction, "{direction:?}: {size}, {contraction}");
@@ -814,7 +841,7 @@ mod tests {
     fn what_a_series_leaves_out_counts() {
         let certificate = certificate();
         let more = Bound::exactly(0.001);
-        let system = || System::of(certificate.problem()).expect("a system");
+        let system = || DampedBoundData::new(certificate.problem()).expect("a system");
         let own = system();
         let size = own.size.value();
         let reciprocal = WORKING.nearest(&own.equations.problem.reciprocal);
@@ -845,7 +872,7 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = System::of(shaken.problem()).expect("a system").defect().value();
+        let defect = DampedBoundData::new(shaken.problem()).expect("a system").defect().value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
@@ -857,11 +884,11 @@ mod tests {
 
     fn second_derivative_is_bounded(certificate: &DampedCertificate) {
         let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
-        let system = System::of(certificate.problem()).expect("a system");
+        let system = DampedBoundData::new(certificate.problem()).expect("a system");
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
         let norm = |expression: &Expr| {
-            system.equations.problem.along(expression, &ball).expect("a value").norm()
+            system.equations.problem.values_along(expression, &ball).expect("a value").norm()
         };
         let (g, f) = (&certificate.damping, &certificate.force);
         // Of two directions, none, one or both of them the motion's: each has terms of its own.

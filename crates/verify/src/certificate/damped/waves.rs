@@ -18,7 +18,7 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 
 /// The displacement of a driven motion by its law as text, `x = a*cos(Omega*t - psi)` with values
-/// of all letters but t, over the periods of the motion; `None` of words, and of what has no such
+/// of all letters but t, over the periods of the motion; `None` for words, and of what has no such
 /// series.
 pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<FourierSeries> {
     let time = Symbol::new("t");

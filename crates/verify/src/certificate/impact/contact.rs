@@ -1,4 +1,4 @@
-//! How deep and how long an elastic contact is, enclosed.
+//! Enclosures of the greatest depth and of the duration of an elastic contact.
 //!
 //! Between the touch with the speed v and the deepest point the energy is kept. With the depth d =
 //! q^2 every function is analytic:
@@ -32,11 +32,12 @@ use crate::exact::{Integer, Rational};
 /// Powers of a Taylor series that are kept.
 const ORDER: usize = 64;
 
-/// What is left of a piece is no more than this, or it is halved.
+/// Binary exponent of the largest remainder of the Taylor series on a piece of the integral; a
+/// piece with a larger one is halved.
 const NEGLIGIBLE: i32 = -140;
 
 /// The contact of the pendulum with a barrier of Hertz's law.
-pub(super) struct Contact {
+pub(super) struct HertzContact {
     /// Place of the barrier.
     pub(super) barrier: Ball,
     /// gamma.
@@ -55,14 +56,14 @@ fn sum(left: &Ball, right: &Ball) -> Ball {
     WORKING.sum(left, right)
 }
 
-/// Sine and cosine; `None` of what is too large.
+/// Sine and cosine; `None` for what is too large.
 pub(super) fn sine_and_cosine(angle: &Ball) -> Option<[Ball; 2]> {
     let (series, largest) = ([angle.clone()], WORKING.magnitude(angle));
     let first = |p| even_function(&series, p, largest)?.into_iter().next();
     Some([product(angle, &first(1)?), first(0)?])
 }
 
-impl Contact {
+impl HertzContact {
     /// `(4/5) gamma`.
     fn elasticity(&self) -> Ball {
         WORKING.divided(&WORKING.scaled(&self.stiffness, 4), 5)
@@ -100,7 +101,8 @@ impl Contact {
     /// `qm`, the square root of the greatest depth.
     ///
     /// # Errors
-    /// Where no two signs enclose it, or it lies beyond `pi/2`.
+    /// [`NotEnclosed::Digits`] if no two signs enclose the root, [`NotEnclosed::Deep`] if it lies
+    /// beyond `pi/2`.
     pub(super) fn root_of_depth(&self) -> Result<Ball, NotEnclosed> {
         let mut q = self.candidate().ok_or(NotEnclosed::Digits)?;
         q.radius = Bound::power_of_two(-170);
@@ -125,7 +127,7 @@ impl Contact {
     /// The duration of the whole contact.
     ///
     /// # Errors
-    /// Where the integral needs more pieces than there may be.
+    /// [`NotEnclosed`] if the integral needs more pieces than the limit.
     pub(super) fn duration(&self, qm: &Ball) -> Result<Ball, NotEnclosed> {
         const FIRST: u32 = 5;
         const SMALLEST: u32 = 12;
@@ -146,8 +148,8 @@ impl Contact {
         Ok(WORKING.scaled(&product(&root, &integral), 8))
     }
 
-    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` where too much is left of
-    /// its series.
+    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` if too much is left of its
+    /// series.
     fn piece(&self, qm: &Ball, halvings: u32, middle: u64) -> Option<Ball> {
         let half = WORKING.dyadic(&Integer::from(1), halvings as usize);
         let centre = WORKING.scaled(&half, i64::try_from(middle).ok()?);
@@ -282,7 +284,7 @@ fn even_function(y: &[Ball], p: u32, largest: Bound) -> Option<Vec<Ball>> {
     Some(series)
 }
 
-/// The power -1/2 of a series; `None` where its first coefficient may not be positive.
+/// The power -1/2 of a series; `None` if its first coefficient may not be positive.
 fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
     let first = series.first()?;
     let mut terms = vec![WORKING.quotient(&WORKING.integer(1), &WORKING.root(first, 2)?)?];
@@ -299,7 +301,7 @@ fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
 }
 
 /// The place of a barrier and its waves.
-pub(super) fn placed(barrier: &Rational) -> Option<(Ball, [Ball; 2])> {
+pub(super) fn position_and_waves(barrier: &Rational) -> Option<(Ball, [Ball; 2])> {
     let place = WORKING.fraction(barrier);
     let waves = sine_and_cosine(&place)?;
     Some((place, waves))
@@ -362,8 +364,8 @@ mod tests {
         assert!(inverse_root(&[Ball { radius: Bound::exactly(3.0), ..wide }]).is_none());
     }
 
-    /// What is left out of the series of a function is in the radii: fewer terms have wider ones,
-    /// and all contain the function.
+    /// The radii include the remainder of the series of a function: with fewer terms they are
+    /// wider, and all of them contain the function.
     #[test]
     fn a_function_of_a_series_holds_what_was_left_out() {
         let y = [ball(1, 3), ball(1, 2)];

@@ -16,8 +16,8 @@
 use crate::certificate::fourier_series::WORKING;
 use crate::exact::ball::Ball;
 
-/// `R_F` of numbers of which one, the first, may be zero; `None` where a ball reaches below zero.
-pub(super) fn carlson(x: &Ball, y: &Ball, z: &Ball) -> Option<Ball> {
+/// `R_F` of numbers of which one, the first, may be zero; `None` if a ball reaches below zero.
+pub(super) fn carlson_rf(x: &Ball, y: &Ball, z: &Ball) -> Option<Ball> {
     let root = |ball: &Ball| match ball.is_zero() {
         true => Some(Ball::zero()),
         false => WORKING.root(ball, 2),

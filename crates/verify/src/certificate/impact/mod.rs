@@ -21,25 +21,25 @@ mod elliptic;
 
 use num_traits::Signed as _;
 
-use self::contact::{Contact, is_positive, placed, sine_and_cosine};
+use self::contact::{HertzContact, is_positive, position_and_waves, sine_and_cosine};
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
 use crate::exact::ball::Ball;
 
-/// What is proved of an impact; times in units of 1/omega, angles in rad.
+/// The proved enclosures of an impact; times in units of 1/omega, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactEnclosure {
-    /// From the release to the touch.
+    /// Time from the release to the touch.
     pub time_to_contact: Enclosure,
-    /// At the touch.
+    /// Speed at the touch.
     pub speed: Enclosure,
     /// The greatest depth.
     pub penetration: Enclosure,
-    /// Of the contact.
+    /// Duration of the contact.
     pub duration: Enclosure,
-    /// From the release to the return.
+    /// Period from the release to the return.
     pub period: Enclosure,
 }
 
@@ -56,7 +56,7 @@ impl ImpactEnclosure {
     }
 }
 
-/// Why an impact is not enclosed.
+/// The reason why an impact is not enclosed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotEnclosed {
@@ -94,7 +94,7 @@ pub enum NotEnclosed {
 /// ```
 ///
 /// # Errors
-/// Where there is no such impact, or its numbers are not proved.
+/// [`NotEnclosed`] if there is no such impact, or its numbers are not proved.
 pub fn enclose_impact(
     amplitude: &Rational,
     barrier: &Rational,
@@ -115,22 +115,26 @@ pub fn enclose_impact(
     if barrier.abs() >= *amplitude || !horizontal {
         return Err(NotEnclosed::Barrier);
     }
-    let (place, waves) = placed(barrier).ok_or(NotEnclosed::Digits)?;
+    let (place, waves) = position_and_waves(barrier).ok_or(NotEnclosed::Digits)?;
     let [_, cosine] = sine_and_cosine(&release).ok_or(NotEnclosed::Digits)?;
     let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
     let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
     let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
-    let contact =
-        Contact { barrier: place, stiffness: WORKING.fraction(stiffness), speed_squared, waves };
+    let contact = HertzContact {
+        barrier: place,
+        stiffness: WORKING.fraction(stiffness),
+        speed_squared,
+        waves,
+    };
     let qm = contact.root_of_depth()?;
     let duration = contact.duration(&qm)?;
     let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);
     Ok(ImpactEnclosure {
-        time_to_contact: Enclosure::of(&time_to_contact),
-        speed: Enclosure::of(&speed),
-        penetration: Enclosure::of(&WORKING.product(&qm, &qm)),
-        duration: Enclosure::of(&duration),
-        period: Enclosure::of(&period),
+        time_to_contact: Enclosure::from_ball(&time_to_contact),
+        speed: Enclosure::from_ball(&speed),
+        penetration: Enclosure::from_ball(&WORKING.product(&qm, &qm)),
+        duration: Enclosure::from_ball(&duration),
+        period: Enclosure::from_ball(&period),
     })
 }
 
@@ -140,9 +144,9 @@ fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
     let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
     let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
     let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
-    let quarter = elliptic::carlson(&Ball::zero(), &squared(&cosine), &one)?;
+    let quarter = elliptic::carlson_rf(&Ball::zero(), &squared(&cosine), &one)?;
     let sine = WORKING.quotient(&sine, &modulus)?;
     let rest = WORKING.difference(&one, &squared(&sine));
-    let beyond = elliptic::carlson(&rest, &squared(&cosine_there), &one)?;
+    let beyond = elliptic::carlson_rf(&rest, &squared(&cosine_there), &one)?;
     Some(WORKING.sum(&quarter, &WORKING.product(&sine, &beyond)))
 }

@@ -7,7 +7,7 @@ use lindstedt::export::{catalog, html, json};
 
 use super::answer::{no_such, page};
 use super::files::width;
-use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
+use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// List the classical oscillators that `derive` knows by name
 #[derive(Args)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 use lindstedt::Oscillator;
 use lindstedt::export::{self, json};
-use lindstedt::problem::Reader;
+use lindstedt::problem::ReadingCommand;
 use lindstedt::report;
 use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::verify::{Verdict, VerificationError};
@@ -67,7 +67,7 @@ fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
         |error| match &error {
             VerificationError::NoMethod(refused) => {
-                Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
+                Failure::with_advice(&error, refused.first().and_then(|first| first.reason.help()))
             }
             VerificationError::Missing(names) => {
                 Failure::refused(&error, Some(format!("add {}", values_of(names))))

@@ -24,7 +24,9 @@ use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::files::width;
 use super::problem::{expression, problem, value_name};
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, values_of, whole};
+use super::{
+    Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer, tolerance, values_of,
+};
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]

@@ -64,55 +64,57 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
 static COMMANDS: [Command; 18] = [
-    Command::of::<derive::Arguments>("derive")
+    Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
-        .waiting(derive::patience),
-    Command::of::<compare::Arguments>("compare").showing(include_str!("help/compare.txt")),
-    Command::of::<impact::Arguments>("impact")
+        .waiting(derive::grace_period),
+    Command::new::<compare::CompareArguments>("compare").showing(include_str!("help/compare.txt")),
+    Command::new::<impact::ImpactArguments>("impact")
         .showing(include_str!("help/impact.txt"))
         .writing(Formats::Pictures),
-    Command::of::<simulate::Arguments>("simulate")
+    Command::new::<simulate::SimulateArguments>("simulate")
         .showing(include_str!("help/simulate.txt"))
-        .waiting(a_minute),
-    Command::of::<response::Arguments>("response")
+        .waiting(one_minute),
+    Command::new::<response::ResponseArguments>("response")
         .showing(include_str!("help/response.txt"))
-        .waiting(a_minute),
-    Command::of::<friction::Arguments>("friction").showing(include_str!("help/friction.txt")),
-    Command::of::<lagrange::Arguments>("lagrange")
+        .waiting(one_minute),
+    Command::new::<friction::FrictionArguments>("friction")
+        .showing(include_str!("help/friction.txt")),
+    Command::new::<lagrange::LagrangeArguments>("lagrange")
         .showing(include_str!("help/lagrange.txt"))
         .writing(Formats::Words),
-    Command::of::<materials::Arguments>("materials")
+    Command::new::<materials::MaterialsArguments>("materials")
         .showing(include_str!("help/materials.txt"))
-        .waiting(a_minute),
-    Command::of::<optimize::Arguments>("optimize")
+        .waiting(one_minute),
+    Command::new::<optimize::OptimizeArguments>("optimize")
         .showing(include_str!("help/optimize.txt"))
-        .waiting(a_minute),
-    Command::of::<stability::Arguments>("stability").showing(include_str!("help/stability.txt")),
-    Command::of::<audit::Arguments>("audit")
+        .waiting(one_minute),
+    Command::new::<stability::StabilityArguments>("stability")
+        .showing(include_str!("help/stability.txt")),
+    Command::new::<audit::AuditArguments>("audit")
         .showing(include_str!("help/audit.txt"))
         .writing(Formats::Words)
         .judged(),
-    Command::of::<audit::PaperArguments>("paper")
+    Command::new::<audit::PaperArguments>("paper")
         .showing(include_str!("help/paper.txt"))
         .writing(Formats::Words)
         .judged(),
-    Command::of::<certify::Arguments>("certify")
+    Command::new::<certify::CertifyArguments>("certify")
         .showing(include_str!("help/certify.txt"))
         .writing(Formats::Words)
-        .waiting(derive::patience),
-    Command::of::<certify::CheckArguments>("check")
+        .waiting(derive::grace_period),
+    Command::new::<certify::CheckArguments>("check")
         .showing(include_str!("help/check.txt"))
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
-    Command::of::<catalog::Arguments>("catalog")
+    Command::new::<catalog::CatalogArguments>("catalog")
         .showing(include_str!("help/catalog.txt"))
         .writing(Formats::Words),
-    Command::of::<schema::Arguments>("schema")
+    Command::new::<schema::SchemaArguments>("schema")
         .showing(include_str!("help/schema.txt"))
         .writing(Formats::One),
-    Command::of::<shell::CompletionsArguments>("completions").writing(Formats::One),
-    Command::of::<shell::ManArguments>("man").writing(Formats::One),
+    Command::new::<shell::CompletionsArguments>("completions").writing(Formats::One),
+    Command::new::<shell::ManArguments>("man").writing(Formats::One),
 ];
 
 /// The command that runs where none is named.
@@ -515,7 +517,7 @@ fn command_line() -> clap::Command {
 
 /// The row of the command that is asked for, and its arguments; an error is a message of the
 /// parser, `--help` among them.
-fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
+fn parse_command() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
     let matches = command_line().try_get_matches()?;
     let (name, arguments) = matches.subcommand().unzip();
     let name = name.unwrap_or(USUAL);

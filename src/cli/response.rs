@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::{self, json};
-use lindstedt::problem::{Order, Reader};
-use lindstedt::response::{MOST_HARMONICS, Question, ResponseError, respond};
+use lindstedt::problem::{Order, ReadingCommand};
+use lindstedt::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::{json, stability};
-use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves};
-use lindstedt::problem::{Order, Reader};
+use lindstedt::hill::{self, Chart, HillError, HillOptions, JudgedCurve, TransitionCurves};
+use lindstedt::problem::{Order, ReadingCommand};
 use lindstedt::report::{self, StabilityReport};
 use lindstedt::verify::Verdict;
 use lindstedt::{Symbol, Values};

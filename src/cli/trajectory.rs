@@ -18,7 +18,7 @@ use super::derive::exact_values;
 use super::files::width;
 use super::problem::{expression, value_name};
 use super::progress::{self, MOTIONS};
-use super::simulate::{Arguments, Method, check_format, check_samples};
+use super::simulate::{Method, SimulateArguments, check_format, check_samples};
 use super::{Failure, Format, Outcome, STOP, json_text, values_of};
 
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {

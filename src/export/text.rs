@@ -87,7 +87,7 @@ struct TextLayout {
     longest_title: usize,
 }
 
-impl Page {
+impl TextLayout {
     /// The lines of a block, none longer than the page where they can be broken; `section` is where
     /// it stands.
     fn fitted(&self, block: &Block, section: &[Block]) -> String {

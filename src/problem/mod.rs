@@ -31,7 +31,7 @@ mod trajectory;
 use std::str::FromStr;
 
 use crate::impact::contact::UnknownContactLaw;
-use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{CollisionError, ModelError, Parameter, SpeedUnit, UnknownRule};
 use crate::mechanics::MechanicsError;
 use crate::optimize::OptimizeError;

@@ -77,7 +77,7 @@ fn table<'a>(verdict: Verdict, findings: &[&ClaimFinding]) -> Vec<Block<'a>> {
 }
 
 /// What is printed, in one line.
-pub(crate) fn printed(finding: &Finding) -> String {
+pub(crate) fn printed(finding: &ClaimFinding) -> String {
     let entries = &finding.claim.entries;
     match &entries[..] {
         [entry] => entry.printed.clone(),

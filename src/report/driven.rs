@@ -96,9 +96,15 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
         branches.by_squares(detuning, solution.amplitude.symbol())
     });
     match (&response.relation, squares) {
-        (_, Some([left, right])) => blocks.push(said("frequency response", left, right)),
+        (_, Some([left, right])) => {
+            blocks.push(equation_with_words("frequency response", left, right))
+        }
         (Some(relation), None) => {
-            blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
+            blocks.push(equation_with_words(
+                "frequency response",
+                Expr::zero(),
+                polynomial(relation),
+            ));
         }
         (None, None) => {}
     }

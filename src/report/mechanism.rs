@@ -8,7 +8,9 @@ use crate::audit::paper::Finding;
 use crate::decimal::decimal;
 use crate::derivation::DerivationLine;
 use crate::expr::{Expr, Function};
-use crate::mechanics::{Drive, Groups, MechanicsError, MechanismStudy, Mode, Place, RestStudy};
+use crate::mechanics::{
+    DriveAtRest, Groups, MechanicsError, MechanismStudy, Mode, RestPosition, RestStudy,
+};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.

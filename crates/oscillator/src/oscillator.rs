@@ -22,11 +22,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::expr::{Equation, Expr, ExprError, Function, NAMES_OF_ANSWERS, Typed, parse_equation};
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, ResultSymbols};
 use crate::symbol::{Symbol, fresh, phase_beside};
 use perturbed::NamedConstants;
 
-pub use error::{Equilibria, OscillatorError, Others};
+pub use error::{Equilibria, FurtherEquilibria, OscillatorError};
 pub use perturbed::{PerturbedForce, Term};
 
 /// An equation of motion `x'' + force = 0` for one coordinate.

@@ -57,7 +57,7 @@ fn function(function: Function) -> &'static str {
 
 /// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
 /// complex number.
-fn beginning(used: &Used) -> String {
+fn beginning(used: &UsedRoutines) -> String {
     /// A loop over the elements, in which each finds its own error and its own branch.
     const ELEMENTWISE: &str = r#"from functools import wraps
 

@@ -1,7 +1,7 @@
 //! A row for each run, or for each design of a front, to go on with.
 
 use crate::export::csv::{cell, head, line, quoted};
-use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
+use crate::optimize::{Finalist, Objective, OptimizationProblem, SearchRun, Study};
 
 /// The table: for one objective the best design of every run as it has it, for several the front by
 /// integration. A first line of comment has the units; what has no value is empty.

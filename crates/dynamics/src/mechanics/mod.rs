@@ -43,7 +43,7 @@ pub use combination::Combination;
 pub use dimension::{Dimension, UnitError};
 pub use equilibrium::{DriveAtRest, Rest, RestPosition, equilibria};
 pub use groups::{Group, Groups};
-pub use lagrange::Equations;
+pub use lagrange::EquationsOfMotion;
 pub use modes::{Mode, Modes};
 pub use rates::Rates;
 pub use study::{MechanismQuestion, MechanismStudy, RestStudy, study};

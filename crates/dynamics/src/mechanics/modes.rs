@@ -17,7 +17,9 @@ use num_traits::Signed;
 
 use super::combination::{put_into, written_out};
 use super::equilibrium::undriven;
-use super::{Combination, Equations, MechanicsError, Place, Rest, trigonometry::simplified};
+use super::{
+    Combination, EquationsOfMotion, MechanicsError, Rest, RestPosition, trigonometry::simplified,
+};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::modes::Jacobians;
 use super::{
-    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, Rest, equilibria,
+    Dimension, DriveAtRest, EquationsOfMotion, Groups, MechanicsError, Mechanism, Mode, Modes,
+    Rest, equilibria,
 };
 use crate::symbol::Symbol;
 

@@ -34,7 +34,7 @@ use crate::symbol::Symbol;
 pub use error::ParseError;
 pub use error::excerpt;
 use error::shortened;
-use lexer::{Kind, Token};
+use lexer::{Token, TokenKind};
 pub use notation::{equation_in_grammar, expression_in_grammar};
 
 /// Names of the amplitudes and the frequency in an answer. Where an equation has one of them for

@@ -111,9 +111,9 @@ pub use dissipation::{
     viscous_coefficient, viscous_ratio,
 };
 pub use error::ImpactError;
-pub use form::{Form, Term};
+pub use form::{Form, TimeFunction};
 pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
-pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
+pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
     DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
     MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest, course,

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
 use crate::decimal::{decimal, significant};
-use crate::genetic::{Evaluation, Options, SearchError, Space};
+use crate::genetic::{Evaluation, GeneticOptions, SearchError, Space};
 use crate::impact::primary::MainMass;
 use crate::impact::{
     Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter,

@@ -58,12 +58,12 @@ pub use mutation::{Mutation, SMALLEST_STEP, adaptive_feasible, bit_flips, next_s
 pub use nsga::{polynomial_mutation, search_front, simulated_binary};
 pub use pareto::{crowding, dominates, non_dominated, ranks};
 pub use penalty::{Multipliers, Penalty, scores};
-pub use population::{Individual, Options, Run, SearchError, search};
+pub use population::{GeneticOptions, GeneticRun, Individual, SearchError, search};
 pub use rivals::{differential_evolution, random_search};
 pub use scaling::rank_scaling;
 pub use selection::stochastic_uniform;
 pub use space::{Evaluation, Space};
-pub use stopping::{StallTest, Stop, has_stalled};
+pub use stopping::{GeneticStop, StallTest, has_stalled};
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

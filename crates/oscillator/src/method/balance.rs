@@ -30,7 +30,7 @@ use std::rc::Rc;
 use nalgebra::{DMatrix, DVector};
 
 use super::numbers::NoNumbers;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::passage::{passage_at, passages, pushes_away};
 use crate::exact::Doubles;
 use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
@@ -97,12 +97,12 @@ pub fn balance(
     harmonics: &[usize],
     amplitude: f64,
     known: &Continuation,
-) -> Result<Balance, NoNumbers> {
+) -> Result<BalanceSolution, NoNumbers> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
     /// and take long.
     const MOST_CUTS: usize = 600;
     let mut problem =
-        Problem::new(force, degree, harmonics, amplitude).ok_or(NoNumbers::NoBalance)?;
+        BalanceProblem::new(force, degree, harmonics, amplitude).ok_or(NoNumbers::NoBalance)?;
     problem.fineness = known.fineness.get().max(1);
     if problem.cuts.len() > MOST_CUTS {
         return Err(NoNumbers::UnsettledBalance);
@@ -505,7 +505,10 @@ impl<'a> BalanceProblem<'a> {
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
     /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
-    fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), NoNumbers> {
+    fn followed(
+        &mut self,
+        known: &Continuation,
+    ) -> Result<(BalanceUnknowns, Option<f64>), NoNumbers> {
         if pushes_away(self.force, self.amplitude) {
             return self.follow_cross_well_branch(known).map(|found| (found, None));
         }
@@ -515,7 +518,7 @@ impl<'a> BalanceProblem<'a> {
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
-            let end = match self.up_from_rest(known).ok_or(NoNumbers::NoBalance)? {
+            let end = match self.follow_from_rest(known).ok_or(NoNumbers::NoBalance)? {
                 Ok(found) => return Ok((found, None)),
                 Err(end) => end,
             };
@@ -541,7 +544,7 @@ impl<'a> BalanceProblem<'a> {
 
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
-    fn over_the_hilltop(&self, known: &Continuation) -> Result<State, NoNumbers> {
+    fn follow_cross_well_branch(&self, known: &Continuation) -> Result<BalanceUnknowns, NoNumbers> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where
         /// there is no end before.
         const STARTS: usize = 6;
@@ -564,7 +567,7 @@ impl<'a> BalanceProblem<'a> {
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
-        if known.in_vain.get() >= MOST_IN_VAIN {
+        if known.failures.get() >= MOST_IN_VAIN {
             return Err(NoNumbers::NoBalance);
         }
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
@@ -580,7 +583,7 @@ impl<'a> BalanceProblem<'a> {
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
         let mut lost = NoNumbers::NoBalance;
-        let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
+        let starts = alone.iter().filter_map(|(alone, _)| self.solve_near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
             let found = reached(start);
@@ -734,7 +737,7 @@ impl<'a> BalanceProblem<'a> {
     }
 
     /// The same solution by finer and finer sums, until they agree.
-    fn refined(&self, mut state: State) -> Result<State, NoNumbers> {
+    fn refined(&self, mut state: BalanceUnknowns) -> Result<BalanceUnknowns, NoNumbers> {
         const MOST_POINTS: usize = 1 << 17;
         /// Largest change from one refinement to the next that is accepted: the digits that a user
         /// sees.

@@ -120,6 +120,6 @@ impl Solution {
     /// # Errors
     /// [`NoNumbers`].
     pub fn at(&self, t: f64, values: &Values) -> Result<f64, NoNumbers> {
-        Ok(self.motion_at(values)?.at(t))
+        Ok(self.motion_at(values)?.displacement_at(t))
     }
 }

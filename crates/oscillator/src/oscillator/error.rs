@@ -137,12 +137,12 @@ pub struct Equilibria {
     /// Where they are; those without a short closed form by their numbers.
     pub positions: Vec<Position>,
     /// Where there are others.
-    pub others: Option<Others>,
+    pub others: Option<FurtherEquilibria>,
 }
 
 /// Where there are more equilibria than a message names.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Others {
+pub enum FurtherEquilibria {
     /// Again after each period of the force.
     Every(Expr),
     /// Farther from rest.
@@ -154,8 +154,10 @@ impl fmt::Display for Equilibria {
         let positions: Vec<String> = self.positions.iter().map(ToString::to_string).collect();
         formatter.write_str(&positions.join(", "))?;
         match &self.others {
-            Some(Others::Every(period)) => write!(formatter, ", and again every {period}"),
-            Some(Others::FartherOut) => formatter.write_str(" and farther out"),
+            Some(FurtherEquilibria::Every(period)) => {
+                write!(formatter, ", and again every {period}")
+            }
+            Some(FurtherEquilibria::FartherOut) => formatter.write_str(" and farther out"),
             None => Ok(()),
         }
     }

@@ -115,7 +115,7 @@ impl Oscillator {
         let mut linear = Polynomial::zero();
         let mut terms = Vec::new();
         for (power, part) in parts.iter().enumerate().skip(first) {
-            let mut name = |constant: &Expr| names.of(constant, &[position, velocity]);
+            let mut name = |constant: &Expr| names.symbol_of(constant, &[position, velocity]);
             let Some(polynomial) = part.to_polynomial(&mut name)? else {
                 return Err(OscillatorError::NotPolynomial(part.clone().into()));
             };
@@ -194,7 +194,7 @@ impl NamedConstants {
     }
 
     /// The symbol of `constant`, unless one of `variables` occurs in it.
-    pub(super) fn of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
+    pub(super) fn symbol_of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
         if variables.iter().any(|&variable| constant.contains(variable))
             || constant.contains(Symbol::new("t"))
         {

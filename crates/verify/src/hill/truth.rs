@@ -309,8 +309,8 @@ struct SampledCoefficients {
     harmonics: usize,
 }
 
-impl Coefficients {
-    fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, HillError> {
+impl SampledCoefficients {
+    fn new(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, HillError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
         if !(frequency > 0.0 && frequency.is_finite()) {

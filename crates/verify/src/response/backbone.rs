@@ -13,7 +13,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::ResponseError;
-use super::balance::Balance;
+use super::balance::DrivenBalance;
 use super::driven::Driven;
 use crate::expr::Expr;
 use crate::numeric::balance::CONVERGED;
@@ -59,7 +59,7 @@ pub fn backbones(
     let free = Oscillator { force, ..oscillator.clone() };
     let free =
         Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
-    let balance = HarmonicBalance::new(&free, harmonics);
+    let balance = DrivenBalance::new(&free, harmonics);
     let mut curves: Vec<Vec<BackbonePoint>> = Vec::new();
     for place in places_of_rest(&free, range[0], size) {
         let curve = curve(&balance, place, range, size);
@@ -104,7 +104,7 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
 }
 
 /// The points of one curve that lie in the range.
-fn curve(balance: &HarmonicBalance, place: f64, range: [f64; 2], size: f64) -> Vec<BackbonePoint> {
+fn curve(balance: &DrivenBalance, place: f64, range: [f64; 2], size: f64) -> Vec<BackbonePoint> {
     let mut points = Vec::new();
     let mut last: Option<(DVector<f64>, f64)> = None;
     for index in 1..=POINTS {
@@ -136,7 +136,7 @@ fn curve(balance: &HarmonicBalance, place: f64, range: [f64; 2], size: f64) -> V
 
 /// One harmonic about a place: its frequency by the first harmonic of the force.
 fn first_guess(
-    balance: &HarmonicBalance,
+    balance: &DrivenBalance,
     place: f64,
     amplitude: f64,
     range: [f64; 2],
@@ -169,7 +169,7 @@ fn first_guess(
 
 /// Newton's method for the mean, the parameter and the higher cosines, the first being given.
 fn solved(
-    balance: &HarmonicBalance,
+    balance: &DrivenBalance,
     mut coefficients: DVector<f64>,
     mut parameter: f64,
 ) -> Option<(DVector<f64>, f64)> {

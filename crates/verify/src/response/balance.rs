@@ -19,14 +19,14 @@ use crate::numeric::ode::root::find_root;
 
 /// The equations for so many harmonics.
 #[derive(Clone, Debug)]
-pub struct HarmonicBalance<'a> {
+pub struct DrivenBalance<'a> {
     /// The equation.
     pub driven: &'a Driven,
     /// The balance of its one coordinate.
     pub core: HarmonicBalance,
 }
 
-impl<'a> HarmonicBalance<'a> {
+impl<'a> DrivenBalance<'a> {
     /// The equations of `harmonics` harmonics, one at least.
     pub fn new(driven: &'a Driven, harmonics: usize) -> Self {
         let anchor = driven.self_excited.then_some(0);
@@ -39,7 +39,12 @@ impl<'a> HarmonicBalance<'a> {
     }
 
     /// Position and velocity at a phase.
-    pub fn at(&self, coefficients: &DVector<f64>, parameter: f64, phase: f64) -> [f64; 2] {
+    pub fn phase_point_at(
+        &self,
+        coefficients: &DVector<f64>,
+        parameter: f64,
+        phase: f64,
+    ) -> [f64; 2] {
         self.core.at(coefficients, 0, self.frequency(coefficients, parameter), phase)
     }
 

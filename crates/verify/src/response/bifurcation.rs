@@ -14,7 +14,7 @@
 //! branch with what is known there. Out: the point between them, by the root of the quantity that
 //! changes its sign.
 
-use super::balance::HarmonicBalance;
+use super::balance::DrivenBalance;
 use super::continuation::BranchNode;
 use super::stability::Floquet;
 use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
@@ -84,7 +84,7 @@ fn test(kind: BifurcationKind, node: &BranchNode, floquet: Option<Floquet>) -> O
 /// The bifurcations between two neighbouring points, each at its place on the branch. `between`
 /// finds the point at a part of the way, `floquet` the multipliers of a point.
 pub fn between(
-    balance: &HarmonicBalance,
+    balance: &DrivenBalance,
     [from, to]: [(&BranchNode, Option<Floquet>); 2],
     between: &impl Fn(f64) -> Option<BranchNode>,
     floquet: &impl Fn(&BranchNode) -> Option<Floquet>,

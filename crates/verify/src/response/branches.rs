@@ -3,8 +3,8 @@
 
 use nalgebra::DVector;
 
-use super::balance::Balance;
-use super::continuation::{self, BranchEnd, Node, Path, Walk};
+use super::balance::DrivenBalance;
+use super::continuation::{self, BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use super::seeds::Seed;
 use super::{MOST_BRANCHES, PreparedRequest};
 
@@ -21,7 +21,7 @@ impl PreparedRequest<'_> {
     /// The branches through these motions, each once.
     pub(super) fn branches(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         seeds: &[Seed],
         size: f64,
     ) -> Vec<BranchPath> {
@@ -58,7 +58,7 @@ impl PreparedRequest<'_> {
 
     /// Marks a branch whose mirror image was not found: one for which the image of one of its
     /// motions is a motion of the same equation and on no branch itself.
-    fn mark_mirrored(&self, balance: &HarmonicBalance, paths: &mut [BranchPath], index: usize) {
+    fn mark_mirrored(&self, balance: &DrivenBalance, paths: &mut [BranchPath], index: usize) {
         const SAME: f64 = 1e-6;
         let nodes = &paths[index].nodes;
         let middle = &nodes[nodes.len() / 2];
@@ -76,7 +76,7 @@ impl PreparedRequest<'_> {
     /// Whether a motion is known; where it is a mirror image, its branch is marked.
     fn was_known(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         paths: &mut [BranchPath],
         coefficients: &DVector<f64>,
         parameter: f64,
@@ -89,7 +89,7 @@ impl PreparedRequest<'_> {
     }
 
     /// Keeps a branch that is none of those that are known, nor the mirror image of one.
-    fn keep(&self, balance: &HarmonicBalance, mut path: BranchPath, paths: &mut Vec<BranchPath>) {
+    fn keep(&self, balance: &DrivenBalance, mut path: BranchPath, paths: &mut Vec<BranchPath>) {
         if path.nodes.len() < 2 || self.is_centre(&path) {
             return;
         }
@@ -113,7 +113,7 @@ impl PreparedRequest<'_> {
 
     /// A branch that is born where another one is crossed comes back from there as its own image:
     /// that half is left out.
-    fn cut_at_crossing(&self, balance: &HarmonicBalance, path: &mut BranchPath) {
+    fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
         let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
         let Some(index) = path.nodes.windows(2).position(turns) else {
             return;
@@ -141,7 +141,7 @@ impl PreparedRequest<'_> {
     /// drive later, or a mirror image.
     fn known_motion(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         paths: &[BranchPath],
         coefficients: &DVector<f64>,
         parameter: f64,
@@ -201,7 +201,7 @@ impl PreparedRequest<'_> {
     /// amplitude at this one value of the parameter.
     pub(super) fn follow_crossing(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         walk: &ContinuationSettings,
         at: &BranchNode,
         paths: &mut Vec<BranchPath>,
@@ -234,6 +234,6 @@ impl PreparedRequest<'_> {
 }
 
 /// The size of the largest motion of a branch, of an ordinary one where it grows without bound.
-pub(super) fn largest(balance: &HarmonicBalance, path: &BranchPath) -> f64 {
+pub(super) fn largest(balance: &DrivenBalance, path: &BranchPath) -> f64 {
     continuation::largest(balance, &path.nodes, path.ends)
 }

@@ -13,12 +13,12 @@
 
 use nalgebra::{DVector, Dyn, LU};
 
-use super::balance::Balance;
+use super::balance::DrivenBalance;
 use super::hopf;
 use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
 use crate::numeric::balance::{CONVERGED, Linearised};
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{bordered, follow, passes, tangent};
 
 /// A point of a branch.
@@ -47,9 +47,9 @@ impl BranchNode {
     }
 
     /// Position and velocity at phase zero.
-    pub fn begins(&self, balance: &Balance) -> [f64; 2] {
+    pub fn begins(&self, balance: &DrivenBalance) -> [f64; 2] {
         self.truth.map_or_else(
-            || balance.at(&self.coefficients, self.parameter, 0.0),
+            || balance.phase_point_at(&self.coefficients, self.parameter, 0.0),
             |truth| truth.start,
         )
     }
@@ -156,7 +156,7 @@ impl Weights {
     /// A point with its tangent, which goes on in this direction.
     fn node(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         point: DVector<f64>,
         direction: &DVector<f64>,
     ) -> Option<BranchNode> {
@@ -188,7 +188,7 @@ impl Weights {
 }
 
 /// The equations at coefficients and a parameter that are one vector.
-fn linearised(balance: &Balance, point: &DVector<f64>) -> Option<Linearised> {
+fn linearised(balance: &DrivenBalance, point: &DVector<f64>) -> Option<Linearised> {
     let size = balance.core.size();
     balance.linearised(&point.rows(0, size).into_owned(), point[size])
 }
@@ -201,7 +201,7 @@ fn stacked(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
 /// The size of the largest motion of these, that of one in the middle where they grow without
 /// bound: what is measured in an enormous size passes over a resonance as if it were nothing.
 pub(super) fn largest<const ENDS: usize>(
-    balance: &HarmonicBalance,
+    balance: &DrivenBalance,
     nodes: &[BranchNode],
     ends: [BranchEnd; ENDS],
 ) -> f64 {
@@ -216,7 +216,7 @@ pub(super) fn largest<const ENDS: usize>(
 }
 
 impl ContinuationSettings {
-    fn weights(&self, balance: &HarmonicBalance, coefficients: &DVector<f64>) -> Weights {
+    fn weights(&self, balance: &DrivenBalance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
         let own = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
@@ -235,7 +235,7 @@ impl ContinuationSettings {
     /// `direction`, and the number of iterations.
     fn corrected(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         guess: &DVector<f64>,
         direction: &DVector<f64>,
         weights: Weights,
@@ -263,7 +263,7 @@ impl ContinuationSettings {
     /// A point between two of a branch, at this part of the way.
     pub fn between(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         from: &BranchNode,
         to: &BranchNode,
         part: f64,
@@ -283,19 +283,19 @@ impl ContinuationSettings {
     /// The whole branch through a motion at a parameter.
     pub fn branch_through(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
-    ) -> Option<Path> {
+    ) -> Option<BranchPath> {
         let mut direction = DVector::zeros(balance.core.size() + 1);
         direction[balance.core.size()] = self.range[1] - self.range[0];
-        self.along(balance, coefficients, parameter, &direction)
+        self.branch_along(balance, coefficients, parameter, &direction)
     }
 
     /// The whole branch through a motion, its first direction given.
     pub fn branch_along(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
         direction: &DVector<f64>,
@@ -329,7 +329,7 @@ impl ContinuationSettings {
     /// branches inside, and one of them may be hard to come by otherwise.
     pub(super) fn reentries(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         path: &BranchPath,
         wide: [f64; 2],
     ) -> Vec<(DVector<f64>, f64)> {
@@ -364,11 +364,7 @@ impl ContinuationSettings {
     }
 
     /// Whether the last harmonics that are kept are as large as if there were as many again.
-    pub(super) fn is_cut_off(
-        &self,
-        balance: &HarmonicBalance,
-        coefficients: &DVector<f64>,
-    ) -> bool {
+    pub(super) fn is_cut_off(&self, balance: &DrivenBalance, coefficients: &DVector<f64>) -> bool {
         /// Largest part of the last quarter of the harmonics in the size of the motion: for a
         /// resolved motion it is negligible.
         const LARGEST: f64 = 0.1;
@@ -378,7 +374,7 @@ impl ContinuationSettings {
     }
 
     /// The points from one on in the direction of its tangent.
-    fn follow(&self, balance: &HarmonicBalance, start: BranchNode) -> (Vec<BranchNode>, BranchEnd) {
+    fn follow(&self, balance: &DrivenBalance, start: BranchNode) -> (Vec<BranchNode>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
         /// Short enough to tell where the harmonics cease to suffice, or where an end of the range
@@ -395,7 +391,7 @@ impl ContinuationSettings {
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.core.extent(&start.coefficients).max(self.ordinary);
         // Where a self-excited motion is near rest it may be born there.
-        let at_rest = |here: &Node, near: f64| match self.rest_beside(balance, here, near) {
+        let at_rest = |here: &BranchNode, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
             None => Ended(None, BranchEnd::Lost),
         };
@@ -473,7 +469,7 @@ impl ContinuationSettings {
     /// motion is born.
     pub(super) fn rest_beside(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         here: &BranchNode,
         near: f64,
     ) -> Option<BranchNode> {
@@ -495,7 +491,7 @@ impl ContinuationSettings {
         let mut coefficients = DVector::zeros(balance.core.size());
         coefficients[0] = born.position;
         coefficients[balance.core.frequency_place()?] = born.frequency;
-        Some(Node { coefficients, parameter: born.parameter, ..here.clone() })
+        Some(BranchNode { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
     /// Whether the way from one point to the next passes the first one in its direction.
@@ -515,7 +511,7 @@ impl ContinuationSettings {
     /// The point at the end of the range between a point inside and one outside.
     fn at_bound(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         inside: &BranchNode,
         outside: &BranchNode,
     ) -> Option<BranchNode> {
@@ -538,7 +534,7 @@ impl ContinuationSettings {
 
     /// Motions beside a crossing of branches, one on either side: the direction in which the
     /// equations have a second solution, and the motions a little way along it.
-    pub fn crossing(&self, balance: &HarmonicBalance, at: &BranchNode) -> Vec<BranchNode> {
+    pub fn crossing(&self, balance: &DrivenBalance, at: &BranchNode) -> Vec<BranchNode> {
         const APART: f64 = 0.02;
         let size = balance.core.size();
         let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {

@@ -3,7 +3,7 @@
 
 use nalgebra::Matrix2;
 
-use super::balance::HarmonicBalance;
+use super::balance::DrivenBalance;
 use super::continuation::BranchNode;
 use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
@@ -21,7 +21,7 @@ impl PreparedRequest<'_> {
     /// requested.
     pub(super) fn judged_in_time(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         node: &BranchNode,
     ) -> PointJudgement {
         match self.question.interrupt.is_requested() {
@@ -31,7 +31,7 @@ impl PreparedRequest<'_> {
     }
 
     /// The multipliers at a point of a branch, and the true motion beside it.
-    pub(super) fn judged(&self, balance: &HarmonicBalance, node: &BranchNode) -> PointJudgement {
+    pub(super) fn judged(&self, balance: &DrivenBalance, node: &BranchNode) -> PointJudgement {
         /// Parts of its size by which the true motion may differ: beyond it is another one.
         const OTHER: f64 = 0.3;
         if node.truth.is_some() {
@@ -64,12 +64,15 @@ impl PreparedRequest<'_> {
 
     /// The multipliers and the true motion of a point without drive; the true motion may have
     /// another phase.
-    fn judged_cycle(&self, balance: &HarmonicBalance, node: &BranchNode) -> PointJudgement {
+    fn judged_cycle(&self, balance: &DrivenBalance, node: &BranchNode) -> PointJudgement {
         const OTHER: f64 = 0.3;
         let (u, parameter) = (&node.coefficients, node.parameter);
         let frequency = balance.frequency(u, parameter);
-        let guess =
-            Guess { start: balance.at(u, parameter, 0.0), frequency, size: balance.core.extent(u) };
+        let guess = Guess {
+            start: balance.phase_point_at(u, parameter, 0.0),
+            frequency,
+            size: balance.core.extent(u),
+        };
         let damping = balance.motion(u).into_iter().map(|[x, by_phase, _]| {
             let [_, by_velocity, _] =
                 self.driven.slopes(&[x, frequency * by_phase, 0.0, parameter]);
@@ -110,7 +113,7 @@ impl PreparedRequest<'_> {
 
     pub(super) fn point(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         node: &BranchNode,
         (floquet, truth): PointJudgement,
         size: f64,
@@ -144,7 +147,10 @@ impl PreparedRequest<'_> {
             amplitude,
             phase,
             peak,
-            start: truth.map_or_else(|| balance.at(u, node.parameter, 0.0), |truth| truth.start),
+            start: truth.map_or_else(
+                || balance.phase_point_at(u, node.parameter, 0.0),
+                |truth| truth.start,
+            ),
             stable: floquet.map(|floquet| floquet.largest() < allowed),
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),

@@ -63,7 +63,7 @@ pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;
 
 use backbone::{BackbonePoint, backbones};
-use balance::HarmonicBalance;
+use balance::DrivenBalance;
 use bifurcation::BifurcationKind;
 use branches::largest;
 use continuation::{BranchEnd, BranchNode, BranchPath, ContinuationSettings};
@@ -506,7 +506,7 @@ impl<'a> PreparedRequest<'a> {
     /// Everything with this many harmonics.
     fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
-        let balance = HarmonicBalance::new(&self.driven, harmonics);
+        let balance = DrivenBalance::new(&self.driven, harmonics);
         let mut paths = match self.driven.is_balanced() {
             true => self.branches(&balance, seeds, size_of(seeds)),
             false => vec![],
@@ -636,7 +636,7 @@ impl<'a> PreparedRequest<'a> {
     /// followed and added.
     fn judged_paths(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         seeds: &[Seed],
         paths: &mut Vec<BranchPath>,
     ) -> (Vec<Vec<PointJudgement>>, Vec<Change>, Option<Ripple>) {
@@ -698,7 +698,7 @@ impl<'a> PreparedRequest<'a> {
     /// The places where branches change, each once.
     fn bifurcations(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         changes: Vec<Change>,
         size: f64,
     ) -> Vec<Bifurcation> {

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::backbone::places_of_rest;
-use super::balance::HarmonicBalance;
+use super::balance::DrivenBalance;
 use super::continuation::BranchPath;
 use super::stability::{SimulationBudget, half_of_peak_to_peak, settle};
 use super::{Elsewhere, PreparedRequest, ResponseError};
@@ -33,7 +33,7 @@ impl PreparedRequest<'_> {
             return Ok((self.cycles()?, vec![]));
         }
         let [low, high] = self.question.range;
-        let balance = HarmonicBalance::new(&self.driven, harmonics);
+        let balance = DrivenBalance::new(&self.driven, harmonics);
         /// Fraction of the range at which the search starts: without damping there is no motion at
         /// a resonance, which a user is likely to place at an end or in the middle.
         const OFF: f64 = 0.382;
@@ -118,7 +118,7 @@ impl PreparedRequest<'_> {
     /// none.
     fn balanced_from_rest(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         place: f64,
         parameter: f64,
     ) -> Option<(Seed, f64)> {
@@ -132,7 +132,7 @@ impl PreparedRequest<'_> {
     }
 
     /// A motion of a balance to begin with.
-    fn seed(&self, balance: &HarmonicBalance, found: &DVector<f64>, parameter: f64) -> Seed {
+    fn seed(&self, balance: &DrivenBalance, found: &DVector<f64>, parameter: f64) -> Seed {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
             let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;

@@ -16,7 +16,7 @@
 
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
-use super::balance::HarmonicBalance;
+use super::balance::DrivenBalance;
 use super::branches::largest;
 use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::{StopCondition, VariationalMotion, follow};
@@ -174,7 +174,7 @@ impl<'a> PeriodMap<'a> {
         &self,
         first: ShootingOrbit,
         met: &dyn Fn(&BranchNode) -> bool,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
     ) -> (Vec<ShootingOrbit>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
@@ -235,7 +235,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// A point of a branch with the harmonics of the motion.
-    fn node(&self, balance: &HarmonicBalance, shot: &ShootingOrbit) -> BranchNode {
+    fn node(&self, balance: &DrivenBalance, shot: &ShootingOrbit) -> BranchNode {
         let (start, parameter) = self.start(&shot.at);
         let frequency = std::f64::consts::TAU / shot.course.duration();
         let self_excited = self.asked.driven.self_excited;
@@ -247,7 +247,7 @@ impl<'a> PeriodMap<'a> {
         let positions = shot.course.positions(SAMPLES);
         let mut tangent = DVector::zeros(balance.core.size() + 1);
         tangent[balance.core.size()] = shot.tangent[2];
-        Node {
+        BranchNode {
             coefficients: balance.core.unknowns_of(&[&positions], frequency),
             parameter,
             tangent,
@@ -265,9 +265,9 @@ impl<'a> PeriodMap<'a> {
 
 /// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears
 /// what drives it.
-fn cut_rest(balance: &HarmonicBalance, path: &mut BranchPath, size: f64) {
+fn cut_rest(balance: &DrivenBalance, path: &mut BranchPath, size: f64) {
     const NOTHING: f64 = 1e-5;
-    let moves = |node: &Node| balance.core.extent(&node.coefficients) > NOTHING * size;
+    let moves = |node: &BranchNode| balance.core.extent(&node.coefficients) > NOTHING * size;
     let Some(first) = path.nodes.iter().position(moves) else {
         path.nodes.clear();
         return;
@@ -288,7 +288,7 @@ impl PreparedRequest<'_> {
     /// stick, and adds those on which it sticks all along.
     pub(super) fn follow_sticking(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         seeds: &[Seed],
         paths: &mut Vec<BranchPath>,
         size: f64,
@@ -337,7 +337,7 @@ impl PreparedRequest<'_> {
     /// it has one: motions too small to be told from rest are left out.
     fn ended_at_rest(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         seeds: &[Seed],
         mut path: BranchPath,
     ) -> BranchPath {
@@ -354,7 +354,8 @@ impl PreparedRequest<'_> {
             if side == 0 {
                 path.nodes.reverse();
             }
-            let is_small = |node: &Node| balance.core.extent(&node.coefficients) <= SMALL * largest;
+            let is_small =
+                |node: &BranchNode| balance.core.extent(&node.coefficients) <= SMALL * largest;
             while path.nodes.len() > 2 && path.nodes.last().is_some_and(is_small) {
                 path.nodes.pop();
             }
@@ -375,7 +376,7 @@ impl PreparedRequest<'_> {
     /// The branch through a motion that sticks.
     fn stuck_branch(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         map: &PeriodMap,
         shot: ShootingOrbit,
         paths: &[BranchPath],
@@ -397,7 +398,7 @@ impl PreparedRequest<'_> {
     /// Follows a branch on beyond one of its ends.
     fn follow_on(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         paths: &mut [BranchPath],
         (index, side): (usize, usize),
         size: f64,
@@ -459,7 +460,7 @@ impl PreparedRequest<'_> {
     }
 
     /// Whether a motion that does not stick lies on one of these branches.
-    fn is_met(&self, balance: &HarmonicBalance, paths: &[BranchPath], node: &BranchNode) -> bool {
+    fn is_met(&self, balance: &DrivenBalance, paths: &[BranchPath], node: &BranchNode) -> bool {
         let Some(truth) = node.truth else {
             return false;
         };
@@ -470,7 +471,7 @@ impl PreparedRequest<'_> {
     /// Whether a motion with this start lies on a branch.
     fn lies_on(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         path: &BranchPath,
         start: [f64; 2],
         parameter: f64,
@@ -499,11 +500,11 @@ impl PreparedRequest<'_> {
     /// A motion between two of a branch of which one is known by shooting, at this part of the way.
     pub(super) fn stuck_between(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         from: &BranchNode,
         to: &BranchNode,
         part: f64,
-    ) -> Option<Node> {
+    ) -> Option<BranchNode> {
         let size =
             balance.core.extent(&from.coefficients).max(balance.core.extent(&to.coefficients));
         let map = PeriodMap::new(self, size, from.parameter);

@@ -4,7 +4,7 @@
 //! shooting, is none that shooting finds from the branches: harmonic balance has not come to it, or
 //! has come to another one.
 
-use super::balance::HarmonicBalance;
+use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
 use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
@@ -23,7 +23,7 @@ impl PreparedRequest<'_> {
     /// The motions reached by simulations that lie on none of these branches, each motion once.
     pub(super) fn unfollowed(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         paths: &[BranchPath],
         seeds: &[Seed],
         size: f64,
@@ -97,7 +97,7 @@ impl PreparedRequest<'_> {
     /// same value of the parameter.
     fn passes(
         &self,
-        balance: &HarmonicBalance,
+        balance: &DrivenBalance,
         path: &BranchPath,
         motion: &MotionWithImages,
     ) -> bool {

@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use super::backbone::TrueBackbone;
 use super::formula::{formula_frequency_along, numbers_or_reason};
 use super::orbit::TrueMotion;
-use super::reach::reach;
-use super::validity::{self, Reach};
+use super::reach::amplitude_reach;
+use super::validity::{self, AmplitudeReach};
 use super::values::checked_numbers;
-use super::{Verdict, VerificationError, judge, largest_deviation, meant};
+use super::{Verdict, VerificationError, judge, largest_deviation, orbit_target};
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
@@ -21,7 +21,7 @@ use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, ResultSymbols};
 use crate::values::Values;
 
 /// A method that applies.

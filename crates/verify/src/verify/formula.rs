@@ -7,7 +7,7 @@ use crate::decimal::significant;
 use crate::exact::Doubles;
 use crate::expr::Expr;
 use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, law_name,
+    NoNumbers, Numbers, NumbersCache, evaluate, frequency_squared_along, law_name,
 };
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
@@ -21,7 +21,7 @@ pub(super) fn formula_frequency(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<f64> {
-    formula_frequency_along(oscillator, solution, numbers, &Known::default())
+    formula_frequency_along(oscillator, solution, numbers, &NumbersCache::default())
 }
 
 /// As [`formula_frequency`] for one amplitude after the other, all else being the same.
@@ -29,7 +29,7 @@ pub(super) fn formula_frequency_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<f64> {
     let squared = frequency_squared_along(oscillator, solution, numbers, known).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 use super::validity::Range;
 use super::values::checked_numbers;
-use super::{Motions, Sample, Verdict, Verification, VerificationError};
+use super::{Motions, TimedState, Verdict, Verification, VerificationError};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};

@@ -41,9 +41,9 @@ mod values;
 pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
 pub use error::VerificationError;
-pub use motions::{Motions, Sample, motions, true_motion};
+pub use motions::{Motions, TimedState, motions, true_motion};
 pub use transient::Followed;
-pub use validity::{Range, Reach};
+pub use validity::{AmplitudeReach, Range};
 pub use values::{checked, needed_values};
 
 pub use crate::conservative::well::{Well, WellBoundary, WellEnd};
@@ -53,10 +53,10 @@ use std::f64::consts::TAU;
 
 use self::formula::{cancellation, formula_frequency, numbers_or_reason, series_of_omega};
 use self::largest::largest_over;
-use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion};
+use self::orbit::{NearCycle, NumericOscillator, OrbitTarget, SAMPLES, TrueMotion};
 use self::slope::slope;
 use self::values::{check_digits, checked_numbers};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
 use crate::exact::rational::from_f64;
@@ -423,7 +423,11 @@ fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
 }
 
 /// Which true motion an answer is meant for.
-fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Meant {
+fn orbit_target(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> OrbitTarget {
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let near = |cycle: &crate::solution::LimitCycle| {
         // The amplitude that the formula has where the small parameter vanishes.

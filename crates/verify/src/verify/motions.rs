@@ -6,8 +6,8 @@ use super::formula::formula_motion;
 use super::orbit::{SAMPLES, TrueMotion};
 use super::values::numbers_of_motion;
 use super::{
-    VerificationError, driven, in_another_coordinate, in_time, meant, meant_motion, off_cycle,
-    on_cycle, repeats, transient,
+    VerificationError, check_common_period, driven, in_another_coordinate, in_time, meant_motion,
+    off_cycle, on_cycle, orbit_target, transient,
 };
 use crate::oscillator::Oscillator;
 use crate::solution::Solution;
@@ -15,14 +15,14 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 
 /// Time, displacement and velocity, in the units of the equation.
-pub type Sample = (f64, f64, f64);
+pub type TimedState = (f64, f64, f64);
 
 /// The motion by the formula and the true one, at the same instants of one true period.
 pub struct Motions {
     /// By the formula.
-    pub formula: Vec<Sample>,
+    pub formula: Vec<TimedState>,
     /// By Runge-Kutta.
-    pub truth: Vec<Sample>,
+    pub truth: Vec<TimedState>,
     /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
     pub envelope: Option<[Vec<(f64, f64)>; 2]>,
 }
@@ -56,7 +56,7 @@ pub fn motions(
         return in_time::motions(oscillator, solution, motion, at).map(Some);
     }
     if let Some(response) = &solution.response {
-        repeats(solution)?;
+        check_common_period(solution)?;
         return driven::motions(oscillator, solution, response, at);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -103,7 +103,7 @@ pub fn true_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     at: &Values,
-) -> Result<Vec<Sample>, VerificationError> {
+) -> Result<Vec<TimedState>, VerificationError> {
     let numbers = numbers_of_motion(solution, at);
     let settled = on_cycle(solution, at);
     let solution = settled.as_ref().unwrap_or(solution);
@@ -116,7 +116,7 @@ fn true_path(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
-    let meant = meant(oscillator, solution, numbers);
+    let meant = orbit_target(oscillator, solution, numbers);
     let truth = meant_motion(oscillator, solution, &meant, numbers)?;
     match truth.has_path() {
         true => Ok(truth),
@@ -130,6 +130,6 @@ fn instants(truth: &TrueMotion) -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(move |k| period * k as f64 / SAMPLES as f64)
 }
 
-fn samples_of(truth: &TrueMotion) -> Vec<Sample> {
+fn samples_of(truth: &TrueMotion) -> Vec<TimedState> {
     instants(truth).map(|t| truth.sample(t)).collect()
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::formula::formula_frequency;
 use super::orbit::true_frequency;
-use super::{meant, validity};
+use super::{orbit_target, validity};
 use crate::conservative::features::Features;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -52,7 +52,8 @@ pub(super) fn slope(
         let factor = 0.5_f64.powi(halving);
         let (formula, numbers) = formula_at(factor)?;
         let truth =
-            true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
+            true_frequency(oscillator, &orbit_target(oscillator, solution, &numbers), &numbers)
+                .ok()?;
         let error = (formula / truth - 1.0).abs();
         // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
         // the last bits does to it is no error of the formula.

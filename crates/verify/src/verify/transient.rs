@@ -26,7 +26,7 @@ use super::slope::slopes_of;
 use super::slow_motion::{LOOKS, SlowMotion};
 use super::smaller::{is_small_in_amplitude, smaller};
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError};
+use super::{Motions, TimedState, Verdict, Verification, VerificationError};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};

@@ -103,8 +103,12 @@ pub(super) fn of_equation(
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
     let over_all = beyond
-        && super::orbit::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers)
-            .is_ok();
+        && super::orbit::true_frequency(
+            oscillator,
+            &orbit_target(oscillator, solution, numbers),
+            numbers,
+        )
+        .is_ok();
     Some(match over_all {
         true => Range {
             text: format!("{text}; beyond it the motion runs over several wells, and does so here"),

@@ -120,14 +120,14 @@ impl<'a> Lexer<'a> {
         self.position += letter.len_utf8();
         let spelling = notation::help(letter);
         let (message, help): (String, &str) = match letter {
-            '+' => return Ok(Kind::Plus),
-            '-' => return Ok(Kind::Minus),
-            '/' => return Ok(Kind::Divide),
-            '^' => return Ok(Kind::Power),
-            '(' => return Ok(Kind::Open),
-            ')' => return Ok(Kind::Close),
-            ',' => return Ok(Kind::Comma),
-            '=' => return Ok(Kind::Equals),
+            '+' => return Ok(TokenKind::Plus),
+            '-' => return Ok(TokenKind::Minus),
+            '/' => return Ok(TokenKind::Divide),
+            '^' => return Ok(TokenKind::Power),
+            '(' => return Ok(TokenKind::Open),
+            ')' => return Ok(TokenKind::Close),
+            ',' => return Ok(TokenKind::Comma),
+            '=' => return Ok(TokenKind::Equals),
             '*' if self.rest().starts_with('*') => {
                 self.position += 1;
                 return Ok(TokenKind::Power);

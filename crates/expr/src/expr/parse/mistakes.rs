@@ -173,7 +173,7 @@ impl Parser<'_> {
             (self.tokens[left].start..previous.end, self.token().start..self.tokens[right].end);
         let message = format!("{}: a product needs its sign", self.quoted(left.start..right.end));
         let factors = [left.clone(), right.clone()].map(|factor| &self.text[factor]);
-        if let ([Kind::Number, Kind::Name], "deg" | "rad") =
+        if let ([TokenKind::Number, TokenKind::Name], "deg" | "rad") =
             ([previous.kind, self.peek()], factors[1])
         {
             let number = factors[0];
@@ -198,15 +198,17 @@ impl Parser<'_> {
         let [left_text, right_text] = [left, right].map(|token| &self.text[token.span()]);
         match (left.kind, right.kind) {
             // An exponent that is not finished, Euler's number, or a hexadecimal number.
-            (Kind::Number, Kind::Name) if ["e", "E"].contains(&right_text) => false,
-            (Kind::Number, Kind::Name) if left_text == "0" && left.end == right.start => false,
+            (TokenKind::Number, TokenKind::Name) if ["e", "E"].contains(&right_text) => false,
+            (TokenKind::Number, TokenKind::Name) if left_text == "0" && left.end == right.start => {
+                false
+            }
             // `d x/dt` is a derivative.
-            (Kind::Name, Kind::Name) => self
+            (TokenKind::Name, TokenKind::Name) => self
                 .tokens
                 .iter()
-                .filter(|token| token.kind == Kind::Name)
+                .filter(|token| token.kind == TokenKind::Name)
                 .all(|token| !["d", "dt", "dt2"].contains(&&self.text[token.span()])),
-            (Kind::Number | Kind::Close, Kind::Name | Kind::Open) => true,
+            (TokenKind::Number | TokenKind::Close, TokenKind::Name | TokenKind::Open) => true,
             _ => false,
         }
     }
@@ -216,18 +218,25 @@ impl Parser<'_> {
         let next = self.token();
         let message = format!("`{name}` needs parentheses around its argument");
         match next.kind {
-            Kind::Name | Kind::Number => {
+            TokenKind::Name | TokenKind::Number => {
                 let argument = &self.text[next.span()];
                 let call = format!("{name}({argument})");
                 let error = self.error(token.start..next.end, &message, &format!("try `{call}`"));
                 // `sin x cos x` and `sin 2 x` leave open where the argument ends.
-                let after = self.tokens.get(self.next + 1).map_or(Kind::End, |after| after.kind);
-                let ends =
-                    [Kind::End, Kind::Plus, Kind::Minus, Kind::Equals, Kind::Close, Kind::Comma];
+                let after =
+                    self.tokens.get(self.next + 1).map_or(TokenKind::End, |after| after.kind);
+                let ends = [
+                    TokenKind::End,
+                    TokenKind::Plus,
+                    TokenKind::Minus,
+                    TokenKind::Equals,
+                    TokenKind::Close,
+                    TokenKind::Comma,
+                ];
                 let is_plain = Function::from_name(argument).is_none() && ends.contains(&after);
                 error.meaning_here(is_plain.then_some(call))
             }
-            Kind::Power => {
+            TokenKind::Power => {
                 let error = self.error(token.span(), &message, &format!("try `{name}(x)^2`"));
                 match self.raised_call(token) {
                     Some((part, call)) => error.meaning(part, call),
@@ -243,7 +252,7 @@ impl Parser<'_> {
         let [_, exponent, open] = self.tokens.get(self.next..self.next + 3)? else {
             return None;
         };
-        if [exponent.kind, open.kind] != [Kind::Number, Kind::Open] {
+        if [exponent.kind, open.kind] != [TokenKind::Number, TokenKind::Open] {
             return None;
         }
         let close = self.tokens[matching_close(&self.tokens, self.next + 2)?];
@@ -266,21 +275,23 @@ impl Parser<'_> {
                 .is_some_and(|rest| !rest.is_empty() && rest.chars().all(|letter| letter == '\''))
         };
         let is_coordinate = self.tokens.iter().any(is_primed);
-        let names_time = |token: &Token| token.kind == Kind::Name && text(token) == "t";
+        let names_time = |token: &Token| token.kind == TokenKind::Name && text(token) == "t";
         if let [time] = inner
             && names_time(time)
         {
             let call = self.tokens[self.next].start..self.tokens[close].end;
             return is_coordinate.then(|| (call, String::new()));
         }
-        let is_sum =
-            inner.iter().skip(1).any(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
+        let is_sum = inner
+            .iter()
+            .skip(1)
+            .any(|token| matches!(token.kind, TokenKind::Plus | TokenKind::Minus));
         // Names of functions that an equation of motion is driven or stepped by.
         const FUNCTIONS: [&str; 10] = ["f", "g", "h", "F", "G", "u", "U", "d", "delta", "theta"];
         let is_parameter = (is_letter(bare) || bare == "eps" || bare == "pi")
             && !FUNCTIONS.contains(&bare)
             && is_sum
-            && !inner.iter().any(|token| names_time(token) || token.kind == Kind::Comma);
+            && !inner.iter().any(|token| names_time(token) || token.kind == TokenKind::Comma);
         (is_coordinate || is_parameter).then(|| (token.end..token.end, "*".to_owned()))
     }
 
@@ -336,13 +347,13 @@ impl Parser<'_> {
     pub(super) fn unexpected(&self) -> ParseError {
         let token = self.token();
         match token.kind {
-            Kind::Close => self.error(token.span(), "this `)` closes nothing", ""),
-            Kind::Comma if has_initial_value(&self.tokens, self.text) => self.error(
+            TokenKind::Close => self.error(token.span(), "this `)` closes nothing", ""),
+            TokenKind::Comma if has_initial_value(&self.tokens, self.text) => self.error(
                 token.span(),
                 "an equation of motion stands alone, without its initial values",
                 "they are options: `--at A=1` of a formula, `--from x=1` of a simulation",
             ),
-            Kind::Comma => self.error(
+            TokenKind::Comma => self.error(
                 token.span(),
                 "a `,` stands between the arguments of `max` and `min` alone",
                 "a decimal point is `.`",
@@ -360,8 +371,15 @@ impl Parser<'_> {
 /// Whether `x(0) =` stands among these tokens.
 fn has_initial_value(tokens: &[Token], text: &str) -> bool {
     tokens.windows(5).any(|window| {
-        let kinds: Vec<Kind> = window.iter().map(|token| token.kind).collect();
-        kinds == [Kind::Name, Kind::Open, Kind::Number, Kind::Close, Kind::Equals]
+        let kinds: Vec<TokenKind> = window.iter().map(|token| token.kind).collect();
+        kinds
+            == [
+                TokenKind::Name,
+                TokenKind::Open,
+                TokenKind::Number,
+                TokenKind::Close,
+                TokenKind::Equals,
+            ]
             && text[window[2].span()].trim_matches(['0', '.']).is_empty()
     })
 }

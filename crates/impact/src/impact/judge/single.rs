@@ -108,7 +108,7 @@ pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
 /// ```
 pub fn true_impact(
     collision: &Collision,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<TrueImpact, ImpactError> {
     let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping } =
         collision;
@@ -209,7 +209,7 @@ fn at_scale(options: &ode::IntegrationOptions, size: f64) -> ode::IntegrationOpt
 fn approach(
     swing: impl Fn(f64, f64, f64) -> f64,
     [release, barrier]: [f64; 2],
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<Trajectory, ImpactError> {
     // Counted from the release: near the top of the swing every digit of the distance to it
     // matters.
@@ -238,7 +238,7 @@ fn way_back(
     swing: impl Fn(f64, f64, f64) -> f64,
     barrier: f64,
     exit: ode::State,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<Trajectory, ImpactError> {
     let outwards = Coordinate { sign: -1.0, origin: barrier };
     let start = ode::State { t: 0.0, x: 0.0, v: -exit.v };
@@ -301,7 +301,7 @@ const TIGHTEST: f64 = 1e-14;
 /// ```
 pub fn assured_impact(
     collision: &Collision,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<TrueImpact, ImpactError> {
     let with = |tolerance: f64| {
         let options = ode::IntegrationOptions {

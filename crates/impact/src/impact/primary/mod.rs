@@ -37,7 +37,7 @@ use crate::mechanics::MechanicsError;
 use crate::system::SystemError;
 
 pub use follow::simulate_primary;
-pub use linear::{Alone, Others};
+pub use linear::{Alone, UndampedAndLocked};
 pub use parameter::PrimaryParameter;
 pub use path::PrimaryState;
 pub use si::MainMass;

@@ -499,8 +499,8 @@ mod tests {
     use num_complex::Complex;
 
     use super::*;
-    use crate::numeric::continuation::{Step, bordered, follow, tangent};
-    use crate::numeric::ode::{Options, Point, integrate_first_order};
+    use crate::numeric::continuation::{ContinuationStep, bordered, follow, tangent};
+    use crate::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
     use crate::numeric::periodic::{PeriodicOrbit, Shooting, by_differences};
 
     /// A force on two coordinates.
@@ -580,7 +580,8 @@ mod tests {
         let free = |y: [f64; 4]| rates(0.0, y);
         let sizes = [1.0; 4];
         let follow = |start: [f64; 4], period: f64| {
-            let (begin, options) = (Point { t: 0.0, y: start }, Options::with_tolerance(1e-13));
+            let (begin, options) =
+                (Point { t: 0.0, y: start }, IntegrationOptions::with_tolerance(1e-13));
             let path = integrate_first_order(in_time, begin, period, &[], &options).ok()?;
             Some((path.end().y, ()))
         };
@@ -690,10 +691,12 @@ mod tests {
                 Some((tangent(&factors)?.normalize(), at))
             });
             match next {
-                None => Step::TooLong,
-                Some((along, at)) if along[size] < -0.1 => Step::Ended(Some((at, along)), "folded"),
-                Some(_) if points.len() > 300 => Step::Ended(None, "straight"),
-                Some((along, at)) => Step::Taken((at, along), 1.4),
+                None => ContinuationStep::TooLong,
+                Some((along, at)) if along[size] < -0.1 => {
+                    ContinuationStep::Ended(Some((at, along)), "folded")
+                }
+                Some(_) if points.len() > 300 => ContinuationStep::Ended(None, "straight"),
+                Some((along, at)) => ContinuationStep::Taken((at, along), 1.4),
             }
         };
         let first = solved(&balance, &DVector::zeros(size), 0.9, duffing).push(0.9);

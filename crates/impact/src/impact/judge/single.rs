@@ -430,7 +430,7 @@ fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
     use crate::impact::error::ImpactError;
-    use crate::impact::hertz::{Design, elastic_force};
+    use crate::impact::hertz::{StiffnessDesign, elastic_force};
     use crate::impact::linearisation::Rule;
     use crate::impact::phases::{ContactSpeed, ImpactProblem, three_phases};
     use crate::numeric::ode::IntegrationOptions;
@@ -604,7 +604,7 @@ mod tests {
             ImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(run(f64::NAN, 0.3), ImpactError::Integration(_)));
-        let few = Options { maximum_steps: 5, ..Options::default() };
+        let few = IntegrationOptions { maximum_steps: 5, ..IntegrationOptions::default() };
         let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
             matches!(refused, ImpactError::Stopped(StopReason::MaximumSteps { .. })),
@@ -612,7 +612,7 @@ mod tests {
         );
         // At rest on top: it never gets anywhere.
         let still = Collision { restoring_force: &|_| 0.0, ..collision(1.0, 0.3, 1.0) };
-        let refused = true_impact(&still, &Options::default()).unwrap_err();
+        let refused = true_impact(&still, &IntegrationOptions::default()).unwrap_err();
         assert!(matches!(refused, ImpactError::Stopped(StopReason::EndReached)), "{refused}");
     }
 }

@@ -49,6 +49,8 @@ fn run(arguments: &CatalogArguments) -> Result<Outcome, Failure> {
         })?),
     };
     let text = match arguments.common.format() {
+        // A line for each, however long.
+        Format::Text if arguments.name.is_none() => catalog::text(entries),
         Format::Text => fitted(&catalog::text(entries), width(arguments.common.output.as_deref())),
         Format::Latex => arguments.common.latex(catalog::latex(entries)),
         Format::Html => page(None, None, |page| html::lines(&catalog::text(entries), page)),

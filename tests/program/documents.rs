@@ -361,7 +361,7 @@ fn every_key_is_described_and_no_other_is_allowed() {
 #[test]
 fn an_unknown_kind_is_refused_with_the_known_ones() {
     let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args(["schema", "derive"])
+        .args(["schema", "derivation"])
         .output()
         .expect("the program starts");
     let message = String::from_utf8_lossy(&output.stderr);

@@ -26,8 +26,11 @@ fn law(arguments: &[&str]) -> String {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{arguments:?}: {message}");
     let text = String::from_utf8(output.stdout).expect("text");
-    let line = text.lines().find(|line| line.trim().starts_with("omega^2 = "));
-    line.unwrap_or_else(|| panic!("no law in {text}")).trim().to_owned()
+    let mut lines = text.lines().skip_while(|line| !line.trim().starts_with("omega^2 = "));
+    let first = lines.next().unwrap_or_else(|| panic!("no law in {text}")).trim().to_owned();
+    // A long one goes on below its first term.
+    let rest = lines.take_while(|line| line.starts_with("            "));
+    rest.fold(first, |law, line| law + " " + line.trim())
 }
 
 /// A folder of its own for each test.

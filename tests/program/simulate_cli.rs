@@ -396,6 +396,7 @@ fn the_table_of_the_trajectory() {
     let file = example("damper");
     let table = output(&[&file, "--format", "csv"]);
     let mut lines = table.lines();
+    assert!(lines.next().is_some_and(|line| line.starts_with("# units: t 1/omega, x rad, ")));
     assert_eq!(lines.next(), Some("t,x,velocity,state,energy"));
     let mut last = -1.0;
     let mut contacts = 0;
@@ -408,7 +409,7 @@ fn the_table_of_the_trajectory() {
         assert!(number(1) > 0.323 - 1e-12 || fields[3] == "free", "{line}");
     }
     assert!(last == 200.0 && contacts > 100);
-    assert_eq!(output(&[&file, "--format", "csv", "--sample", "3"]).lines().count(), 2);
+    assert_eq!(output(&[&file, "--format", "csv", "--sample", "3"]).lines().count(), 3);
 }
 
 #[test]
@@ -421,7 +422,7 @@ fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
         let table = output(&[&file, "--format", "csv"]);
         let rows: Vec<Vec<f64>> = table
             .lines()
-            .skip(1)
+            .skip(2)
             .map(|line| {
                 let fields = line.split(',').enumerate().filter(|(column, _)| *column != 3);
                 fields.map(|(_, field)| field.parse().expect("a number")).collect()

@@ -605,7 +605,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 58] = [
+    const COMMANDS: [&str; 67] = [
         "int",
         "Rightarrow",
         "hbar",

@@ -105,15 +105,17 @@ fn parts(text: &str) -> Vec<Part<'_>> {
     parts
 }
 
-/// The part with which the next line begins: the last that fits, or one outside of brackets where
-/// that leaves two fifths of the line at least.
+/// The part with which the next line begins: the last that fits, or one outside of brackets and with
+/// a sign where that leaves two fifths of the line at least.
 fn next_break(parts: &[Part], begin: usize, room: usize) -> usize {
     let mut length = 0;
     let mut best: Option<(usize, usize)> = None;
     for (index, part) in parts.iter().enumerate().skip(begin) {
         if index > begin && length * 5 >= room * 2 && length <= room {
-            let is_better = best.is_none_or(|(_, depth)| part.depth <= depth);
-            best = if is_better { Some((index, part.depth)) } else { best };
+            let has_sign = part.text.starts_with("+ ") || part.text.starts_with("- ");
+            let rank = 2 * part.depth + usize::from(!has_sign);
+            let is_better = best.is_none_or(|(_, known)| rank <= known);
+            best = if is_better { Some((index, rank)) } else { best };
         }
         let longer = length + usize::from(index > begin) + part.text.chars().count();
         if longer > room {

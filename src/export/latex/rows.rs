@@ -214,13 +214,13 @@ mod tests {
         assert_eq!(rows("x &= 1 + y"), ["x &= 1 + y"]);
         // A row that goes on already stays one.
         assert!(broken.iter().all(|row| rows(row) == [row.clone()]));
-        let left = format!("{} &= 0", vec!["\\ddot{x} \\cos x"; 5].join(" + "));
+        let left = format!("{} &= 0", ["\\ddot{x} \\cos x"; 5].join(" + "));
         assert_eq!(rows(&left), [format!("&{}", left.replace(" &=", " ="))]);
     }
 
     #[test]
     fn a_long_bracket_breaks_inside_and_is_set_open() {
-        let sum = vec!["\\frac{17 A^{5}}{61440}"; 12].join(" + ");
+        let sum = ["\\frac{17 A^{5}}{61440}"; 12].join(" + ");
         let broken = rows(&format!("x &= \\left({sum}\\right) \\cos \\theta"));
         assert!(broken.len() > 1, "{broken:?}");
         assert!(

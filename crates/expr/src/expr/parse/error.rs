@@ -24,14 +24,14 @@ pub struct ParseError {
     pub help: Option<String>,
     /// What was meant, where it can be one thing only: a part of the text, and what the grammar has
     /// for it.
-    pub(super) correction: Option<(Range<usize>, String)>,
+    pub(super) correction: Option<Box<(Range<usize>, String)>>,
     /// The line of the text, cut to what fits, and a line with carets.
-    excerpt: [String; 2],
+    excerpt: Box<[String; 2]>,
 }
 
 impl fmt::Display for ParseError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [line, carets] = &self.excerpt;
+        let [line, carets] = &*self.excerpt;
         write!(formatter, "{}", self.message)?;
         match (line.trim().is_empty(), &self.help) {
             (true, None) => Ok(()),
@@ -46,14 +46,14 @@ impl std::error::Error for ParseError {}
 
 impl ParseError {
     pub(super) fn new(text: &str, span: Range<usize>, message: &str, help: &str) -> Self {
-        let excerpt = excerpt(text, &span);
+        let excerpt = Box::new(excerpt(text, &span));
         let help = (!help.is_empty()).then(|| help.to_string());
         Self { message: message.to_string(), span, help, correction: None, excerpt }
     }
 
     /// The error of a text in which this part can only mean what `replacement` says.
     pub(super) fn meaning(self, part: Range<usize>, replacement: impl Into<String>) -> Self {
-        Self { correction: Some((part, replacement.into())), ..self }
+        Self { correction: Some(Box::new((part, replacement.into()))), ..self }
     }
 
     /// The error of a text in which the shown place can only mean what `replacement` says, if

@@ -52,7 +52,8 @@ fn corrected<'a>(text: &'a str, error: impl Fn(&str) -> Option<ParseError>) -> C
     for _ in 0..MOST_CORRECTIONS {
         let found = error(&corrected).and_then(|error| error.correction);
         match found {
-            Some((part, replacement)) if corrected.len() <= LONGEST => {
+            Some(correction) if corrected.len() <= LONGEST => {
+                let (part, replacement) = *correction;
                 corrected.to_mut().replace_range(part, &replacement);
             }
             _ => break,
@@ -179,7 +180,7 @@ pub(super) fn meaning(text: &str, start: usize, letter: char) -> Option<(Range<u
                     true => "*",
                     false => return None,
                 },
-                Some(next) if next.is_alphabetic() && !superscript(next).is_some() => "*",
+                Some(next) if next.is_alphabetic() && superscript(next).is_none() => "*",
                 _ => "",
             };
             here(&format!("{times_before}{spelling}{times_after}"))

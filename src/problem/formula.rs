@@ -31,10 +31,10 @@ impl Problem {
     /// A key that this command would ignore; no equation.
     ///
     /// ```
-    /// use lindstedt::problem::{Problem, Reader};
+    /// use lindstedt::problem::{Problem, ReadingCommand};
     ///
     /// let file: Problem = "equation = \"x'' + x + eps*x^3 = 0\"\nsmall = \"eps\"".parse()?;
-    /// assert_eq!(file.formula(Reader::Derive)?.small, Some("eps"));
+    /// assert_eq!(file.formula(ReadingCommand::Derive)?.small, Some("eps"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn formula(&self, reader: ReadingCommand) -> Result<FormulaProblem<'_>, ProblemError> {

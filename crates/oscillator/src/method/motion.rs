@@ -119,7 +119,7 @@ impl Solution {
     ///
     /// # Errors
     /// [`NoNumbers`].
-    pub fn at(&self, t: f64, values: &Values) -> Result<f64, NoNumbers> {
+    pub fn displacement_at(&self, t: f64, values: &Values) -> Result<f64, NoNumbers> {
         Ok(self.motion_at(values)?.displacement_at(t))
     }
 }

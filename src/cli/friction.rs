@@ -6,6 +6,7 @@ use lindstedt::impact::friction::{FrictionSetup, study};
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
+use super::files::width;
 use super::{Common, Failure, Format, Outcome, Work, json_text};
 
 /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near
@@ -51,7 +52,7 @@ fn run(arguments: &FrictionArguments) -> Result<Outcome, Failure> {
     let study = study(setup)?;
     let answer = Answer {
         document: &report::friction(&study),
-        width: usize::MAX,
+        width: width(arguments.common.output.as_deref()),
         picture: Some(&|| Ok(friction::picture(&study)?)),
         other: &|format| match format {
             Format::Csv => Ok(friction::csv(&study)),

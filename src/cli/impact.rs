@@ -89,7 +89,7 @@ fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
     let impact = solve(setup)?;
     let answer = Answer {
         document: &report::impact(&impact, tolerance),
-        width: usize::MAX,
+        width: width(arguments.common.output.as_deref()),
         picture: Some(&|| picture(&impact)),
         other: &|format| match format {
             Format::Json => json_text(&json::impact(&impact, tolerance)),

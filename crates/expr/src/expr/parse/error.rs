@@ -22,8 +22,8 @@ pub struct ParseError {
     pub span: Range<usize>,
     /// Advice on what to write instead; `None` if there is none.
     pub help: Option<String>,
-    /// What was meant, where it can be one thing only: a part of the text, and what the grammar has
-    /// for it.
+    /// The part of the text that can mean one thing only, and its spelling in the grammar; `None` if
+    /// it may mean several.
     pub(super) correction: Option<Box<(Range<usize>, String)>>,
     /// The line of the text, cut to what fits, and a line with carets.
     excerpt: Box<[String; 2]>,

@@ -261,8 +261,8 @@ impl Parser<'_> {
         Some((name.start..close.end, format!("{name_text}{argument}^{exponent}")))
     }
 
-    /// What a name before a parenthesis means that is no function, where it is one thing only: the
-    /// coordinate at the time t, or a factor.
+    /// The meaning of a name before a parenthesis that is not a function: the coordinate at the time t,
+    /// or a factor. `None` if it may be either a factor or a function.
     fn called_name(&self, token: Token) -> Option<(Range<usize>, String)> {
         let name = &self.text[token.span()];
         let bare = name.trim_end_matches('\'');

@@ -130,7 +130,7 @@ pub(super) fn spelling(letter: char) -> Option<&'static str> {
     })
 }
 
-/// What to write for a character, as it is said below the text.
+/// The advice on a character, as it stands below the text; empty if there is none.
 pub(super) fn help(letter: char) -> String {
     match spelling(letter) {
         Some(" ") => "try a plain blank".to_owned(),
@@ -139,8 +139,8 @@ pub(super) fn help(letter: char) -> String {
     }
 }
 
-/// What a character outside of the grammar means at its place, where that is one thing only: a part
-/// of the text, and its spelling. Everything left of it is in the grammar.
+/// The part of the text that a character outside of the grammar stands for, and its spelling; `None`
+/// if it may mean several things at its place. Everything left of it is in the grammar.
 pub(super) fn meaning(text: &str, start: usize, letter: char) -> Option<(Range<usize>, String)> {
     let end = start + letter.len_utf8();
     let (before, after) = (&text[..start], &text[end..]);
@@ -284,7 +284,7 @@ mod tests {
         }
     }
 
-    /// What may mean two things is an error as it stands.
+    /// A text that may mean two things is an error as it stands.
     #[test]
     fn what_is_ambiguous_is_left_alone() {
         for typed in [
@@ -310,7 +310,7 @@ mod tests {
         }
     }
 
-    /// Whatever the text, reading it ends.
+    /// Reading ends for every text.
     #[test]
     fn long_texts_are_not_corrected_without_end() {
         let text = format!("x''{}", " + 2x".repeat(3_000));

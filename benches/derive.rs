@@ -6,8 +6,9 @@ use lindstedt::Values;
 use lindstedt::impact::hertz::StiffnessDesign;
 use lindstedt::impact::{self, Setup};
 use lindstedt::method::{Options, numbers, solve};
-use lindstedt::solution::Method;
+use lindstedt::solution::{Degrees, Method};
 use lindstedt::verify::comparison::compare;
+use lindstedt::verify::judge;
 
 fn derivations(criterion: &mut Criterion) {
     for (name, equation, method, order) in [
@@ -41,6 +42,39 @@ fn derivations(criterion: &mut Criterion) {
             });
         });
     }
+}
+
+/// What a person waits for: homotopy analysis by its order, hbar sought at each of many amplitudes;
+/// an approximant with numbers of thousands of digits; a table of a force with a root.
+fn waiting(criterion: &mut Criterion) {
+    let pendulum = Oscillator::parse("x'' + sin(x) = 0").expect("an oscillator");
+    let at = Values::try_from([("A", 2.0)]).expect("values");
+    for order in [3, 4, 5] {
+        let method = Some(Method::HomotopyAnalysis);
+        let options = Options { method, order: Some(order), ..Options::default() };
+        criterion.bench_function(
+            &format!("homotopy analysis of order {order}, judged"),
+            |bencher| {
+                bencher.iter(|| {
+                    let solution = solve(&pendulum, &options).expect("a solution");
+                    judge(&pendulum, &solution, &at, 0.01).expect("a verdict")
+                });
+            },
+        );
+    }
+    let cycle = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an oscillator");
+    let degrees = Some(Degrees::Quotient(40, 40));
+    let options = Options { method: Some(Method::Pade), degrees, ..Options::default() };
+    let solution = solve(&cycle, &options).expect("an approximant");
+    let at = Values::try_from([("mu", 5.0)]).expect("values");
+    criterion.bench_function("van der Pol [40/40] judged", |bencher| {
+        bencher.iter(|| judge(&cycle, &solution, &at, 0.01).expect("a verdict"));
+    });
+    let root = Oscillator::parse("x'' + x^(1/3) = 0").expect("an oscillator");
+    let at = Values::try_from([("A", 1.0)]).expect("values");
+    criterion.bench_function("every method compared, cube root", |bencher| {
+        bencher.iter(|| compare(&root, &at, None, 0.01).expect("a table"));
+    });
 }
 
 /// The balance of many harmonics, and the whole table.
@@ -77,6 +111,6 @@ fn contact(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = derivations, methods, contact
+    targets = derivations, waiting, methods, contact
 }
 criterion_main!(benches);

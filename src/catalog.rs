@@ -1,11 +1,9 @@
-//! Classical oscillators by name, each with its source and, where one is printed, the published
-//! law.
+//! Classical oscillators by name, each with its source and the published law, if one is printed.
 //!
-//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, and which methods apply to
-//! it.
+//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, and the list of methods that
+//! apply to it.
 //!
-//! A published law is only what a derived one is compared with: nothing here is ever used as an
-//! answer.
+//! A published law serves only for comparison with a derived one, never as an answer.
 
 use std::fmt;
 
@@ -13,7 +11,7 @@ use crate::method::{Options, Refusal, solve};
 use crate::oscillator::Oscillator;
 use crate::solution::Method;
 
-// A name that is nearly one of these, or nearly one of the user's own.
+// The search for the name most similar to a misspelt one.
 pub use crate::spelling::nearest;
 
 /// A classical oscillator.
@@ -269,7 +267,7 @@ pub const CATALOG: &[CatalogEntry] = &[
     },
 ];
 
-/// The entry of this name, in capital letters or small ones.
+/// The entry of this name, regardless of case; `None` if there is none.
 ///
 /// ```
 /// let pendulum = lindstedt::catalog::find("pendulum").expect("an entry");

@@ -21,32 +21,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The modules stand in the order of the way of the data; each uses only those above it.
+//! | module | what it does | first names |
+//! | --- | --- | --- |
+//! | [`method`] | derives a law, a motion, slow equations, by one method each | [`solve`], [`Options`] |
+//! | [`oscillator`] | the equation that a method is given | [`Oscillator`] |
+//! | [`solution`] | what a method returns: law, motion, notes, the derivation line by line | [`Solution`] |
+//! | [`verify`] | judges a formula by the true motion, compares methods | [`judge`], [`verify::comparison::compare`] |
+//! | [`certificate`] | proves how far a formula is from the true motion | [`certificate::certify`] |
+//! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
+//! | [`response`] | follows steady states through resonances: branches, stability, bifurcations | [`response::respond`] |
+//! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
+//! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
+//! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form, or event by event | [`impact::solve`], [`impact::simulate`](impact::simulate()) |
+//! | [`optimize`] | searches the damper that rests soonest: constraints, fronts, what decides | [`optimize::optimize`](optimize::optimize()) |
+//! | [`audit`] | computes the claims of publications again | [`audit::audit`](audit::audit()) |
+//! | [`problem`] | reads problem files | [`problem::Problem`] |
+//! | [`catalog`] | classical oscillators by name | [`catalog::find`] |
+//! | [`report`] | what a report of a result says, for every format | [`report::Document`] |
+//! | [`export`] | text, LaTeX, JSON, programs, pictures, pages | [`export::latex`], [`export::code`] |
+//! | [`expr`] | the expression tree: reading, printing, calculus, evaluation | [`expr::Expr`] |
+//! | [`exact`] | fractions, polynomials, rings of coefficients | [`exact::Ring`] |
+//! | [`series`] | Taylor and Fourier series, running convolutions | [`series::FourierSeries`] |
+//! | [`system`] | first-order systems by Taylor series and Runge-Kutta, with events | [`system::System`] |
+//! | [`numeric`] | Runge-Kutta, quadrature, roots, harmonic balance, periodic orbits | [`numeric::ode`] |
+//! | [`genetic`] | a genetic algorithm, one file an operator | [`genetic::search`] |
 //!
-//! | module | what it holds |
-//! | --- | --- |
-//! | [`numeric`] | true motions in numbers alone: Runge-Kutta, quadrature, roots; true periods; limit cycles in truth |
-//! | [`genetic`] | search by a genetic algorithm, one file each operator; fronts of several values; what it is measured by |
-//! | [`exact`] | fractions, polynomials, the coefficient ring |
-//! | [`expr`] | the expression tree, its parser, printer, calculus and evaluation; names that are free |
-//! | [`series`] | Taylor, Fourier, running convolutions |
-//! | [`system`] | first-order systems of any size by Taylor series and by Runge-Kutta, with events |
-//! | [`mechanics`] | energies to equations of motion, units, dimensionless groups, modes |
-//! | [`solution`] | what a method returns: law, motion, notes, and how they were reached, line by line |
-//! | [`oscillator`] | what a method is given |
-//! | [`trajectory`] | any equation or mechanism followed in numbers, its energy accounted for |
-//! | [`hill`] | linear equations with periodic coefficients: exact transition curves, Floquet's multipliers |
-//! | [`method`] | one file each, one row in the table; potentials and projections in closed form |
-//! | [`verify`] | the true motion and the verdict |
-//! | [`certificate`] | a proof beside a formula: exactly one motion is so near, and the formula is off by so much |
-//! | [`response`] | steady states of an oscillator: branches, stability, bifurcations, backbones |
-//! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form; all forces, event by event; sweeps |
-//! | [`optimize`] | the design that rests soonest: genetic algorithm, constraints, fronts, what decides |
-//! | [`problem`] | problem files |
-//! | [`catalog`] | classical oscillators |
-//! | [`audit`] | claims of publications, computed again, each with a verdict |
-//! | [`report`] | what a report of a result says, for every format |
-//! | [`export`] | text, LaTeX, JSON, programs, pictures, pages |
+//! Six programs to begin with are in `examples/`: `first_law`, `which_method`, `resonance_curve`,
+//! `poincare_section`, `impact_phases`, `coupled_modes`.
 //!
 //! | feature | what it adds |
 //! | --- | --- |

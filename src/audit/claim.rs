@@ -1,4 +1,4 @@
-//! A claim: what a publication prints, and how it is to be computed.
+//! A claim: the text that a publication prints, and the computation that checks it.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,7 +14,7 @@ use crate::symbol::Symbol;
 /// One claim of a publication.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
-    /// Its name, one of its own in a file.
+    /// Its name, unique in a file.
     pub id: String,
     /// The place in the publication.
     pub place: String,
@@ -32,18 +32,18 @@ pub struct Claim {
     /// Quantities that the publication does not print and the claim cannot be computed without, in
     /// words.
     pub needs: Vec<String>,
-    /// The verdict that is known already; without it a claim is expected to be reproduced.
+    /// The expected verdict; if `None`, `reproduced`.
     pub expected: Option<Verdict>,
     /// A note for the reader.
     pub note: Option<String>,
 }
 
-/// One thing that is printed.
+/// A printed entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintedEntry {
     /// Values of this entry alone.
     pub values: BTreeMap<Symbol, Expr>,
-    /// As it is printed.
+    /// The printed text.
     pub printed: String,
     /// The reading of an entry printed in words.
     pub read_as: Option<String>,
@@ -60,7 +60,7 @@ pub enum PrintedStatement {
     Formula(Expr),
     /// The order of the numbers of all entries.
     Trend(Trend),
-    /// The text says no more than the claim itself.
+    /// Only the words of the claim itself.
     Words,
 }
 
@@ -97,8 +97,8 @@ impl Trend {
         Self::ALL.into_iter().find(|trend| trend.name() == name)
     }
 
-    /// Whether these numbers follow each other so. What differs by less than this part of its size
-    /// is the same, and neither falls nor rises.
+    /// Whether these numbers have this order. Numbers whose relative difference is below `same`
+    /// neither fall nor rise.
     pub fn holds(self, numbers: &[f64], same: f64) -> bool {
         let falls = |one: f64, other: f64| other < one - same * one.abs();
         let first = numbers.first().copied().unwrap_or(f64::NAN);
@@ -118,7 +118,7 @@ impl Trend {
 pub struct ClaimComputation {
     /// The quantity.
     pub quantity: ClaimQuantity,
-    /// The equation of motion, for what is derived from one.
+    /// The equation of motion, for quantities that are derived from one.
     pub equation: Option<Oscillator>,
     /// Method, order and the like.
     pub options: Options,
@@ -130,25 +130,26 @@ pub struct ClaimComputation {
     pub pi: Option<Expr>,
     /// The rule by which digits are cut or rounded.
     pub rounding: Rounding,
-    /// The relative error that is allowed, in place of digits; of a trend, what counts as the same.
+    /// The relative error that is allowed, in place of digits; for a trend, the relative difference
+    /// that counts as none.
     pub tolerance: Option<f64>,
 }
 
 /// The quantity that is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClaimQuantity {
-    /// A number: a formula in values and in what the program computes, [`NAMES`](super::NAMES).
+    /// A number: a formula in values and in the computed quantities of [`NAMES`](super::NAMES).
     Value(Expr),
     /// The coefficient of a term in a derived law.
     Coefficient {
-        /// Whether of omega^2, otherwise of omega.
+        /// Whether it is a coefficient of omega^2; otherwise of omega.
         squared: bool,
         /// The term, a product of powers.
         term: Expr,
     },
     /// A derived law as a whole.
     Law {
-        /// Whether omega^2, otherwise omega.
+        /// Whether it is the law of omega^2; otherwise of omega.
         squared: bool,
     },
     /// The Taylor polynomial of a formula in x about zero.
@@ -158,7 +159,7 @@ pub enum ClaimQuantity {
         /// The highest power.
         degree: u32,
     },
-    /// A formula, the same as the printed one for every value of its symbols.
+    /// A formula that equals the printed one for every value of its symbols.
     Identity(Expr),
     /// The equation of motion of the coordinate x, x'' first, that follows from energies and a
     /// force.
@@ -172,11 +173,11 @@ pub enum ClaimQuantity {
     },
     /// The change of a formula from entry to entry.
     Trend(Expr),
-    /// Number of coordinates of an equation: letters with two primes.
+    /// Number of coordinates of an equation: symbols with two primes.
     Coordinates(Expr),
-    /// Options that are to go together.
+    /// Options that must be compatible.
     Settings(Vec<(String, String)>),
-    /// No quantity: what it needs is not printed.
+    /// No quantity, because the data that it needs are not printed.
     Nothing,
 }
 
@@ -189,12 +190,12 @@ pub struct Unknown {
     pub within: [f64; 2],
 }
 
-/// Something that may be supposed where the claim alone is not reproduced.
+/// A supposition that may be made if the claim alone is not reproduced.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Supposition {
     /// Another value of pi.
     Pi(Expr),
-    /// Digits that come about another way.
+    /// Another rule of rounding.
     Rounding(Rounding),
     /// Another method.
     Method(Method),
@@ -239,7 +240,8 @@ impl fmt::Display for Supposition {
     }
 }
 
-/// A value as it was probably typed: a decimal where it is a fraction of powers of two and five.
+/// A value as it was probably typed: as a decimal if its denominator has only the factors two and
+/// five.
 fn decimal_text(value: &Expr) -> String {
     let Some(number) = value.as_number() else {
         return value.to_string();
@@ -253,7 +255,7 @@ fn decimal_text(value: &Expr) -> String {
 }
 
 impl ClaimComputation {
-    /// The question with this supposed.
+    /// The computation with these suppositions.
     pub(super) fn supposing(&self, suppositions: &[&Supposition]) -> Self {
         let mut question = self.clone();
         for supposition in suppositions {
@@ -301,9 +303,9 @@ pub enum Verdict {
     /// The claim is reproduced to every printed digit under an assumption that the publication does
     /// not state and the program found.
     UnderAssumption,
-    /// Something that is needed is not printed.
+    /// A quantity that is needed is not printed.
     NotReproducible,
-    /// Something else is computed.
+    /// The computed value differs.
     Inconsistent,
 }
 
@@ -327,7 +329,7 @@ impl Verdict {
         Self::ALL.into_iter().find(|verdict| verdict.name() == name)
     }
 
-    /// Whether the printed comes out, with or without an assumption.
+    /// Whether the printed text is reproduced, with or without an assumption.
     pub fn is_reproduced(self) -> bool {
         matches!(self, Self::Reproduced | Self::UnderAssumption)
     }

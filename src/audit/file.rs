@@ -1,7 +1,7 @@
-//! Files of claims, in TOML: `docs/audit.md` says what each key means.
+//! Files of claims, in TOML: `docs/audit.md` explains each key.
 //!
 //! In: the text of a file. Out: [`Claims`], or the first mistake with its line and a caret below
-//! its place. A key that would say nothing to its claim is refused by name.
+//! its place. A key without effect on its claim is refused by name.
 
 mod keys;
 mod names;
@@ -75,7 +75,7 @@ impl FromStr for Claims {
     }
 }
 
-/// Names with what stands for them.
+/// Names with their values.
 type NamedValues = BTreeMap<String, Spanned<toml::Value>>;
 type Text = Spanned<String>;
 
@@ -173,7 +173,7 @@ fn read(document: Document) -> ReadResult<Option<Claims>> {
 fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> ReadResult<Claim> {
     let kind = kind(section)?;
     check_keys(section, kind)?;
-    // In a formula the names of the file stay letters.
+    // In a formula the names of the file stay symbols.
     let mut values = match kind {
         "identity" | "motion" | "law" | "taylor" | "coefficient" | "coordinates" => BTreeMap::new(),
         _ => shared.clone(),

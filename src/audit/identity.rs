@@ -1,9 +1,9 @@
-//! Whether two expressions are the same for every value of their symbols, and which terms make the
-//! difference.
+//! Whether two expressions are the same for every value of their symbols, and the terms in which
+//! they differ.
 //!
-//! Written out in normal form they are compared term by term. Where that does not tell, since one
-//! law of the functions in them may turn one into the other, they are evaluated at points that hold
-//! for every run.
+//! They are compared term by term in expanded form. If that does not decide, because an identity of
+//! functions may convert one into the other, they are evaluated at points that are the same in
+//! every run.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,8 @@ pub(super) struct TermDifference {
     pub(super) only_second: Vec<Expr>,
 }
 
-/// Points at which expressions are compared, and those of them that must have a value.
+/// Number of points at which expressions are compared, and the least number of them that must have
+/// a value.
 const POINTS: usize = 64;
 const ENOUGH: usize = 8;
 
@@ -47,7 +48,7 @@ fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     let compiled =
         |expr: &Expr| CompiledFunction::new(expr, &symbols).map_err(|error| error.to_string());
     let (first, second) = (compiled(one)?, compiled(other)?);
-    // A linear congruence: the same points on every run.
+    // A linear congruential generator gives the same points in every run.
     let mut state = 0x2545_F491_4F6C_DD1D_u64;
     let mut next = || {
         state =
@@ -56,7 +57,7 @@ fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     };
     let mut compared = 0;
     for point in 0..POINTS {
-        // Roots want positive numbers, steps and signs both.
+        // Roots need positive arguments, steps and signs arguments of both signs.
         let place = |part: f64| {
             if point % 2 == 0 { 0.2 + 1.5 * part } else { 3.0 * part - 1.5 }
         };
@@ -75,9 +76,9 @@ fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     }
 }
 
-/// An expression with these definitions put in, which may use each other. `X'` is the time
-/// derivative of what `X` is defined as, where it has no definition of its own; of the letters in
-/// that `t` is the time, and `x` moves.
+/// An expression with these definitions substituted, which may use each other. `X'` is the time
+/// derivative of what `X` is defined as, unless it has a definition of its own; in that derivative
+/// `t` is the time, and `x` depends on it.
 ///
 /// # Errors
 /// A definition that uses itself; a result without a value.

@@ -3,9 +3,9 @@
 //!
 //! In: an [`Audit`]'s question, a list of [`Claim`]s, from a file by [`Claims`] or made in Rust.
 //! Out: the [`Audit`], a [`ClaimFinding`] for each: `reproduced` to every printed digit;
-//! `reproduced-under-assumption`, by the fewest of the things that the claim allows to be supposed,
-//! or by an unknown number solved for; `not-reproducible` for want of what is not printed;
-//! `inconsistent` with what is computed. What is printed is only ever compared with.
+//! `reproduced-under-assumption`, by the fewest of the suppositions that the claim allows, or by an
+//! unknown number solved for; `not-reproducible`, because a needed quantity is not printed;
+//! `inconsistent` with the computed value. Printed numbers serve only for comparison.
 //!
 //! ```
 //! use lindstedt::audit::{Claims, Verdict, audit};
@@ -54,7 +54,7 @@ use crate::symbol::Symbol;
 use quantity::Evaluator;
 use unknown::Trial;
 
-/// A publication and what it claims.
+/// A publication and its claims.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Claims {
     /// The publication.
@@ -63,7 +63,7 @@ pub struct Claims {
     pub claims: Vec<Claim>,
 }
 
-/// Claims with what is found of them.
+/// The claims of a publication with their findings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Audit {
     /// The publication.
@@ -84,9 +84,9 @@ pub struct ClaimFinding {
     pub tried: Vec<ClaimAttempt>,
     /// The value of the unknown that the claim requires, if it was solved for.
     pub demand: Option<RequiredValue>,
-    /// Quantities that are needed and not printed, if that decides.
+    /// Quantities that are needed and not printed, if they decide the verdict.
     pub missing: Vec<String>,
-    /// The reason why the verdict is what it is, sentence by sentence.
+    /// The reasons for the verdict, sentence by sentence.
     pub evidence: Vec<String>,
 }
 
@@ -104,7 +104,7 @@ pub struct ClaimAttempt {
 }
 
 impl ClaimAttempt {
-    /// Whether all of it is reproduced.
+    /// Whether every entry is reproduced.
     pub fn is_reproduced(&self) -> bool {
         self.reproduced.iter().all(|entry| *entry)
     }
@@ -130,7 +130,7 @@ impl ClaimFinding {
         best.or(self.tried.first())
     }
 
-    /// Whether the verdict is the expected one: a claim that says nothing of that is expected to be
+    /// Whether the verdict is the expected one: a claim without an expected verdict should be
     /// reproduced.
     pub fn is_as_expected(&self) -> bool {
         match self.claim.expected {
@@ -157,14 +157,14 @@ impl Audit {
     }
 }
 
-/// Computes every claim, and holds those that share an unknown number against each other.
+/// Computes every claim, and compares those that share an unknown number.
 pub fn audit(claims: Claims) -> Audit {
     let mut findings: Vec<ClaimFinding> = claims.claims.into_iter().map(judge).collect();
     share_unknowns(&mut findings);
     Audit { title: claims.title, findings }
 }
 
-/// Combinations of suppositions that are tried at most.
+/// Largest number of combinations of suppositions that are tried.
 pub const MOST_COMBINATIONS: usize = 1000;
 
 /// Every choice of at most one supposition of each subject, the fewest first.
@@ -206,7 +206,7 @@ fn judge(claim: Claim) -> ClaimFinding {
             let found = solve_for(&claim, chosen, unknown)?;
             Some((found, chosen))
         });
-        // The first that lies where it may, or else the first of all.
+        // The first value within its range, or else the first of all.
         let demands: Vec<(RequiredValue, &Vec<&Supposition>)> = demands.collect();
         let within = demands.iter().find(|(found, _)| found.is_within);
         if let Some((found, chosen)) = within {
@@ -343,8 +343,7 @@ fn compare(
     }
 }
 
-/// Numbers that differ by no more than this part of their size neither rise nor fall, where a claim
-/// says nothing else.
+/// Default relative difference up to which numbers neither rise nor fall.
 pub const SAME: f64 = 1e-3;
 
 /// The unknown of a claim, under these suppositions.
@@ -363,7 +362,7 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
     })
 }
 
-/// The verdict on what was tried.
+/// The verdict that follows from the attempts.
 fn finding(
     claim: Claim,
     tried: Vec<ClaimAttempt>,
@@ -421,7 +420,7 @@ fn finding(
     ClaimFinding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
 }
 
-/// The computed values beside the printed ones, in words.
+/// The computed values compared with the printed ones, in words.
 fn computed_versus_printed(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
@@ -450,7 +449,7 @@ fn computed_versus_printed(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     each.collect()
 }
 
-/// A number beside the printed one.
+/// A number compared with the printed one, in words.
 fn number_versus_printed(entry: &PrintedEntry, printed: &Printed, number: f64) -> String {
     let read = entry.read_as.as_ref().map_or(String::new(), |text| format!(", read as {text}"));
     let computed = printed.formatted_alike(number, 6);
@@ -512,7 +511,7 @@ fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// Suppositions that are told of at most.
+/// Largest number of suppositions that are reported.
 const TOLD: usize = 8;
 
 /// The results of the other attempts, a sentence each.
@@ -523,7 +522,7 @@ fn other_attempts(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
         Some(PrintedStatement::Trend(_))
     );
     let told = tried.iter().enumerate().filter(|(index, one)| {
-        // The claim alone is told elsewhere, but for how much of it comes out.
+        // The claim alone is reported elsewhere, except for the number of its reproduced entries.
         let worth = *index > 0 || entries > 1 && !is_trend && tried.len() > 1;
         worth && one.computed.iter().any(Result::is_ok)
     });
@@ -546,7 +545,7 @@ fn other_attempts(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     match left_out {
         0 => told,
         _ => {
-            // The last is the one that reproduces, where one does.
+            // The last attempt is the one that reproduces, if any does.
             let last = told.last().cloned();
             let first = told.into_iter().take(TOLD - 1);
             let between = format!("{left_out} further suppositions do not make it come out");
@@ -555,7 +554,7 @@ fn other_attempts(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     }
 }
 
-/// Claims that share an unknown must ask for the same values of it.
+/// Checks that claims that share an unknown require the same values of it.
 fn share_unknowns(findings: &mut [ClaimFinding]) {
     let demanded = |finding: &ClaimFinding| {
         finding.demand.filter(|demand| demand.is_within && finding.verdict.is_reproduced())

@@ -1,8 +1,8 @@
 //! Rules for the options of a genetic algorithm: a table of options is checked rule by rule.
 //!
-//! The names are those of the toolbox in general use, and the rules what its documentation says of
-//! them: which functions take genes that are numbers, which constraints a population of bits can
-//! keep, what the penalties of the augmented Lagrangian act on.
+//! The names are those of the toolbox in general use, and the rules those of its documentation:
+//! which functions take genes that are numbers, which constraints a population of bits can keep,
+//! what the penalties of the augmented Lagrangian act on.
 
 /// Options whose values the rules know, as they are written in a file.
 #[cfg(any(feature = "toml", test))]
@@ -24,10 +24,10 @@ pub(super) const KNOWN: [&str; 12] = [
 /// A condition that an option sets on another one.
 struct Rule {
     option: &'static str,
-    /// The value that has the need; any where there is none.
+    /// The value to which the condition applies; `None` for any value.
     value: Option<&'static str>,
     needs: &'static str,
-    /// The values of that one which meet it.
+    /// The values of the other option that meet the condition.
     among: &'static [&'static str],
     because: &'static str,
 }
@@ -94,8 +94,7 @@ const RULES: [Rule; 8] = [
     },
 ];
 
-/// The rules that these options break, a sentence each; an option that is not stated breaks no
-/// rule.
+/// The rules that these options break, a sentence each; an option that is not given breaks no rule.
 pub(super) fn conflicts(settings: &[(String, String)]) -> Vec<String> {
     let stated = |name: &str| {
         settings.iter().find(|(option, _)| option == name).map(|entry| entry.1.as_str())

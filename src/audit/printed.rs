@@ -1,4 +1,4 @@
-//! A number as it is printed: its digits say how far it can be trusted.
+//! A number as it is printed: its digits tell its accuracy.
 //!
 //! In: text such as `0.8478`, `+0.99413`, `9.258e-8`, `7/1536`, `0.586 %` or `< 2 %`. Out: whether
 //! a computed number has these digits, rounded or cut off, lies within a tolerance, or on the right
@@ -17,7 +17,7 @@ pub enum Rounding {
     Rounded,
     /// Cut off behind the last one: `cut`.
     Cut,
-    /// In one of the two ways, each number in its own: `either`.
+    /// Either way, independently for each number: `either`.
     Either,
 }
 
@@ -56,22 +56,22 @@ pub enum Relation {
 pub struct Printed {
     /// The relation to the true number.
     pub relation: Relation,
-    /// Whether a bound belongs to what is allowed.
+    /// Whether the bound itself is allowed.
     with_bound: bool,
     /// The number.
     pub value: f64,
-    /// The fraction that it is, where it is written as one, or without a decimal point.
+    /// Its exact value, if it is written as a fraction or without a decimal point.
     exact: Option<Rational>,
-    /// Digits before the exponent without their sign, as they stand.
+    /// The digits before the exponent, as printed, without the sign.
     digits: String,
-    /// The value of one in those digits: 0.01 for per cent, 1e-8 before `e-8`.
+    /// The factor of those digits: 0.01 for per cent, 1e-8 for `e-8`.
     scale: f64,
     /// Whether it is printed in per cent.
     percent: bool,
 }
 
 impl Printed {
-    /// Reads a number; `None` if the text is none.
+    /// Reads a number; `None` if the text is not a number.
     ///
     /// ```
     /// use lindstedt::audit::{Printed, Rounding};
@@ -153,8 +153,8 @@ impl Printed {
         digits.skip_while(|digit| *digit == b'0').count()
     }
 
-    /// Whether a number is printed so: by its digits, or within a relative tolerance, or on the
-    /// right side of a bound. What is not a number never is.
+    /// Whether a number agrees with the printed one: by its digits, within a relative tolerance, or
+    /// on the right side of a bound. NaN never agrees.
     pub fn is_reproduced_by(
         &self,
         number: f64,
@@ -196,10 +196,10 @@ impl Printed {
         }
     }
 
-    /// The number with what stands behind the last printed digit cut off.
+    /// The number cut off after the last printed digit.
     fn cut(&self, number: f64) -> f64 {
         let unit = self.scale * 10_f64.powi(-(self.decimals() as i32));
-        // A digit that doubles miss by rounding is there.
+        // The factor keeps a last digit that rounding of doubles would lose.
         let units = (number.abs() / unit * (1.0 + 1e-13)).trunc();
         (units * unit).copysign(number)
     }
@@ -208,12 +208,12 @@ impl Printed {
         let written = format!("{:.*}", self.decimals(), number.abs() / self.scale);
         let zeros = written.bytes().all(|letter| !letter.is_ascii_digit() || letter == b'0');
         let written = written.trim_start_matches('0');
-        // No sign stands before a zero; a leading zero may be left out.
+        // A zero is printed without a sign; a leading zero may be left out.
         written == self.digits.trim_start_matches('0')
             && (zeros || (number < 0.0) == (self.value < 0.0))
     }
 
-    /// The middle of the interval of numbers that are printed so.
+    /// The middle of the interval of numbers with this printed form.
     pub(super) fn middle(&self, rounding: Rounding) -> f64 {
         let unit = self.scale * 10_f64.powi(-(self.decimals() as i32));
         match rounding {
@@ -224,7 +224,8 @@ impl Printed {
         }
     }
 
-    /// Another number in the same unit, with two digits more than are printed and at least so many.
+    /// Another number in the same unit, with two digits more than are printed, and at least `least`
+    /// digits.
     pub fn formatted_alike(&self, number: f64, least: usize) -> String {
         let digits = (self.significant_digits() + 2).max(least);
         match self.percent {

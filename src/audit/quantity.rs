@@ -1,8 +1,8 @@
 //! The quantities of a claim: the names that formulas may use, and the program that computes them.
 //!
-//! In: a [`ClaimComputation`] and the values of an entry. Out: what is computed, or what it lacks.
-//! The numbers come from where every other command has them: laws from
-//! [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts
+//! In: a [`ClaimComputation`] and the values of an entry. Out: the result, or the reason why there
+//! is none. The numbers have the same sources as in every other command: laws from
+//! [`method::solve`](crate::method::solve), true frequencies from verification, phases and contacts
 //! from [`impact`](crate::impact), rest times from its simulation.
 
 use std::cell::OnceCell;
@@ -26,9 +26,9 @@ use crate::series::taylor::taylor;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{DEFAULT_TOLERANCE, VerificationScope, judge_to, needed_values};
+use crate::verify::{DEFAULT_TOLERANCE, judge_motion, needed_values};
 
-/// The quantities that the program computes by name, beside the values that a file gives: the name,
+/// The quantities that the program computes by name, in addition to the values in a file: the name,
 /// its arguments, its meaning.
 pub const NAMES: [(&str, &str, &str); 29] = [
     ("frequency", "equation, its parameters, A", "omega by the method"),
@@ -89,7 +89,7 @@ pub enum Computed {
     Number(f64),
     /// A fraction.
     Exact(Rational),
-    /// Zero, as the coefficient of a term that the derived law could have and has not.
+    /// Zero, the coefficient of a term that the derived law does not contain.
     Absent,
     /// A formula.
     Formula(Expr),
@@ -98,7 +98,7 @@ pub enum Computed {
 }
 
 impl Computed {
-    /// As a number, where it is one.
+    /// The result as a number; `None` if it is not one.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -109,16 +109,16 @@ impl Computed {
     }
 }
 
-/// The reason why nothing is computed.
+/// The reason why a quantity is not computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotComputable {
-    /// These are not given.
+    /// These values are missing.
     Missing(BTreeSet<String>),
     /// There is no such number, for this reason.
     Refused(String),
 }
 
-/// Computes one question, for any entry and any value of an unknown.
+/// Computes one quantity, for any entry and any value of an unknown.
 pub(super) struct Evaluator<'a> {
     question: &'a ClaimComputation,
     law: OnceCell<Result<(Oscillator, Solution), String>>,
@@ -212,8 +212,8 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2
-    /// where none is asked for.
+    /// The swing of an impact, the pendulum if no equation is given, and its law, of order 2 if
+    /// none is given.
     fn swing(&self) -> Result<&(Oscillator, Solution), NotComputable> {
         let found = self.swing.get_or_init(|| {
             let words = |error: &dyn std::error::Error| error.to_string();
@@ -250,7 +250,7 @@ fn monomial(term: &Expr) -> Option<Monomial> {
 /// The coefficient of a product of powers in a derived law.
 ///
 /// # Errors
-/// A letter that the law does not have, or a power of it beyond the last one that was derived.
+/// A symbol that does not occur in the law, or a power of it beyond the last one that was derived.
 fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, NotComputable> {
     if law.terms().any(|(monomial, _)| monomial == wanted) {
         return Ok(Computed::Exact(law.coefficient(wanted)));
@@ -275,7 +275,7 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, NotCompu
     Ok(Computed::Absent)
 }
 
-/// The names of one evaluation and what they are.
+/// The names of one evaluation and their values.
 struct EvaluationScope<'a, 'b> {
     evaluator: &'b Evaluator<'a>,
     values: BTreeMap<Symbol, Expr>,
@@ -297,7 +297,7 @@ impl EvaluationScope<'_, '_> {
         formula.evaluate(&numbers).map_err(|error| refused(&error))
     }
 
-    /// The values of these names: all that are missing are told at once.
+    /// The values of these names; the error lists all that are missing.
     fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, NotComputable> {
         let (mut found, mut lacking) = (BTreeMap::new(), BTreeSet::new());
         for name in names {
@@ -366,7 +366,7 @@ impl EvaluationScope<'_, '_> {
                     NotComputable::Refused("the main mass alone never rests".to_owned())
                 })
             }
-            // The best value of this many generations ago is needed beside that of now.
+            // The best value of so many generations ago is needed as well as the present one.
             "stall_generation" => {
                 let [window] = self.numbers(["window"])?;
                 Ok(window + 1.0)
@@ -424,13 +424,12 @@ impl EvaluationScope<'_, '_> {
         }
     }
 
-    /// The formula and the true motion at the values, without the range of the formula.
+    /// The verification of the formula at the values, without its range.
     fn judged(&mut self) -> Result<crate::verify::Verification, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
-        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, VerificationScope::Motion)
-            .map_err(|error| refused(&error))
+        judge_motion(equation, solution, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.
@@ -495,7 +494,7 @@ impl EvaluationScope<'_, '_> {
             .ok_or_else(|| NotComputable::Refused("there is no impact".to_owned()))
     }
 
-    /// A main mass that nothing drives.
+    /// A main mass without a drive.
     fn primary(&mut self) -> Result<Primary, NotComputable> {
         let [mass, stiffness, damping] = self.numbers(["mass_ratio", "kappa", "delta"])?;
         Ok(Primary { mass, stiffness, damping, force: 0.0, frequency: 0.0 })
@@ -536,8 +535,8 @@ impl EvaluationScope<'_, '_> {
     }
 }
 
-/// The equation of motion of x that follows from these energies and this force, over what stands
-/// before x''.
+/// The equation of motion of x that follows from these energies and this force, divided by the
+/// coefficient of x''.
 fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Expr, String> {
     let [kinetic, potential, force] =
         parts.map(|part| identity::with_definitions(part, definitions));
@@ -566,7 +565,7 @@ const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 const QUANTITIES_OF_AN_IMPACT: [&str; 5] =
     ["_time_to_contact", "_speed", "_penetration", "_duration", "_period"];
 
-/// Whether the program computes something under this name.
+/// Whether the program computes a quantity of this name.
 pub(super) fn is_a_name(name: &str) -> bool {
     NAMES.iter().any(|(known, ..)| *known == name)
 }
@@ -590,7 +589,7 @@ fn arguments(equation: &Oscillator) -> Vec<Symbol> {
     std::iter::once(equation.coordinate).chain(equation.parameters.iter().copied()).collect()
 }
 
-/// Doubles as values.
+/// Converts doubles to exact values.
 fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, NotComputable> {
     let mut values = Values::default();
     for (name, number) in numbers {

@@ -1,8 +1,8 @@
-//! A number that is not printed, solved for: which values of it make a claim come out, and whether
-//! several claims can share one.
+//! A number that is not printed, solved for: the values with which a claim is reproduced, and
+//! whether several claims can share one.
 //!
-//! The values are looked for on a grid, by equal ratios where the range is positive, and between
-//! two points of it where what is computed passes what is printed; the ends of the range that
+//! The values are searched on a grid, of equal ratios if the range is positive, and between two of
+//! its points where the computed number passes the printed one; the ends of the range that
 //! reproduces are found by bisection. The first such range is taken.
 
 use super::claim::Unknown;
@@ -11,13 +11,13 @@ use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 /// The values of an unknown that a claim asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RequiredValue {
-    /// The unknown, and where it may lie.
+    /// The unknown, with its range.
     pub unknown: Unknown,
-    /// A value that reproduces what is printed.
+    /// A value that reproduces the printed numbers.
     pub value: f64,
-    /// The least and the greatest of them beside it.
+    /// The least and the greatest of the reproducing values around it.
     pub range: [f64; 2],
-    /// Whether it lies where it may.
+    /// Whether it lies within the range of the unknown.
     pub is_within: bool,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct Trial {
     pub(super) differences: Vec<f64>,
 }
 
-/// The values of the unknown for which a claim comes out, within its range or else beyond it.
+/// The values of the unknown with which a claim is reproduced, within its range or else beyond it.
 pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Option<RequiredValue> {
     let [low, high] = unknown.within;
     let by_ratio = low > 0.0;
@@ -69,7 +69,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     })
 }
 
-/// The first value on a grid that reproduces, and the range of those beside it.
+/// The first reproducing value on a grid, and the range of reproducing values around it.
 fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2])> {
     let trials: Vec<Trial> = grid.iter().map(|value| try_value(*value)).collect();
     for (index, trial) in trials.iter().enumerate() {
@@ -97,8 +97,8 @@ fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2
     None
 }
 
-/// The ends of the values that reproduce about one that does, no further than these neighbours but
-/// for those that reproduce too.
+/// The ends of the range of reproducing values around a given one; the search goes beyond a
+/// neighbour only if that reproduces too.
 fn range_about(
     value: f64,
     neighbours: [f64; 2],
@@ -107,7 +107,7 @@ fn range_about(
     let reproduces = |value: f64| try_value(value).reproduces;
     let end = |neighbour: f64| {
         let (mut inside, mut outside) = (value, neighbour);
-        // Wider than the grid: outwards by growing steps.
+        // Beyond the grid the steps grow.
         for _ in 0..60 {
             if !reproduces(outside) {
                 break;
@@ -127,8 +127,8 @@ fn range_about(
     (value, [low, high])
 }
 
-/// The value in a range that gives what is printed itself, where there is one number and it does;
-/// else the one that is known.
+/// The value in a range that gives exactly the printed number, if there is a single number and such
+/// a value; else the known value.
 fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64 {
     let difference = |value: f64| match try_value(value).differences[..] {
         [difference] => difference,

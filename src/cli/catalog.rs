@@ -3,10 +3,10 @@
 use clap::Args;
 use lindstedt::catalog::{CATALOG, find, nearest};
 use lindstedt::export::text::fitted;
-use lindstedt::export::{catalog, html, json};
+use lindstedt::export::{catalog, json};
 
 use super::answer::{no_such, page};
-use super::files::width;
+use super::files::{OF_FILES, width};
 use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// List the classical oscillators that `derive` knows by name
@@ -48,12 +48,13 @@ fn run(arguments: &CatalogArguments) -> Result<Outcome, Failure> {
             Failure::Usage(format!("the catalogue has no `{name}`\n  help: {help}"))
         })?),
     };
+    let width = width(arguments.common.output.as_deref());
     let text = match arguments.common.format() {
-        // A line for each, however long.
-        Format::Text if arguments.name.is_none() => catalog::text(entries),
-        Format::Text => fitted(&catalog::text(entries), width(arguments.common.output.as_deref())),
+        // A line for each, however long, but in a narrow terminal.
+        Format::Text if arguments.name.is_none() && width >= OF_FILES => catalog::text(entries),
+        Format::Text => fitted(&catalog::text(entries), width),
         Format::Latex => arguments.common.latex(catalog::latex(entries)),
-        Format::Html => page(None, None, |page| html::lines(&catalog::text(entries), page)),
+        Format::Html => page(None, None, |page| catalog::html(entries, page)),
         Format::Json => json_text(&json::catalog(entries))?,
         format => no_such(format)?,
     };

@@ -8,7 +8,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
-use lindstedt::export::{code, html, json, latex, text};
+use lindstedt::export::code::{self, CodeStyle, Language};
+use lindstedt::export::{html, json, latex, text};
 use lindstedt::expr::{Expr, ResultSymbols, parse_expression};
 use lindstedt::method::table::{Choice, MethodEntry, that_take};
 use lindstedt::method::{self, Options, Reason, Refusal};
@@ -272,17 +273,17 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
     let text = match arguments.common.format() {
         Format::Text => {
             let space = if arguments.steps { "\n" } else { "" };
-            let answer = text::solution(&solution, verification.as_ref(), tolerance);
+            let answer = text::solution(&solution, verification.as_ref());
             text::fitted(&(derivation + space + &answer), width(arguments.common.output.as_deref()))
         }
         Format::Html => {
-            let document = report::solution(&solution, verification.as_ref(), tolerance);
+            let document = report::solution(&solution, verification.as_ref());
             let derivation = Some((&solution, arguments.steps));
             page(picture, derivation, |page| html::document(&document, page))
         }
         Format::Svg => drawn(picture)?,
         Format::Latex => {
-            let document = report::solution(&solution, verification.as_ref(), tolerance);
+            let document = report::solution(&solution, verification.as_ref());
             arguments.common.latex(derivation + &latex::document(&document))
         }
         format @ Format::Csv => no_such(format)?,
@@ -294,8 +295,9 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
             json_text(&document)?
         }
         Format::Code(language) => {
-            let program =
-                code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
+            let prefix = prefix(language, arguments.common.output.as_deref());
+            let style = CodeStyle { language, prefix: &prefix };
+            let program = code::solution(&oscillator, &solution, verification.as_ref(), style);
             let program = program.map_err(|reason| Failure::with_advice(&reason, reason.help()))?;
             let space = if derivation.is_empty() { "" } else { "\n" };
             language.comment(&(derivation + space)) + &program
@@ -713,4 +715,18 @@ fn picture(
         caption: &caption,
     };
     Ok(motion_figure(&figure)?)
+}
+
+/// The beginning of the names of functions, so that the programs of several files can be one: in C,
+/// which has no modules, the name of the file.
+fn prefix(language: Language, output: Option<&Path>) -> String {
+    let stem = output.and_then(|path| path.file_stem()?.to_str());
+    match (language, stem) {
+        (Language::C, Some(stem))
+            if stem.starts_with(|first: char| first.is_ascii_alphabetic()) =>
+        {
+            stem.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_") + "_"
+        }
+        _ => String::new(),
+    }
 }

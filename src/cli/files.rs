@@ -16,10 +16,12 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// The largest number of characters in a line of a file.
+pub(super) const OF_FILES: usize = 120;
+
 /// The largest number of characters in a line of the result: the width of the terminal that shows
 /// it, or the value of `COLUMNS`; 120 in a file or a pipe.
 pub(super) fn width(output: Option<&Path>) -> usize {
-    const OF_FILES: usize = 120;
     const NARROWEST: usize = 40;
     let asked = std::env::var("COLUMNS").ok().and_then(|text| text.trim().parse().ok());
     let terminal = || {

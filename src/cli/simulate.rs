@@ -39,6 +39,9 @@ pub struct SimulateArguments {
     /// How long it is followed; 50 without it
     #[arg(long, value_name = "T", value_parser = super::positive, allow_hyphen_values = true)]
     pub(super) until: Option<f64>,
+    /// Steps of the integrator after which it ends; 250 000 without it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(super) step_limit: Option<u32>,
     /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
     #[arg(long, value_name = "NAME=VALUE,...")]
     pub(super) at: Vec<String>,
@@ -125,6 +128,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     let foreign = [
         ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
         ("--until", arguments.until.is_some(), "duration in [run]"),
+        ("--step-limit", arguments.step_limit.is_some(), "step_limit in [run]"),
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
         ("--every", arguments.every.is_some(), "--sample"),
         ("--section", arguments.section.is_some(), "--sample"),

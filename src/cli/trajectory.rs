@@ -63,8 +63,12 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
     let known = report.known_until.filter(|_| course.section.is_none());
     let warning = match (broken, doubt) {
         (Some(motion), _) => Some(format!(
-            "stopped early, what there is is kept: {}",
-            in_words(motion.reason())
+            "stopped early, what there is is kept: {}{}",
+            in_words(motion.reason()),
+            match motion.reason() {
+                PathEnd::StepLimit => ", which --step-limit raises",
+                _ => "",
+            }
         )),
         (None, Some(doubt)) => Some(doubt.to_string()),
         (None, None) => known.map(|known| {
@@ -145,6 +149,9 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
     course.interrupt = Interrupt::from_flag(&STOP);
     if let Some(until) = asked.until {
         course.duration = until;
+    }
+    if let Some(limit) = asked.step_limit {
+        course.step_limit = limit as usize;
     }
     if course.after > 0.0 && course.after >= course.duration {
         return Err(Failure::Refused(format!(

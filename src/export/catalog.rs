@@ -1,11 +1,15 @@
 //! The catalogue of classical oscillators as text and as LaTeX; as a document it is in
 //! `export::json`.
 
+#[cfg(feature = "html")]
+use super::html;
 use super::latex;
+#[cfg(feature = "html")]
+use super::latex::LatexTable;
 use crate::catalog::{CatalogEntry, methods};
 
-/// One entry with its equation, its source, what is published, and which methods apply; of several
-/// a line each with name, equation and title.
+/// A single entry with its equation, its source, the published law and the methods that apply; for
+/// several entries a line each with name, equation and title.
 ///
 /// ```
 /// use lindstedt::catalog::CATALOG;
@@ -28,7 +32,7 @@ pub fn text(entries: &[CatalogEntry]) -> String {
     entries.iter().map(line).collect()
 }
 
-/// Each entry as an item of a list: its equation and what is published.
+/// Each entry as an item of a list: its equation and the published law.
 ///
 /// ```
 /// use lindstedt::catalog::CATALOG;
@@ -37,6 +41,31 @@ pub fn text(entries: &[CatalogEntry]) -> String {
 pub fn latex(entries: &[CatalogEntry]) -> String {
     let items: Vec<String> = entries.iter().map(item).collect();
     format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
+}
+
+/// The entries as a page: one as its text, several as a table of names, equations and titles.
+///
+/// ```
+/// use lindstedt::catalog::CATALOG;
+/// use lindstedt::export::{catalog::html, html::HtmlPage};
+/// assert!(html(CATALOG, &HtmlPage::default()).contains("<td>duffing</td><td><math"));
+/// ```
+#[cfg(feature = "html")]
+pub fn html(entries: &[CatalogEntry], page: &html::HtmlPage) -> String {
+    if let [entry] = entries {
+        return html::lines(&entry_as_text(entry), page);
+    }
+    let row = |entry: &CatalogEntry| {
+        let equation = format!("${}$", latex::typed(entry.equation));
+        vec![entry.name.to_owned(), equation, entry.title.to_owned()]
+    };
+    let table = LatexTable {
+        places: "lll".to_owned(),
+        head: ["name", "equation", "title"].map(str::to_owned).to_vec(),
+        rows: entries.iter().map(row).collect(),
+        framed: false,
+    };
+    html::table(&table, page)
 }
 
 fn entry_as_text(entry: &CatalogEntry) -> String {
@@ -87,7 +116,7 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
     }
 }
 
-/// Equation and published law; titles and sources hold nothing that LaTeX reads as a command.
+/// Equation and published law; titles and sources contain no LaTeX commands.
 fn item(entry: &CatalogEntry) -> String {
     let law = entry.published.map(|law| {
         let law = law.to_string();

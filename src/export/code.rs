@@ -110,9 +110,38 @@ impl NoCode {
     }
 }
 
+/// The language of a program, and the letters in front of the names of its functions, which keep
+/// several programs apart in a language without modules.
+///
+/// ```
+/// use lindstedt::export::code::{self, CodeStyle, Language};
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options::default())?;
+/// let style = CodeStyle { language: Language::C, prefix: "pendulum_" };
+/// let text = code::solution(&pendulum, &solution, None, style)?;
+/// assert!(text.contains("double pendulum_displacement(double t, double A)"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeStyle<'a> {
+    /// The language.
+    pub language: Language,
+    /// The beginning of the name of every function; may be empty.
+    pub prefix: &'a str,
+}
+
+impl From<Language> for CodeStyle<'_> {
+    fn from(language: Language) -> Self {
+        Self { language, prefix: "" }
+    }
+}
+
 /// The source text of an answer for `oscillator`: what is known of it as a comment, then
-/// `angular_frequency`, `displacement` and `velocity`. Where only numbers solve the law they are
-/// those at the values of the verification; `tolerance` is that of its verdict.
+/// `angular_frequency`, `displacement` and `velocity`, formulas all with the same
+/// arguments, behind the time of the motion. Where only numbers solve the law they are
+/// those at the values of the verification.
 ///
 /// # Errors
 /// [`NoCode`], where the answer is not a formula for a periodic motion.
@@ -123,20 +152,20 @@ impl NoCode {
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
-/// let text = code::solution(&pendulum, &solution, None, 0.01, Language::Python)?;
+/// let text = code::solution(&pendulum, &solution, None, Language::Python)?;
 /// assert!(text.contains("omega_squared = 1 - A**2/8"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn solution(
+pub fn solution<'a>(
     oscillator: &Oscillator,
     solution: &Solution,
     verification: Option<&Verification>,
-    tolerance: f64,
-    language: Language,
+    style: impl Into<CodeStyle<'a>>,
 ) -> Result<String, NoCode> {
     let _letters = solution.letters().in_force();
-    let program = program::of_solution(oscillator, solution, verification, tolerance)?;
-    writer::source(&program, language.syntax())
+    let program = program::of_solution(oscillator, solution, verification)?;
+    let CodeStyle { language, prefix } = style.into();
+    writer::source(&program.with_prefix(prefix), language.syntax())
 }
 
 /// A language: how everything looks in it.
@@ -168,6 +197,9 @@ struct Syntax {
     result: [&'static str; 2],
     /// The size of a variable in place of itself.
     size: fn(&str) -> String,
+    /// The statement that keeps compilers from warning of an argument that is not used, where they
+    /// do.
+    unused: Option<fn(&str) -> String>,
     /// Ends a function without a value where a variable is not positive, for a reason in words;
     /// between them the variable that is spoilt where all of it is computed at once.
     positive: fn(&str, &str, &str) -> String,
@@ -223,7 +255,7 @@ struct UsedRoutines<'a> {
     /// Its text.
     text: &'a str,
     /// The functions that it consists of.
-    routines: &'a [&'static str],
+    routines: &'a [&'a str],
 }
 
 impl UsedRoutines<'_> {
@@ -254,9 +286,24 @@ struct Program {
     routines: Vec<Routine>,
 }
 
+impl Program {
+    /// Puts these letters in front of the name of every function.
+    fn with_prefix(mut self, prefix: &str) -> Self {
+        for routine in &mut self.routines {
+            routine.name.insert_str(0, prefix);
+            for statement in &mut routine.body {
+                if let Statement::Variable(_, Value::Call(name, _)) = statement {
+                    name.insert_str(0, prefix);
+                }
+            }
+        }
+        self
+    }
+}
+
 /// A function of numbers.
 struct Routine {
-    name: &'static str,
+    name: String,
     /// Its description in words.
     about: String,
     arguments: Vec<Symbol>,
@@ -273,6 +320,8 @@ enum Statement {
     /// Without this being positive there is no value, for the reason given; what the value is
     /// computed with is the second.
     Positive(Symbol, Symbol, String),
+    /// An argument that the function does not need.
+    Unused(Symbol),
 }
 
 /// The value that a function returns.
@@ -287,5 +336,5 @@ enum Value {
     /// Factors in this order.
     Product(Vec<Value>),
     /// A function of the program.
-    Call(&'static str, Vec<Symbol>),
+    Call(String, Vec<Symbol>),
 }

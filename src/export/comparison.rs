@@ -6,7 +6,7 @@ use crate::symbol::letters::FREQUENCY;
 use crate::verify::comparison::Comparison;
 
 /// The table: the methods that apply with their numbers and formulas, then those that do not, with
-/// the reason. What has no value is empty.
+/// the reason. Cells without a value are empty.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};

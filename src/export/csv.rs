@@ -1,4 +1,4 @@
-//! Comma-separated values: every number to its last digit, an empty cell where there is none.
+//! Comma-separated values: every number to its last digit, an empty cell for a missing one.
 
 use std::fmt::Display;
 
@@ -15,7 +15,7 @@ pub(super) fn cell<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// Words as they may stand between commas (RFC 4180).
+/// Text quoted for a cell if necessary (RFC 4180).
 pub(super) fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -30,7 +30,7 @@ pub(super) fn head<N: Display, U: Display>(columns: &[(N, U)]) -> String {
     format!("# units: {}\n{}", units.join(", "), line(columns.iter().map(|(name, _)| name)))
 }
 
-/// A table that ends early, or is not to be trusted, says so in a comment.
+/// The comment at the end of a table that ends early or is not to be trusted; empty otherwise.
 pub(super) fn end(complete: bool, stop: impl Display, doubt: Option<Doubt>) -> String {
     match doubt {
         _ if !complete => format!("# incomplete: {stop}\n"),

@@ -1,6 +1,6 @@
-//! Figures to look at: curves of numbers in, one SVG text out. The drawing is kuva's; here are the
-//! checks of the data, the house style, and three figures ready made, [`impact_figure`],
-//! [`motion_figure`] and [`backbone_figure`].
+//! Figures: curves of numbers in, one SVG text out. The library kuva draws; this module checks the
+//! data, sets the style, and has three complete figures, [`impact_figure`], [`motion_figure`] and
+//! [`backbone_figure`].
 //!
 //! Equal numbers give equal bytes. Colours are those of Okabe and Ito, *Color Universal Design*
 //! (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a
@@ -71,28 +71,27 @@ impl CurveStyle {
     pub const MARKED_POINTS: Self = Self("#d55e00", POINTS, 4.5);
     /// A closed form point by point.
     pub const SLOW: Self = Self("#000000", POINTS, 1.0);
-    /// Points of which many make a pattern.
+    /// Points that form a pattern together.
     pub const DOTS: Self = Self("#0072b2", POINTS, 1.1);
-    /// Others that do.
+    /// A second kind of points that stand out.
     pub const SECOND_MARKED_POINTS: Self = Self("#000000", POINTS, 4.5);
     /// A third kind of points that stand out.
     pub const THIRD_MARKED_POINTS: Self = Self("#009e73", POINTS, 4.5);
-    /// A fourth kind.
+    /// A fourth kind of points that stand out.
     pub const FOURTH_MARKED_POINTS: Self = Self("#cc79a7", POINTS, 4.5);
-    /// Motions that were simulated, beside the curve that they should lie on: small, light and over
-    /// it.
+    /// Simulated motions, drawn over the curve on which they should lie: small and light.
     pub const SIMULATED: Self = Self("#56b4e9", POINTS, 3.2);
-    /// Motions that do not last: in the colour of [`Self::DIFFERENCE`], dashed.
+    /// Unstable motions: in the colour of [`Self::DIFFERENCE`], dashed.
     pub const UNSTABLE: Self = Self("#0072b2", "5 3", 1.3);
     /// Free motions without damping: thin and grey.
     pub const BACKBONE: Self = Self("#777777", "none", 0.9);
-    /// One of many curves, of which only the whole is to be seen.
+    /// One of many curves, which need not be distinguished.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     #[cfg(feature = "plot")]
     const GUIDE: Self = Self("#777777", "none", 1.0);
 }
 
-/// In place of dashes: points alone.
+/// The value that stands for points in place of a dash pattern.
 const POINTS: &str = "points";
 
 /// One line of a panel.
@@ -138,7 +137,7 @@ pub struct Panel<'a> {
     /// Quantity and, last and in parentheses, unit: `time t (s)`. Very large or small numbers are
     /// divided by a power of ten, which is named there: `time t (10⁻⁶ s)`.
     pub x_label: &'a str,
-    /// Quantity and unit of the ordinate, likewise.
+    /// Quantity and unit of the ordinate, in the same form.
     pub y_label: &'a str,
     /// Division of the abscissa.
     pub x_scale: Scale,
@@ -176,7 +175,7 @@ pub enum FigureError {
     /// The library was built without the feature `plot`.
     #[error("this build draws no pictures: build it with the feature `plot`")]
     LeftOut,
-    /// A motion that is drawn cannot be followed.
+    /// A motion to be drawn cannot be followed.
     #[error(transparent)]
     Study(#[from] MaterialsError),
 }
@@ -357,8 +356,8 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
 }
 
 /// omega against the amplitude, every method over the true motion, and below it the error on a
-/// logarithmic axis. Methods with one and the same law share a curve, and the caption names them.
-/// `marked` is the amplitude of the table.
+/// logarithmic axis. Methods with the same law share a curve, and the caption names them. `marked`
+/// is the amplitude of the table.
 ///
 /// # Errors
 /// As [`figure`].
@@ -432,7 +431,7 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
 /// Relative difference of a curve and the truth, in per cent, at the amplitudes that both have:
 /// either may begin later than the other.
 fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    /// Errors in per cent below which rounding of truth and formula shows.
+    /// Error in per cent below which the rounding of truth and formula is visible.
     const LEAST_ERROR: f64 = 1e-10;
     let error = |&(amplitude, frequency): &(f64, f64)| {
         let truth = truth.iter().find(|point| point.0 == amplitude)?.1;

@@ -1,6 +1,6 @@
 //! A study of friction as a table of comma-separated values, and as a picture.
 //!
-//! In: a [`FrictionStudy`]. Out: the rows of the paper's Table 1 beside the computed ones; sgn and
+//! In: a [`FrictionStudy`]. Out: the rows of the paper's Table 1 with the computed ones; sgn and
 //! arctangent near zero, and the two motions near rest. As text and LaTeX it is in
 //! [`text`](super::text) and [`latex`](super::latex), as a document in `export::json`.
 
@@ -12,8 +12,8 @@ use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Simulation, friction::arctangent};
 
-/// The two laws at every speed, beside what the paper prints there; a first line of comment has the
-/// units.
+/// The two laws at every speed, with the entries that the paper prints there; the first line is a
+/// comment with the units.
 ///
 /// ```
 /// use lindstedt::impact::friction::{FrictionSetup, study};

@@ -9,11 +9,12 @@ mod math;
 mod words;
 
 use math::Typesetter;
-use words::{definitions, escaped, list, verdict};
+use words::{definitions, list, verdict};
 
 use super::latex::{self, LatexTable, Setting};
-use super::{steps, text};
+use super::{escaped, steps, text};
 use crate::decimal::significant;
+use crate::expr::parse_equation;
 use crate::report::{Block, Document, MethodRow};
 use crate::solution::Solution;
 use crate::verify::comparison::Refused;
@@ -39,7 +40,7 @@ pub struct HtmlPage<'a> {
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
-/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// let document = lindstedt::report::solution(&solution, None);
 /// let page = html::document(&document, &HtmlPage { title: "Duffing", ..HtmlPage::default() });
 /// assert!(page.starts_with("<!doctype html>") && page.contains("<math"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -75,7 +76,8 @@ fn heading(page: &HtmlPage) -> String {
     }
 }
 
-/// A text whose lines stand below each other as they are, as a page.
+/// A report that is a text, as a page: its equations set, the first lines of its paragraphs as
+/// headings, and what is indented below them as it is.
 ///
 /// ```
 /// use lindstedt::export::html::{self, HtmlPage};
@@ -84,7 +86,43 @@ fn heading(page: &HtmlPage) -> String {
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
 pub fn lines(text: &str, page: &HtmlPage) -> String {
-    page_around(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
+    let typesetter = Typesetter::default();
+    let mut body = heading(page);
+    for paragraph in text.split_inclusive("\n\n") {
+        let mut rest = paragraph.trim_end_matches('\n');
+        while let Some((line, others)) = split_equation(rest) {
+            body += &typesetter.display(&[latex::typed(line)]);
+            rest = others;
+        }
+        if let Some((line, others)) = rest.split_once('\n')
+            && !line.starts_with(' ')
+            && others.starts_with(' ')
+        {
+            body += &format!("<h3>{}</h3>\n", escaped(line));
+            rest = others;
+        }
+        if !rest.is_empty() {
+            body += &format!("<pre>{}\n</pre>\n", escaped(rest));
+        }
+    }
+    page_around(&body, page)
+}
+
+/// The first line, where it is an equation of motion, and the others.
+fn split_equation(text: &str) -> Option<(&str, &str)> {
+    let (line, others) = text.split_once('\n').unwrap_or((text, ""));
+    let line = line.trim();
+    let is_equation = line.contains("''") && parse_equation(line).is_ok();
+    is_equation.then_some((line, others))
+}
+
+/// A table as a page: its cells are LaTeX of running text.
+pub(super) fn table(table: &LatexTable, page: &HtmlPage) -> String {
+    let typesetter = Typesetter::default();
+    let mut body =
+        Body { typesetter: &typesetter, text: heading(page), rows: vec![], titled: true };
+    body.table(table);
+    page_around(&body.text, page)
 }
 
 /// The page around its body.
@@ -194,9 +232,8 @@ impl Body<'_> {
             Block::Detail(words) => paragraph(words.trim_start()),
             Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
-            Block::Judged { verification, series_of_omega, hbar, tolerance } => {
-                let (of, facts) =
-                    text::judgement(verification, *series_of_omega, *hbar, *tolerance);
+            Block::Judged { verification, series_of_omega, hbar } => {
+                let (of, facts) = text::judgement(verification, *series_of_omega, *hbar);
                 heading(&of) + &definitions("", &facts)
             }
             Block::Truth { at, frequency, .. } => {

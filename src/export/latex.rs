@@ -1,4 +1,4 @@
-//! Documents as LaTeX: equations, tables, and what is said beside them as comments.
+//! Documents as LaTeX: equations, tables, and the remaining text as comments.
 //!
 //! In come a result or its document of [`report`], or an expression alone; out goes text to be
 //! pasted into an article. The numbers are those of the text format.
@@ -28,7 +28,7 @@ use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::{Comparison, Refused};
-use crate::verify::{DEFAULT_TOLERANCE, Verdict, Verification};
+use crate::verify::{Verdict, Verification};
 
 /// A sum with its terms in order.
 pub(super) fn sum(sum: &Sum) -> String {
@@ -40,7 +40,7 @@ pub(super) fn sum(sum: &Sum) -> String {
     sum.written(exact, decimal)
 }
 
-/// A constant; what must be a rounded number with fifteen of its digits.
+/// A constant; a number that must be rounded is printed with fifteen digits.
 fn constant(value: &Expr) -> String {
     match long_fraction(value) {
         Some(number) => expression(&Expr::number(rounded_fraction(number, 15))),
@@ -86,8 +86,8 @@ pub fn typed(text: &str) -> String {
     }
 }
 
-/// Words that are a formula, such as `1 - A^2/8` or `x'' + sin(x) = 0`, as LaTeX; `None` where they
-/// are words.
+/// Words that are a formula, such as `1 - A^2/8` or `x'' + sin(x) = 0`, as LaTeX; `None` if they
+/// are plain words.
 pub(super) fn formula_in_words(words: &str) -> Option<String> {
     let signs = ["^", "*", "(", " + ", " - ", " = "];
     let is_formula = signs.iter().any(|sign| words.contains(sign))
@@ -96,7 +96,7 @@ pub(super) fn formula_in_words(words: &str) -> Option<String> {
     is_formula.then(|| typed(words))
 }
 
-/// The derived formula, and the verdict where it was judged, to be pasted into an article.
+/// The derived formula, and its verification if there is one, to be pasted into an article.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -109,11 +109,10 @@ pub(super) fn formula_in_words(words: &str) -> Option<String> {
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     let _letters = solution.letters().in_force();
-    // A verdict is reported with the default tolerance.
-    document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
+    document(&report::solution(solution, verification))
 }
 
-/// Every method in one table; those that do not apply stand in comments below it.
+/// Every method in one table; those that do not apply are listed in comments below it.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};
@@ -128,14 +127,14 @@ pub fn comparison(comparison: &Comparison) -> String {
     document(&report::comparison(comparison))
 }
 
-/// A document as LaTeX: comments, the equations in one `align*`, and each table where it stands.
+/// A document as LaTeX: comments, the equations in one `align*`, and each table at its place.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
-/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// let document = lindstedt::report::solution(&solution, None);
 /// assert_eq!(lindstedt::export::latex::document(&document), lindstedt::export::latex::solution(&solution, None));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -156,7 +155,7 @@ pub fn packages(text: &str) -> &'static str {
     }
 }
 
-/// Equations and tables as a document of its own, which compiles as it is.
+/// Equations and tables as a complete document, which compiles as it is.
 ///
 /// ```
 /// let document = lindstedt::export::latex::standalone("\\begin{align*}\nx &= 1\n\\end{align*}\n");
@@ -170,7 +169,7 @@ pub fn standalone(text: &str) -> String {
     )
 }
 
-/// The place of a comment among those that stand together.
+/// The rank of a comment among those of one group.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Note,
@@ -187,7 +186,7 @@ fn zero_is(relation: &Sum) -> String {
     format!("0 &= {}", expression(&Expr::from(&polynomial)))
 }
 
-/// A method that does not apply, and why.
+/// A method that does not apply, and the reason.
 fn not_applicable(refused: &Refused) -> String {
     format!("not applicable: {}: {}", refused.method.title(), refused.reason)
 }
@@ -221,8 +220,8 @@ pub(super) enum Setting {
     Words,
 }
 
-/// How a block is set, here and wherever formulas are handed on as LaTeX: long equations in several
-/// rows.
+/// The typesetting of a block, in LaTeX and in other formats that use its formulas: long equations
+/// in several rows.
 pub(super) fn setting(block: &Block) -> Setting {
     match unbroken(block) {
         Setting::Equations(formulas) => {
@@ -232,7 +231,7 @@ pub(super) fn setting(block: &Block) -> Setting {
     }
 }
 
-/// How a block is set, each equation in one row.
+/// The typesetting of a block, with each equation in one row.
 fn unbroken(block: &Block) -> Setting {
     let equation_of =
         |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
@@ -309,7 +308,7 @@ impl LatexPage {
         self.write_words(block);
     }
 
-    /// The words of a block, as comments; an article says the rest in words of its own.
+    /// The words of a block, as comments; other words are left out, because an article has its own.
     fn write_words(&mut self, block: &Block) {
         match block {
             Block::Title { words, amplitude } => {
@@ -320,8 +319,8 @@ impl LatexPage {
             Block::Value { name, source: Some(source), .. } => {
                 self.comment(Rank::Note, format!("{name}: {source}"))
             }
-            Block::Judged { verification, series_of_omega, tolerance, .. } => {
-                self.comment(Rank::Verdict, judged(verification, *series_of_omega, *tolerance))
+            Block::Judged { verification, series_of_omega, .. } => {
+                self.comment(Rank::Verdict, judged(verification, *series_of_omega))
             }
             Block::Truth { equation, frequency, .. } => {
                 self.comment(Rank::Note, comparison::truth(equation, frequency))
@@ -347,7 +346,7 @@ impl LatexPage {
         lines.for_each(|words| self.comment(rank, words));
     }
 
-    /// Writes what waits: comments, and the equations with the laws behind the question.
+    /// Writes the pending comments, and the equations with the laws after the equation of motion.
     fn flush(&mut self) {
         let mut comments = std::mem::take(&mut self.comments);
         comments.sort_by_key(|comment| comment.0);
@@ -363,7 +362,7 @@ impl LatexPage {
 }
 
 /// The verdict in one line.
-fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: f64) -> String {
+fn judged(verification: &Verification, series_of_omega: Option<f64>) -> String {
     let error = verification.relative_error.map(|error| match error.abs() < 1e-9 {
         true => super::text::percent(error),
         false => decimal(100.0 * error) + " %",
@@ -376,13 +375,11 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: 
         error.as_deref().unwrap_or("none"),
         of_frequency(verification.judged_on),
         other.unwrap_or_default(),
-        verification
-            .verdict_on_both(tolerance)
-            .unwrap_or_else(|| verification.verdict.name().to_owned())
+        verification.verdict_on_both().unwrap_or_else(|| verification.verdict.name().to_owned())
     )
 }
 
-/// Harmonics as they are set.
+/// The notation of harmonics in LaTeX.
 pub(super) const NOTATION: Notation = Notation {
     wave: |function, k, phase| match k {
         1 => format!("\\{function} {}", symbol(phase)),

@@ -12,13 +12,13 @@ use crate::impact::primary::{PrimaryRow, PrimaryStop, UndampedAndLocked};
 use crate::impact::sweep::Spacing;
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
-/// The points of a curve.
+/// Number of points of a curve.
 const POINTS: u32 = 2000;
 
 /// Number of swings of the locked main mass that are drawn large.
 const FIRST_SWINGS: f64 = 6.0;
 
-/// The times of a table: those asked for, or equal steps and every touch and release.
+/// The times of a table: those requested, or equal steps and every touch and release.
 fn times(report: &PrimaryReport) -> Vec<f64> {
     if !report.samples.is_empty() {
         return report.samples.to_vec();
@@ -60,8 +60,8 @@ pub fn csv(report: &PrimaryReport) -> String {
     text + &end(motion.is_complete(), motion.stop, report.doubt())
 }
 
-/// A row for every motion of a sweep: the values that are swept, in their own units, then what came
-/// of it. Of a motion that was never begun the places stay empty.
+/// A row for every motion of a sweep: the swept values, in their own units, then the results, which
+/// are empty for a motion that was not begun.
 ///
 /// ```
 /// use lindstedt::report::PrimarySweepReport;
@@ -105,7 +105,7 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
     text
 }
 
-/// The rest time of a motion that nothing drives.
+/// The rest time of a motion without a drive; `None` for a driven one or one that does not rest.
 pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
     row.rest_time.ok().filter(|_| !row.is_driven())
 }
@@ -138,7 +138,7 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let energy: Points =
         states.iter().map(|(t, state)| (t * second, motion.case.energy(*state))).collect();
     let [locked, without] = [motion.case.primary.mass + 1.0, motion.case.primary.mass];
-    // The first swings whole, and how all of them decay.
+    // The first swings are drawn completely, and of all swings the decay.
     let first: Vec<f64> = states
         .iter()
         .map(|(t, _)| *t)
@@ -156,7 +156,7 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         [locked, without].map(|mass| decay_alone(report, mass, &some_times));
     let own = |points| curve("with its damper", points, CurveStyle::DIFFERENCE);
     let (mut all, mut some) = (vec![own(&with)], vec![own(&early)]);
-    // Driven, the closed forms are those of the long run alone.
+    // With a drive the closed forms hold only in the long run.
     if motion.case.primary.force == 0.0 {
         some.insert(0, curve("without", &swings_without, CurveStyle::RUNGE_KUTTA));
         some.insert(1, curve("damper locked", &locked_swings, CurveStyle::SECOND_FORMULA));
@@ -204,7 +204,7 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Points {
     times.iter().map(|t| (t * units.time(), height(*t))).collect()
 }
 
-/// The amplitude of these swings; `None` if the mass creeps back.
+/// The amplitude of these swings; `None` if the mass is overdamped.
 fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Points> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
@@ -215,8 +215,8 @@ fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Point
     points.collect()
 }
 
-/// The amplitude of the main mass in the long run, or its rest time where nothing drives it, over
-/// the values of one parameter.
+/// The amplitude of the main mass in the long run, or its rest time without a drive, over the
+/// values of one parameter.
 ///
 /// # Errors
 /// More than one parameter, or as [`figure`].
@@ -245,7 +245,7 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         let rows = axis.values().iter().zip(report.rows.iter().zip(report.units));
         let mut points: Points =
             rows.filter_map(|(place, (row, units))| Some((*place, value(row, units)?))).collect();
-        // A list may go to and fro, a curve does not.
+        // The values of a list need not be sorted, those of a curve must be.
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         points
     };

@@ -8,8 +8,8 @@ use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel
 use crate::response::ResponseDiagram;
 use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
 
-/// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
-/// first line of comment says what the columns are.
+/// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; the
+/// first line is a comment that explains the columns.
 ///
 /// ```
 /// use lindstedt::response::{ResponseRequest, respond};
@@ -20,7 +20,7 @@ use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn csv(response: &ResponseDiagram) -> String {
-    // Nothing gives a self-excited motion a phase, and nothing but itself its frequency.
+    // A self-excited motion has an arbitrary phase and its own frequency.
     let (own, meaning) = match response.self_excited {
         true => ("frequency", "; frequency: theta/t"),
         false => ("phase", ""),
@@ -89,8 +89,8 @@ pub fn csv(response: &ResponseDiagram) -> String {
     text
 }
 
-/// The ordinates of the panels: of motions of several periods of the drive the peak, of
-/// self-excited ones the frequency as well.
+/// The ordinates of the panels: the peak for motions of several drive periods, and for self-excited
+/// ones the frequency as well.
 #[derive(Clone, Copy)]
 enum Ordinate {
     Amplitude,
@@ -149,7 +149,7 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Centre, "centre", CurveStyle::THIRD_MARKED_POINTS),
 ];
 
-/// The curves of a panel, with what they are called.
+/// The curves of a panel with their labels.
 fn curves<'a>(
     response: &ResponseDiagram,
     height: Ordinate,

@@ -8,8 +8,8 @@ use super::figure::{CurveStyle, FigureError, Points, curve, figure, panel};
 use crate::hill::{Chart, TransitionCurves};
 use crate::symbol::Symbol;
 
-/// Name of the curve, the small parameter, the unknown by the formula and in truth; an empty cell
-/// where there is none.
+/// Name of the curve, the small parameter, the unknown by the formula and its true value; cells
+/// without a value are empty.
 ///
 /// ```
 /// use lindstedt::Oscillator;
@@ -62,7 +62,7 @@ pub fn picture(
     let (least, most) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
         (least.min(value), most.max(value))
     });
-    // A formula far beyond its range would leave nothing of the rest to be seen.
+    // The range is limited, because a formula far beyond its own range would hide the rest.
     let margin = 0.1 * (most - least);
     let formulas: Vec<Points> = charts
         .iter()

@@ -1,5 +1,4 @@
-//! The derivation of an answer, for someone who wants to follow it with a pencil: as text, and as
-//! LaTeX for a slide.
+//! The derivation of an answer, in steps that can be followed by hand, as text and as LaTeX.
 
 use std::fmt::Write as _;
 
@@ -17,7 +16,7 @@ use crate::solution::{Counts, Solution};
 use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
-/// Whether everything stands in units of omega, and `p` marks the orders.
+/// Whether all quantities are in units of omega, and `p` marks the orders.
 fn is_homotopy(solution: &Solution) -> bool {
     solution.method.counts() == Counts::PowersOfBookkeeping
 }
@@ -28,13 +27,13 @@ fn unit(solution: &Solution) -> Symbol {
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
 }
 
-/// The letters of the orders and of the corrections of the frequency, `y` and `W`, or what is free
-/// of the equation's names.
+/// The symbols of the orders and of the corrections of the frequency: `y` and `W`, or others if the
+/// equation uses these names.
 fn letters(solution: &Solution) -> [String; 2] {
     ["y", "W"].map(|letter| fresh_stem(letter, &solution.names()))
 }
 
-/// A letter with its order, as LaTeX.
+/// A symbol with its order as an index, in LaTeX.
 fn indexed(letter: &str, order: u32) -> String {
     symbol(Symbol::new(&format!("{letter}{order}")))
 }

@@ -1,7 +1,7 @@
 //! Documents as text that reads like a textbook. Formulas print so that they can be typed back in.
 //!
-//! In come a result or its document of [`report`], and a width; out goes text of plain letters, of
-//! lines no longer than that where words allow it. Relative errors stand in percent.
+//! In come a result or its document of [`report`], and a width; out goes plain text in lines no
+//! longer than that, where words allow it. Relative errors are in percent.
 
 pub(super) mod comparison;
 mod impact;
@@ -21,29 +21,25 @@ use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
 pub use lines::fitted;
 
-/// The derived formula, and the verdict where it was judged.
+/// The derived formula, and its verification if there is one.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
-/// let text = lindstedt::export::text::solution(&solution, None, 0.01);
+/// let text = lindstedt::export::text::solution(&solution, None);
 /// assert!(text.contains(&solution.formula()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn solution(
-    solution: &Solution,
-    verification: Option<&Verification>,
-    tolerance: f64,
-) -> String {
+pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     let _letters = solution.letters().in_force();
-    document(&report::solution(solution, verification, tolerance), usize::MAX)
+    document(&report::solution(solution, verification), usize::MAX)
 }
 
 /// Every method in one table, and below it those that do not apply, in lines of at most `width`
-/// characters where words allow it. Formulas stand at the end of their rows where all of them fit
-/// there, and below the table where not.
+/// characters where words allow it. Formulas are at the end of their rows if all of them fit there,
+/// and otherwise below the table.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};
@@ -67,7 +63,7 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
-/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// let document = lindstedt::report::solution(&solution, None);
 /// assert!(lindstedt::export::text::document(&document, 80).contains(&solution.formula()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -93,13 +89,13 @@ impl TextLayout {
     fn fitted(&self, block: &Block, section: &[Block]) -> String {
         let text = self.block(block, section);
         match block {
-            // Tables fit themselves.
+            // Tables adapt to the width themselves.
             Block::Table { .. } | Block::Methods { .. } => text,
             _ => fitted(&text, self.width),
         }
     }
 
-    /// The lines of a block as long as they are; `section` is where it stands.
+    /// The lines of a block without breaks; `section` is where it stands.
     fn block(&self, block: &Block, section: &[Block]) -> String {
         match block {
             Block::Question(equation) => format!("{equation}\n"),
@@ -128,8 +124,8 @@ impl TextLayout {
                 let width = width.unwrap_or(0);
                 format!("  {:<width$} = {}{source}\n", name.written(), decimal(*value))
             }
-            Block::Judged { verification, series_of_omega, hbar, tolerance } => {
-                judged(verification, *series_of_omega, *hbar, *tolerance)
+            Block::Judged { verification, series_of_omega, hbar } => {
+                judged(verification, *series_of_omega, *hbar)
             }
             Block::Truth { equation, at, frequency } => comparison::truth(equation, at, frequency),
             Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
@@ -176,7 +172,7 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
 /// The reason why an answer has no motion.
 pub(super) fn without_motion(solution: &Solution) -> &'static str {
     match solution.method {
-        // Whose motion is a formula: it was not asked for.
+        // The motion of this method is a formula, so that it was not requested.
         Method::LindstedtPoincare => "the motion is left out",
         _ => "the motion follows by quadrature of the energy",
     }
@@ -241,13 +237,8 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
 }
 
 /// The verdict, number by number.
-fn judged(
-    verification: &Verification,
-    series_of_omega: Option<f64>,
-    hbar: Symbol,
-    tolerance: f64,
-) -> String {
-    let (heading, facts) = judgement(verification, series_of_omega, hbar, tolerance);
+fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol) -> String {
+    let (heading, facts) = judgement(verification, series_of_omega, hbar);
     let line = |(name, value): (String, String)| format!("  {name:<20}{value}\n");
     facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
 }
@@ -257,10 +248,9 @@ pub(super) fn judgement(
     verification: &Verification,
     series_of_omega: Option<f64>,
     hbar: Symbol,
-    tolerance: f64,
 ) -> (String, Vec<(String, String)>) {
-    /// Relative error of the frequency that counts as large: no order takes such an error into the
-    /// last digits at once.
+    /// Relative error of the frequency that counts as large: at any order, one halving of the small
+    /// parameter does not take such an error into rounding.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
     let at: Vec<String> =
@@ -336,6 +326,6 @@ pub(super) fn judgement(
         let mark = if range.outside { "  <- outside" } else { "" };
         line("range", format!("{}{mark}", range.text));
     }
-    line("verdict", verification.verdict_in_words(tolerance));
+    line("verdict", verification.verdict_in_words());
     (heading, facts)
 }

@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 use crate::trajectory::in_words;
 use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory};
 
-/// The points of a table or a curve where no samples are asked for.
+/// Number of points of a table or a curve if no samples are requested.
 const POINTS: u32 = 2000;
 
 /// The times of a whole motion.
@@ -22,8 +22,8 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
     }
 }
 
-/// Time, coordinates and velocities, 2001 times or those asked for; on a section those of its
-/// states.
+/// Time, coordinates and velocities at 2001 instants or at the requested ones; with a section,
+/// those of its states.
 ///
 /// ```
 /// use lindstedt::Oscillator;

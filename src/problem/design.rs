@@ -22,7 +22,7 @@ const MODULI: [&str; 4] =
 const YIELD: [&str; 2] = ["[sphere] yield", "[barrier] yield"];
 
 impl Problem {
-    /// The quantities that gamma follows from.
+    /// The quantities from which gamma follows.
     ///
     /// # Errors
     /// A quantity given twice, or one by its own name that is not positive; half an equivalent
@@ -77,7 +77,7 @@ impl Problem {
     }
 
     /// The modulus of the contact of the sphere with a barrier, whose modulus and Poisson's ratio
-    /// stand under these keys.
+    /// have these keys.
     pub(super) fn modulus_of(
         &self,
         [modulus_key, poisson_key]: [&'static str; 2],
@@ -112,11 +112,11 @@ impl Problem {
         }
     }
 
-    /// The units of an impact, where they are known: of the pendulum with the contact of Hertz, by
-    /// the design where gamma follows from it.
+    /// The units of an impact; `None` if they are not known: those of the pendulum with the contact
+    /// of Hertz, or of the design if gamma follows from it.
     ///
     /// # Errors
-    /// A key by its own name that would change nothing.
+    /// A key by its own name without effect.
     pub(super) fn units(
         &self,
         is_hertz: bool,
@@ -190,9 +190,9 @@ impl Problem {
 }
 
 impl Problem {
-    /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows
-    /// from it, or something that damps is given in SI units; otherwise where mass, length and
-    /// gravity are given. What says nothing is no mistake here.
+    /// The units of a motion, by the rule of [`Problem::units`]: by the design if gamma follows
+    /// from it or a damping is given in SI units; otherwise if mass, length and gravity are given.
+    /// Keys without effect are not an error here.
     pub(super) fn simulation_units(&self, design: &StiffnessDesign) -> Option<Units> {
         let given = |name: &str| {
             let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
@@ -214,7 +214,7 @@ impl Problem {
     }
 }
 
-/// The number under a key.
+/// Checks that the number of a key is positive.
 ///
 /// # Errors
 /// A number that is not positive.
@@ -225,7 +225,7 @@ pub(super) fn positive(key: &str, value: f64) -> Result<f64, ProblemError> {
     }
 }
 
-/// Refuses half of what an equivalent modulus needs.
+/// The error of an incomplete equivalent modulus.
 pub(super) fn needs<T>(key: &str, missing: &str) -> Result<T, ProblemError> {
     refused(format!(
         "`{key}` needs `{missing}` beside it: the modulus of both bodies is 1/E = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; without any of \

@@ -6,8 +6,8 @@ use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// An equation of motion and the choices that a file makes for it, as they are written; what it
-/// leaves out is `None`.
+/// An equation of motion and the choices that a file makes for it, as text; choices that it leaves
+/// out are `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FormulaProblem<'a> {
     /// The equation.
@@ -89,8 +89,8 @@ impl Problem {
         Ok(values)
     }
 
-    /// The values of [`Problem::exact_values`] that occur in the equation of motion: not that of a
-    /// letter that stands in the energies of the file and cancels, as a mass does.
+    /// The values of [`Problem::exact_values`] that occur in the equation of motion: that of a
+    /// symbol that cancels from the energies, as a mass does, is left out.
     ///
     /// # Errors
     /// As there.
@@ -106,8 +106,8 @@ impl Problem {
         self.values_with(&[])
     }
 
-    /// As [`Problem::values_of_motion`], and those of `needed` too, such as a mass without which
-    /// there is no energy in numbers.
+    /// The values of [`Problem::values_of_motion`] and those of `needed`, such as a mass without
+    /// which the energy has no number.
     ///
     /// # Errors
     /// As there.

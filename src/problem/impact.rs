@@ -15,7 +15,7 @@ use crate::spelling::nearest;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// The impact of a problem file, in SI units where the file has them.
+/// The impact of a problem file, in SI units if the file has them.
 ///
 /// ```
 /// use lindstedt::impact::{Setup, solve};
@@ -122,8 +122,8 @@ impl TryFrom<&Problem> for Setup {
     }
 }
 
-/// The numbers of an impact that stand among the values, by the letters of the printed equation,
-/// and the other values.
+/// The numbers of an impact that are given among the values, by the symbols of the printed
+/// equation, and the other values.
 struct ImpactValues {
     amplitude: Option<f64>,
     barrier: Option<f64>,
@@ -132,10 +132,10 @@ struct ImpactValues {
 }
 
 impl ImpactValues {
-    /// Reads the values of a problem; those that they leave out stand under their keys.
+    /// Reads the values of a problem; numbers that are not among them have their own keys.
     ///
     /// # Errors
-    /// A number under both, and for an equation of its own one under neither.
+    /// A number given in both ways, or for a given equation in neither.
     fn from_problem(
         problem: &Problem,
         swing: Option<&Oscillator>,
@@ -188,7 +188,7 @@ impl ImpactValues {
     }
 }
 
-/// The place of the barrier on this side; one on the other is never touched again, where it stands
+/// The position of the barrier on this side; one on the other side is never touched if it lies
 /// beyond the release.
 fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ProblemError> {
     match (barrier, side) {
@@ -313,7 +313,7 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
     if !(value.is_finite() && value >= 0.0) {
         return no_damping();
     }
-    // A contact without loss.
+    // This value means a contact without loss.
     if value == if of_restitution { 1.0 } else { 0.0 } {
         return Ok(None);
     }

@@ -56,7 +56,7 @@ impl fmt::Display for ReadingCommand {
     }
 }
 
-/// The commands that read a key, or refuse it with a reason of their own.
+/// The commands that read a key, or refuse it with a specific message.
 fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
     match (section, key) {
         ("", "equation") => &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
@@ -124,7 +124,7 @@ const SECTIONS: [KeySection; 15] = [
 ];
 
 /// Every key of a problem file, as messages name it, and the commands that read it, or refuse it
-/// with a reason of their own.
+/// with a specific message.
 pub fn keys() -> impl Iterator<Item = (String, &'static [ReadingCommand])> {
     SECTIONS.into_iter().flat_map(|(section, keys)| {
         keys().iter().map(move |key| {
@@ -140,7 +140,7 @@ pub fn keys() -> impl Iterator<Item = (String, &'static [ReadingCommand])> {
 /// The keys that a section reads.
 fn keys_of<'de, T: Deserialize<'de>>() -> Keys {
     let mut keys: Keys = &[];
-    // Its type asks for them by name, and is told nothing.
+    // The type requests its keys by name; the deserialiser records them and returns an error.
     let _ = T::deserialize(CollectNames(&mut keys));
     keys
 }
@@ -212,7 +212,7 @@ impl Problem {
         }
         for (key, readers) in keys() {
             if self.has_key(&key) && !readers.contains(&reader) {
-                // Two readers may be one command.
+                // Two readers may belong to the same command.
                 let own = format!("`{reader}`");
                 let mut names: Vec<String> = Vec::new();
                 for name in readers.iter().map(|reader| format!("`{reader}`")) {

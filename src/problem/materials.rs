@@ -1,9 +1,9 @@
 //! The input of `materials` from a problem file: a design, its damping, and `[[material]]`, the
 //! barriers that are tried.
 //!
-//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the
-//! rule of the other files: alone as in the paper, or with its Poisson's ratio under a rigid sphere
-//! or, where `[sphere]` has a modulus, that of both bodies.
+//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. The modulus of the contact of a material follows
+//! the rule of the other files: that of the material alone, as in the paper; or with its Poisson's
+//! ratio that under a rigid sphere, or of both bodies if `[sphere]` has a modulus.
 
 use super::design::{needs, positive};
 use super::document::MaterialSection;
@@ -15,8 +15,8 @@ use crate::impact::{
 };
 
 impl Problem {
-    /// The study that this file asks for: of the paper's Table 2 and its own materials, or
-    /// `only_own` of these alone.
+    /// The study of this file: of the materials of the paper's Table 2 and its own, or with
+    /// `only_own` only of its own.
     ///
     /// # Errors
     /// [`ProblemError`] names the key, or the material.
@@ -86,7 +86,7 @@ impl Problem {
         }
     }
 
-    /// The materials of the file, after those that are there already.
+    /// Appends the materials of the file to `materials`.
     pub(super) fn own_materials(&self, materials: &mut Vec<Material>) -> Result<(), ProblemError> {
         for section in &self.material {
             let material = self.a_material(section)?;

@@ -10,7 +10,7 @@ use crate::mechanics::{Dimension, Mechanism, MechanismQuestion, UnitError};
 use crate::symbol::Symbol;
 
 impl Problem {
-    /// The mechanism of the file and the units of its letters, ready for
+    /// The mechanism of the file and the units of its symbols, ready for
     /// [`study`](crate::mechanics::study).
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Problem {
     /// commands that derive, compare and simulate.
     ///
     /// # Errors
-    /// Energies that give none, or terms of a wrong unit.
+    /// Energies that give no equation, or terms of a wrong unit.
     pub(super) fn with_derived_equation(mut self) -> Result<Self, ProblemError> {
         if self.lagrangian.is_none() {
             return match self.units.is_empty() {
@@ -74,8 +74,8 @@ impl Problem {
         if let Some(units) = &question.units {
             question.mechanism.check_units(units)?;
         }
-        // A mass that stands in all energies is a letter of the file whose value says nothing of
-        // the motion.
+        // A mass that is a factor of all energies is a symbol of the file that does not affect the
+        // motion.
         let cancels = |name: &Symbol| equations.left.iter().all(|left| !left.contains(*name));
         self.cancelled = question.mechanism.parameters().into_iter().filter(cancels).collect();
         if let [left] = equations.left.as_slice() {
@@ -87,7 +87,7 @@ impl Problem {
     /// Whether the derived equation can be read as one that was typed.
     ///
     /// # Errors
-    /// A coordinate of several letters, or a parameter that bears the name of an answer.
+    /// A coordinate whose name has several letters, or a parameter with a name that answers use.
     pub(super) fn check_derived_equation(&self) -> Result<(), ProblemError> {
         let (Some(section), Some(equation)) = (&self.lagrangian, &self.equation) else {
             let count = self.lagrangian.as_ref().map_or(1, |section| section.coordinates.len());

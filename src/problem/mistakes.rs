@@ -1,8 +1,9 @@
 //! Errors of a TOML file, in words that need no Rust.
 //!
-//! In: the error of the parser: words and a place, for serde hands on nothing else. Out: the same
-//! in the words of a problem file. So its words are read here, and here alone; those of every kind
-//! of mistake are pinned by the tests below, and a message of another form is shown as it stands.
+//! In: the error of the parser, which serde reduces to a message and a position. Out: the same
+//! error in the words of a problem file. Only this module reads the text of the message; those of
+//! every kind of mistake are pinned by the tests below, and a message of another form is shown as
+//! it stands.
 
 use std::ops::Range;
 
@@ -10,10 +11,10 @@ use super::ProblemError;
 use crate::expr::excerpt;
 use crate::spelling::nearest;
 
-/// The message of the parser, with its place shown as everywhere else.
+/// The message of the parser in plain words, with its position shown as in every other message.
 pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
     let said = error.message();
-    // Of several lines the first says what is wrong and the others what the parser made of it.
+    // The first line of a message states the error; the others are details of the parser.
     let what = said.lines().next().unwrap_or_default();
     let what = match mismatch(what) {
         Some(message) => message,
@@ -31,7 +32,7 @@ pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
     error.with_help(did_you_mean(said))
 }
 
-/// The refusal of a place in a text, which is shown with its line and a caret below.
+/// The error at a position of a text, which is shown with its line and a caret below.
 pub(crate) fn at_place(text: &str, span: &Range<usize>, what: &str) -> ProblemError {
     let line = text[..span.start].matches('\n').count() + 1;
     let [shown, carets] = excerpt(text, span);

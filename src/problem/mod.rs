@@ -1,4 +1,4 @@
-//! Problem files: one document, in TOML, and what each command reads in it.
+//! Problem files in TOML, and the part of a file that each command reads.
 //!
 //! In: the text of a file: every key optional, the paper's value the default, an unknown key an
 //! error. Angles in radians, masses, lengths and materials in SI units, the rest dimensionless as
@@ -11,9 +11,9 @@
 //!   parameters are swept;
 //! - barriers of several materials, [`Problem::materials`];
 //! - a search for the best design, [`Problem::optimize`];
-//! - the motion of an equation of one's own, [`Problem::course`];
-//! - a mechanism by its energies, [`Problem::mechanism`]: of one with a single coordinate the
-//!   equation is derived at once, and every command that reads an equation reads that.
+//! - the motion of a given equation, [`Problem::course`];
+//! - a mechanism by its energies, [`Problem::mechanism`]: if it has a single coordinate, its
+//!   equation is derived at once, and every command that reads an equation reads that one.
 
 mod design;
 mod document;
@@ -50,11 +50,10 @@ pub(crate) use mistakes::{at_place, in_words};
 pub use primary::PrimaryProblem;
 pub use simulate::Simulate;
 
-/// The largest file that is read, in bytes.
+/// The size of the largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
 
-/// The reason why a file cannot be taken at its word: what is wrong with which key, and what to
-/// write instead.
+/// The error of a problem file: the key, what is wrong with it, and what to write instead.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ProblemError {
@@ -63,7 +62,7 @@ pub struct ProblemError {
 }
 
 impl ProblemError {
-    /// A refusal in these words.
+    /// An error with this message.
     pub(crate) fn new(message: impl ToString) -> Self {
         Self { message: message.to_string(), help: None }
     }
@@ -74,18 +73,19 @@ impl ProblemError {
         Self { help: help.into(), ..self }
     }
 
-    /// The way forward: what could be written instead; `None` if it is not known.
+    /// Advice on what to write instead; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         self.help.clone()
     }
 }
 
-/// A refusal in these words.
+/// An error with this message.
 fn refused<T>(message: impl ToString) -> Result<T, ProblemError> {
     Err(ProblemError::new(message))
 }
 
-/// Errors of the engine, which name the key themselves, and those that get its section.
+/// Converts errors of the engine: those that name the key themselves, and those to which its
+/// section is added.
 macro_rules! as_problem_errors {
     ($($error:ty: $words:literal,)*) => {$(
         impl From<$error> for ProblemError {
@@ -109,7 +109,7 @@ as_problem_errors! {
     ValueError: "{}",
 }
 
-/// The refusal of a text beyond [`LARGEST_FILE`].
+/// The error of a text beyond [`LARGEST_FILE`].
 pub(crate) fn too_large() -> ProblemError {
     let limit = format!("the {LARGEST_FILE} bytes that a problem may have");
     ProblemError::new(format!("the text is longer than {limit}"))
@@ -131,7 +131,7 @@ impl FromStr for Problem {
 }
 
 impl Problem {
-    /// The dimensionless stiffness of the contact, and where it comes from.
+    /// The dimensionless stiffness of the contact, and its source in words.
     ///
     /// # Errors
     /// A design with a quantity that is not positive.
@@ -144,14 +144,14 @@ impl Problem {
         }
     }
 
-    /// Whether something that damps is given by mass, length and gravity.
+    /// Whether a damping is given in a form that needs mass, length and gravity.
     fn damps_in_si_units(&self) -> bool {
         let in_si = [self.contact.damping, self.damping.viscous, self.damping.torque];
         in_si.iter().any(Option::is_some)
     }
 
-    /// The unit of `at_speed`: m/s where the file gives any of its numbers in SI units, or one of
-    /// the `swept` ones is.
+    /// The unit of `at_speed`: m/s if the file gives any of its numbers in SI units, or one of the
+    /// `swept` ones is in SI units.
     fn speed_unit(&self, swept: &[Parameter]) -> SpeedUnit {
         use Parameter::{
             ContactDamping, Gravity, Lambda, Length, Mass, Modulus, Radius, Torque, Viscous,

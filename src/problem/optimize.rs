@@ -25,7 +25,7 @@ fn fixing(parameter: Parameter) -> [&'static str; 2] {
     }
 }
 
-/// The value that a name stands for.
+/// The value of a name in a list of choices.
 fn named<T: Clone>(
     key: &'static str,
     given: Option<&String>,
@@ -47,11 +47,10 @@ fn named<T: Clone>(
 }
 
 impl Problem {
-    /// The search that this file asks for; an empty one is the paper's.
+    /// The search of this file; an empty file gives the paper's.
     ///
     /// # Errors
-    /// [`ProblemError`] names the key. Whether the options make a search is seen by
-    /// [`OptimizationProblem::check`].
+    /// [`ProblemError`] names the key. The options are checked by [`OptimizationProblem::check`].
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -328,8 +327,8 @@ impl Problem {
             ("feasible-first", Penalty::FeasibleFirst),
             ("augmented-lagrangian", lagrangian),
         ];
-        // No random design has just the density, and of hard limits none may be kept by chance:
-        // death would leave nobody.
+        // A random design practically never has the given density, and may never keep hard limits:
+        // the penalty `death` would leave no population.
         let usual = match question.density {
             Some(_) => lagrangian,
             None if constrained => Penalty::FeasibleFirst,
@@ -347,7 +346,7 @@ impl Problem {
         Ok(())
     }
 
-    /// An error if a key is given whose condition, named by `other`, is not there.
+    /// An error if a key is given although its condition, named by `other`, does not hold.
     fn needs(
         &self,
         key: &'static str,
@@ -363,16 +362,16 @@ impl Problem {
     }
 }
 
-/// Bits of a number, where they are not given.
+/// The default number of bits of a number.
 const DEFAULT_BITS: u32 = 16;
 
 /// The default probability of a bit flip.
 const DEFAULT_RATE: f64 = 0.01;
 
-/// Runs of a search for a front, where they are not given.
+/// The default number of runs of a search for a front.
 const SEVERAL_RUNS: usize = 10;
 
-/// Generations of one, where they are not given.
+/// The default number of generations of a search for a front.
 const SEVERAL_GENERATIONS: usize = 100;
 
 /// The keys without effect in a search for a front.

@@ -7,10 +7,10 @@ use crate::impact::hertz::StiffnessDesign;
 use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
 use crate::impact::{Parameter, Start, Units};
 
-/// A main mass with its pendulum, and how to follow them.
+/// A main mass with its pendulum, and the settings of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimaryProblem {
-    /// Both bodies and where they begin.
+    /// Both bodies and their initial state.
     pub case: PrimaryCase,
     /// Duration and accuracy.
     pub settings: PrimarySettings,
@@ -18,8 +18,8 @@ pub struct PrimaryProblem {
     pub units: Units,
 }
 
-/// The default duration, in units of 1/omega: until the main mass would have come to rest with the
-/// damper locked and without, within reason.
+/// The default duration, in units of 1/omega: long enough for the main mass to come to rest with
+/// the damper locked and without, up to a limit.
 fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;
@@ -55,7 +55,7 @@ impl Problem {
                 "[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead",
             );
         }
-        // Without a word of the start it hangs at rest.
+        // If the file does not give a start, the pendulum hangs at rest.
         let of_pendulum: Vec<(Parameter, f64)> = varied
             .iter()
             .filter_map(|(parameter, value)| match parameter {
@@ -106,7 +106,7 @@ impl Problem {
     }
 }
 
-/// Refuses a main mass and a pendulum that both rest.
+/// The error of a main mass and a pendulum that are both at rest.
 pub(super) fn at_rest<T>() -> Result<T, ProblemError> {
     refused(
         "nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start",
@@ -114,7 +114,7 @@ pub(super) fn at_rest<T>() -> Result<T, ProblemError> {
 }
 
 impl Problem {
-    /// Refuses a tolerance, which would change nothing.
+    /// Refuses a tolerance, which would have no effect.
     pub(super) fn refuse_tolerance_of_main_mass(&self) -> Result<(), ProblemError> {
         match self.has_key("[run] integrator_tolerance") {
             true => refused(
@@ -124,7 +124,7 @@ impl Problem {
         }
     }
 
-    /// Whether the pendulum of a main mass hangs at rest at first: the file has no word of its
+    /// Whether the pendulum of a main mass initially hangs at rest, because the file gives no
     /// start.
     pub(super) fn hangs_at_rest(&self) -> bool {
         let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
@@ -190,7 +190,7 @@ impl PrimarySection {
     /// The main mass that it describes.
     ///
     /// # Errors
-    /// A key that is missing, alone, or no such number.
+    /// A key that is missing, that needs another one, or whose number is not admissible.
     pub(super) fn main_mass(&self) -> Result<MainMass, ProblemError> {
         let missing = |key: &str| {
             let units = "the mass of the main mass in kg and the stiffness of its spring in N/m";

@@ -11,17 +11,17 @@ pub struct Simulate {
     pub case: Case,
     /// Duration and accuracy.
     pub settings: Settings,
-    /// Whether the file says for how long.
+    /// Whether the file gives the duration.
     pub duration_given: bool,
     /// The source of gamma.
     pub gamma_source: &'static str,
     /// The source of mu.
     pub mu_source: &'static str,
-    /// The pendulum in SI units, where they are known.
+    /// The pendulum in SI units; `None` if they are not known.
     pub units: Option<Units>,
 }
 
-/// The most steps a run may be given: some gigabytes of power series.
+/// The largest step limit of a run: some gigabytes of power series.
 const MOST_STEPS: u32 = 10_000_000;
 
 impl TryFrom<&Problem> for Simulate {
@@ -40,20 +40,18 @@ impl TryFrom<&Problem> for Simulate {
     /// ```
     fn try_from(problem: &Problem) -> Result<Self, ProblemError> {
         let asked = problem.simulate(&[])?;
-        // A case of its own must make a motion; where parameters are swept, their values are still
-        // to come.
+        // Without swept parameters the case must be admissible as it is.
         asked.case.motion()?;
         Ok(asked)
     }
 }
 
 impl Problem {
-    /// Reads the motion of this file, in which the `swept` parameters will get other values later,
-    /// as if the file gave them too.
+    /// Reads the motion of this file, in which the `swept` parameters get other values later; they
+    /// count as given.
     ///
     /// # Errors
-    /// [`ProblemError`] names the section and the key. Whether the numbers make a motion is seen
-    /// by [`Case::motion`].
+    /// [`ProblemError`] names the section and the key. The numbers are checked by [`Case::motion`].
     ///
     /// ```
     /// use lindstedt::{impact::Parameter, problem::Problem};
@@ -101,7 +99,7 @@ impl Problem {
         })
     }
 
-    /// Whether a file, or whoever made this problem, gives a parameter.
+    /// Whether this problem, from a file or built in code, gives a parameter.
     pub(super) fn gives_parameter(&self, parameter: Parameter) -> bool {
         let (contact, damping) = (&self.contact, &self.damping);
         match parameter {
@@ -181,8 +179,8 @@ impl Problem {
         })
     }
 
-    /// Refuses to sweep what changes nothing: for want of a barrier, because gamma is given, or
-    /// swept as well, or beside a zero.
+    /// Refuses to sweep a parameter without effect: because there is no barrier, because gamma is
+    /// given or swept as well, or because a factor of it is zero.
     fn check_swept(
         &self,
         swept: &[Parameter],
@@ -196,7 +194,7 @@ impl Problem {
         let zero = |key: Parameter, given: Option<f64>| {
             !swept.contains(&key) && given.unwrap_or(0.0) == 0.0
         };
-        // c = 2*zeta*m*omega, torque = alpha*m*g*L; a main mass is measured in those of the
+        // c = 2*zeta*m*omega, torque = alpha*m*g*L; a main mass is measured in units of the
         // pendulum.
         let swing_in_si = !zero(Viscous, self.damping.viscous)
             || !zero(Torque, self.damping.torque)
@@ -254,7 +252,8 @@ impl Problem {
         }
     }
 
-    /// Refuses a side that says nothing: of a barrier there is or is swept, or of the release.
+    /// Refuses a side without effect: one that refers neither to a single barrier, given or swept,
+    /// nor to the release.
     fn check_side(&self, swept: &[Parameter]) -> Result<(), ProblemError> {
         let starts = self.pendulum.start.is_some() || swept.contains(&Parameter::Start);
         if self.pendulum.side.is_none() || !starts || swept.contains(&Parameter::Barrier) {
@@ -270,7 +269,7 @@ impl Problem {
         ))
     }
 
-    /// Refuses a key that another one leaves nothing to say, or that says nothing alone.
+    /// Refuses a key that has no effect together with another one, or without another one.
     pub(super) fn check_pairs(
         &self,
         gives: impl Fn(Parameter) -> bool,
@@ -296,10 +295,10 @@ impl Problem {
 }
 
 impl Run {
-    /// The time to follow a motion for.
+    /// The duration of a motion.
     ///
     /// # Errors
-    /// A duration that is none.
+    /// A duration that is not a positive number.
     pub(super) fn duration(&self) -> Result<f64, ProblemError> {
         match self.duration > 0.0 && self.duration.is_finite() {
             true => Ok(self.duration),
@@ -309,10 +308,10 @@ impl Run {
         }
     }
 
-    /// The most steps of an integration.
+    /// The largest number of steps of an integration.
     ///
     /// # Errors
-    /// A limit that nothing or too much fits into: every step of a motion is kept.
+    /// A limit that is zero or too large, because every step of a motion is stored.
     pub(super) fn step_limit(&self) -> Result<usize, ProblemError> {
         match (1..=MOST_STEPS).contains(&self.step_limit) {
             true => Ok(self.step_limit as usize),
@@ -324,24 +323,24 @@ impl Run {
     }
 }
 
-/// Words for a key that says something only beside another one.
+/// The message for a key that has an effect only together with another one.
 pub(super) fn message_of_missing_key(key: &str, other: &impl std::fmt::Display) -> String {
     format!("`{key}` changes nothing without `{other}`: give that too, or leave it out")
 }
 
-/// Refuses a key that another one leaves nothing to say.
+/// The error of a key that has no effect because of another one.
 fn no_effect(key: Parameter, other: Parameter) -> Result<(), ProblemError> {
     refused(format!("`{key}` changes nothing where `{other}` is given: leave one of them out"))
 }
 
-/// Refuses a key that zero leaves nothing to say.
+/// The error of a key that has no effect because another one is zero.
 fn beside_zero(key: Parameter, other: Parameter) -> Result<(), ProblemError> {
     refused(format!(
         "`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out"
     ))
 }
 
-/// Refuses what is given in two forms.
+/// Refuses a damping that is given in two forms.
 pub(super) fn refuse_two_forms(gives: impl Fn(Parameter) -> bool) -> Result<(), ProblemError> {
     let forms: [&[Parameter]; 3] = [
         &ContactDamping::FORMS,

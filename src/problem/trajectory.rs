@@ -6,8 +6,8 @@ use crate::oscillator::Oscillator;
 use crate::trajectory::TrajectoryRequest;
 
 impl Problem {
-    /// The motion of the equation or the mechanism of the file, from rest at zero: its start and
-    /// its values are still to be given.
+    /// The motion of the equation or the mechanism of the file, from rest at zero: its initial
+    /// state and its values are to be set by the caller.
     ///
     /// # Errors
     /// [`ProblemError`] names the key.

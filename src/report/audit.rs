@@ -1,5 +1,4 @@
-//! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for
-//! its verdict.
+//! An audit: a table of verdicts, and the evidence for every verdict other than `reproduced`.
 
 use super::{Block, Document};
 use crate::audit::{
@@ -76,7 +75,7 @@ fn table<'a>(verdict: Verdict, findings: &[&ClaimFinding]) -> Vec<Block<'a>> {
     vec![Block::Note(format!("verdict: {name}")), Block::table(head, findings.iter().map(row))]
 }
 
-/// What is printed, in one line.
+/// The printed text, in one line.
 pub(crate) fn printed(finding: &ClaimFinding) -> String {
     let entries = &finding.claim.entries;
     match &entries[..] {
@@ -111,7 +110,7 @@ pub(crate) fn computed(finding: &ClaimFinding) -> String {
     }
 }
 
-/// The value of an unknown that a claim requires and that it cannot have, in words.
+/// The value of an unknown that a claim requires but that lies outside of its range, in words.
 fn required_value_in_words(finding: &ClaimFinding) -> Option<String> {
     let demand = finding.demand?;
     Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
@@ -138,7 +137,7 @@ pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) 
     }
 }
 
-/// A claim and what speaks for its verdict.
+/// A claim and the evidence for its verdict.
 fn finding_blocks(finding: &ClaimFinding) -> Vec<Block<'_>> {
     let claim = &finding.claim;
     let place = if claim.place.is_empty() { &claim.id } else { &claim.place };

@@ -1,4 +1,4 @@
-//! A certificate: what has been proved of a motion, and of the formula for it.
+//! A certificate: the proved statements about a motion, and about the formula for it.
 
 use std::borrow::Cow;
 
@@ -76,7 +76,7 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// The statement of the proved periodicity, with the letters of the coordinate and of the
+    /// The statement of the proved periodicity, with the symbols of the coordinate and of the
     /// frequency.
     fn motion(&self, letter: Symbol, omega: &str) -> String {
         match self {
@@ -116,8 +116,8 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// A statement that the theorem leaves open: with odd harmonics alone it says nothing of
-    /// motions that have others.
+    /// A statement that the theorem leaves open: for odd harmonics alone it does not exclude
+    /// motions with even ones. `None` if there is none.
     fn left_open(&self) -> Option<&'static str> {
         match self {
             Self::Damped(certificate) if certificate.odd => {
@@ -127,7 +127,7 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// The harmonic of a driven motion whose amplitude is meant.
+    /// The harmonic of a driven motion whose amplitude the formula gives; `None` for other motions.
     fn harmonic(&self) -> Option<usize> {
         match self {
             Self::Motion(_) => None,
@@ -157,8 +157,8 @@ impl AnyCertificate<'_> {
 /// A certificate to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateReport<'a> {
-    /// The answer that is judged and its values, where they are known: a document has the numbers
-    /// alone.
+    /// The answer that is judged and its values; `None` for a certificate read from a document,
+    /// which has only the numbers.
     pub question: Option<(&'a Solution, &'a Values)>,
     /// The certificate.
     pub certificate: AnyCertificate<'a>,
@@ -166,14 +166,14 @@ pub struct CertificateReport<'a> {
     pub certified: &'a Certified,
     /// The range in which the formula is proved to hold, if it was asked for.
     pub validity: Option<&'a Validity>,
-    /// The error of the frequency, of a driven motion that of the amplitude, up to which the
+    /// The largest error of the frequency, or of the amplitude of a driven motion, with which the
     /// formula passes.
     pub tolerance: f64,
 }
 
 impl CertificateReport<'_> {
-    /// The letter of the frequency: that of the formula, of a driven motion that of the drive,
-    /// `Omega` where it is not known or a number.
+    /// The symbol of the frequency: that of the formula, or of the drive for a driven motion;
+    /// `Omega` if it is unknown or a number.
     fn omega(&self) -> String {
         if self.certificate.harmonic().is_none() {
             let letters = self.certificate.formula().map(|formula| formula.letters);
@@ -299,7 +299,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     Document { sections }
 }
 
-/// Notes on letters that are not the usual ones.
+/// Notes on symbols that are not the usual ones.
 fn notes_on_letters<'a>(solution: &Solution) -> Vec<Block<'a>> {
     let notes = solution.validity.iter();
     let notes = notes.filter(|note| matches!(note, Note::OtherLetter { .. }));
@@ -309,7 +309,7 @@ fn notes_on_letters<'a>(solution: &Solution) -> Vec<Block<'a>> {
 fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static str, String)> {
     let letters = report.certificate.formula().map(|formula| formula.letters).unwrap_or_default();
     let (omega, letter) = (letters.frequency, letters.amplitude);
-    // The proof is of this place exactly: six digits, or the fraction.
+    // The proof holds for exactly this amplitude: it is printed in six digits, or as the fraction.
     let amplitude = |value: &Rational| match rounded_fraction(value, 6) == *value {
         true => significant_fraction(value, 6),
         false => value.to_string(),
@@ -402,8 +402,8 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     formula.into_iter().chain(copies).chain(facts).collect()
 }
 
-/// The formula of a file: its law where that has been read and held against the numbers, and the
-/// numbers, which are what is judged.
+/// The formula of a file: its numbers, which are judged, and its law if that was read and agrees
+/// with them.
 fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'static str, String)> {
     let values: Vec<String> = formula
         .values
@@ -433,7 +433,7 @@ fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'sta
 
 /// The largest harmonics of a motion, rounded, and how many more there are.
 fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -> String {
-    /// More are not written.
+    /// Largest number of harmonics that are printed.
     const MOST: usize = 5;
     let [cosines, sines] = units.map(|units| units.iter().map(&number).collect::<Vec<Rational>>());
     let mut waves: Vec<(usize, &str, Rational)> = vec![];
@@ -476,7 +476,7 @@ fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -
     }
 }
 
-/// Shows the words of a file that nothing was held against.
+/// Shows the words of a file that were not compared with the numbers.
 fn words_of_file<'a>(report: &CertificateReport) -> Option<Vec<Block<'a>>> {
     let formula = report.certificate.formula()?;
     let is_unread =
@@ -489,12 +489,12 @@ fn words_of_file<'a>(report: &CertificateReport) -> Option<Vec<Block<'a>>> {
     })
 }
 
-/// Whether the cycle attracts, as far as that is proved.
+/// The proved stability of the cycle, in words.
 fn stability(exponent: &Enclosure) -> String {
     let radius = exponent.radius.value();
     let value = to_f64(&exponent.middle);
     let words = match value {
-        // Two units in the last place of the double are added.
+        // The margin is two units in the last place of the double.
         value if value.abs() * (1.0 - 4.0 * f64::EPSILON) <= radius => "not proved",
         value if value < 0.0 => "attracts, proved",
         _ => "repels, proved",
@@ -502,9 +502,9 @@ fn stability(exponent: &Enclosure) -> String {
     format!("{words}: characteristic exponent {}", enclosed(exponent))
 }
 
-/// The number with the digits that are known, and how far it may be from what is printed.
+/// The number with its known digits, and a bound of its distance from the printed one.
 pub(super) fn enclosed(enclosure: &Enclosure) -> String {
-    /// More digits are not written, however many are known.
+    /// Largest number of printed digits.
     const MOST: i32 = 34;
     let radius = enclosure.radius.value();
     let known = if radius > 0.0 { -radius.log10().floor() } else { f64::from(MOST) };
@@ -528,13 +528,13 @@ fn between(range: SizeBounds, unit: &str) -> String {
     between_exactly(ends, unit)
 }
 
-/// A ratio with its two ends in percent, likewise.
+/// A ratio with its two ends in percent, rounded like those of [`between`].
 fn between_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(from_f64(end)? * Integer::from(100));
     between_exactly([range.lower, range.upper].map(percent), " %")
 }
 
-/// Ends of which the second is `None` if nothing is known.
+/// Two ends in words; an end is `None` if it is not known.
 fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String {
     /// Digits of ends that agree, and of others.
     const DIGITS: [usize; 2] = [6, 4];
@@ -545,7 +545,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     if upper.is_zero() {
         return "none".to_owned();
     }
-    // A proof has some digits more than a double: an error as small may be none.
+    // A proof has more digits than a double, so that such a small error may be zero.
     let is_small = upper < Rational::new(1.into(), 1_000_000_000.into());
     let agree = rounded_fraction(&lower, DIGITS[0]) == rounded_fraction(&upper, DIGITS[0]);
     let digits = DIGITS[usize::from(!agree)];
@@ -558,7 +558,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     }
 }
 
-/// A ratio in percent with six digits where both ends have the same, else as [`between`] says it.
+/// A ratio in percent with six digits if both ends agree in them, else as by [`between`].
 pub(super) fn rounded_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(rounded_fraction(&(from_f64(end)? * Integer::from(100)), 6));
     match [range.lower, range.upper].map(percent) {

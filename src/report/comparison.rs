@@ -1,10 +1,10 @@
-//! Every method on one equation.
+//! Comparison of all methods on one equation.
 
 use super::{Block, Document, MethodRow};
 use crate::verify::comparison::{Comparison, ComparisonRow};
 
-/// The document of a comparison: the truth, the table, why some rows have no frequency, who does
-/// not apply, where the true motion is periodic.
+/// The document of a comparison: the truth, the table, the reasons for rows without a frequency,
+/// the methods that do not apply, and the ranges in which the true motion is periodic.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};

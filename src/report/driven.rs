@@ -1,5 +1,5 @@
-//! A driven motion: its slow equations, its steady motions in symbols, and at numbers beside the
-//! true ones.
+//! A driven motion: its slow equations, its steady motions in symbols, and at numbers compared with
+//! the true ones.
 
 use std::borrow::Cow;
 
@@ -18,7 +18,6 @@ pub(super) fn driven<'a>(
     solution: &'a Solution,
     response: &Response,
     verification: Option<&Verification>,
-    tolerance: f64,
 ) -> Document<'a> {
     let title = Block::Title {
         words: solution.title(),
@@ -37,8 +36,8 @@ pub(super) fn driven<'a>(
     sections.push(std::iter::once(heading).chain(notes).collect());
     if let Some(verification) = verification {
         sections.push(match solution.in_time() {
-            Some(_) => judged_in_time(verification, tolerance),
-            None => judged(verification, solution, tolerance),
+            Some(_) => judged_in_time(verification),
+            None => judged(verification, solution),
         });
     }
     Document { sections }
@@ -51,7 +50,7 @@ fn equation<'a>(
     Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
 }
 
-/// Words before an equation.
+/// An equation with words before it.
 fn equation_with_words<'a>(
     words: &str,
     left: impl Into<DerivationFormula>,
@@ -72,7 +71,7 @@ fn motion_in_time<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
     blocks
 }
 
-/// The motion in amplitude and phase, and how these change.
+/// The motion in amplitude and phase, and their rates.
 pub(super) fn slow_equations<'a>(
     solution: &'a Solution,
     response: &Response,
@@ -169,7 +168,7 @@ fn values_in_words(verification: &Verification) -> String {
     if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) }
 }
 
-fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<'a>> {
+fn judged_in_time<'a>(verification: &Verification) -> Vec<Block<'a>> {
     let at = values_in_words(verification);
     let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
     blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
@@ -182,12 +181,12 @@ fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<
     blocks.push(Block::Note(format!(
         "verdict {}: |largest deviation| <= {} %",
         verification.verdict.name(),
-        significant(100.0 * tolerance, 3)
+        significant(100.0 * verification.tolerance, 3)
     )));
     blocks
 }
 
-fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) -> Vec<Block<'a>> {
+fn judged<'a>(verification: &Verification, solution: &Solution) -> Vec<Block<'a>> {
     let at = values_in_words(verification);
     let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
     if verification.steady_states.is_empty() {
@@ -197,7 +196,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         ));
     } else {
         let a = FIRST_HARMONIC.written();
-        // The names of a table live as long as the program.
+        // The names of a table must have the lifetime of the program.
         let kept = |name: String| Symbol::new(&name).name();
         blocks.push(Block::table(
             [
@@ -215,6 +214,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     let stable = verification.steady_states.iter().filter(|judged| judged.state.is_stable());
     let count = stable.count();
     let verdict = verification.verdict.name();
+    let tolerance = verification.tolerance;
     let within = significant(100.0 * tolerance, 3);
     blocks.push(Block::Note(format!(
         "{} steady motions, {count} stable; {FREQUENCY} = {} of the motion itself",
@@ -243,7 +243,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     blocks
 }
 
-/// A remark on steady motions that the truncation alone makes; `None` if there are none.
+/// A remark on spurious steady motions, which only the truncation has; `None` if there are none.
 fn left_out(count: usize) -> Option<String> {
     let motions = match count {
         0 => return None,

@@ -1,5 +1,5 @@
-//! Equation (6) beside Coulomb's law: Table 1 of the paper, the pi of its digits, and a swing near
-//! rest.
+//! Equation (6) compared with Coulomb's law: Table 1 of the paper, the value of pi behind its
+//! digits, and a swing near rest.
 
 use super::{Block, Document};
 use crate::audit::paper::{FrictionTable, TableRow};

@@ -1,5 +1,5 @@
-//! An impact: what was asked, each reading of the three phases with the law of its swing, and the
-//! numbers beside Runge-Kutta.
+//! An impact: the problem, each reading of the three phases with the law of its swing, and the
+//! numbers compared with Runge-Kutta.
 
 use super::solution::law_blocks;
 use super::{Block, Document, percent};
@@ -63,7 +63,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     Document { sections }
 }
 
-/// The symbol of the release, where it is that of the paper.
+/// Whether the release is that of the paper, x = -A.
 fn is_minus_amplitude(setup: &Setup, equilibrium: f64) -> bool {
     equilibrium == 0.0 && setup.side == Side::Right
 }
@@ -138,7 +138,7 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
     blocks
 }
 
-/// The law in a line, omega^2 where there are two; a balance or an integral stays with
+/// The law in a line, omega^2 if there are two forms; a balance or an integral is left to
 /// `lindstedt derive`.
 fn first_law(solution: &Solution) -> Vec<Block<'_>> {
     match solution.law.display_forms().into_iter().next() {
@@ -151,7 +151,7 @@ fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
     Block::Detail(format!("omega   = {}   ({symbol} = {})", decimal(frequency), decimal(amplitude)))
 }
 
-/// A reading by the paper's way.
+/// The paper's reading.
 fn papers<'a>(impact: &Impact, column: &'a JudgedPhases) -> Vec<Block<'a>> {
     let setup = &impact.setup;
     let words = match column.reading {
@@ -315,7 +315,7 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
     lines.into_iter().map(Block::Note).collect()
 }
 
-/// lambda v up to which the first term of the restitution is good to 1 %.
+/// Largest lambda v for which the first term of the restitution is accurate to 1 %.
 const SMALL_DAMPING: f64 = 0.15;
 
 /// The table of every law, and the reasons of those that do not apply.
@@ -352,7 +352,7 @@ fn attempted(attempt: &Attempt) -> String {
 fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
     let columns: Vec<PhaseReading> = impact.columns.iter().map(|column| column.reading).collect();
     let amplitude = impact.amplitude();
-    // The power of ten above it; below 1e-15 nothing is known.
+    // The power of ten above it; below 1e-15 it is rounding.
     let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());
     let mut blocks = vec![
         Block::Heading("Beside Runge-Kutta on the original equation".to_owned()),
@@ -397,8 +397,8 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
     blocks
 }
 
-/// The units with their numbers, every quantity in them, and what they say of the bodies and of the
-/// paper.
+/// The units with their numbers, every quantity in them, and the remarks on yielding and on the
+/// paper's contact time.
 fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<'a>> {
     let (sign, inside) = match impact.setup.side {
         Side::Right => ('+', "x - xc"),
@@ -533,7 +533,7 @@ fn printed(impact: &Impact, over_the_printed: &ImpactQuantity, tolerance: f64) -
     )
 }
 
-/// A stated yield limit beside the peak pressure.
+/// A stated yield limit compared with the peak pressure.
 fn yielding(check: &YieldCheck) -> String {
     let (body, onset, pressure) = (check.body, decimal(check.onset), decimal(check.pressure));
     match check.is_exceeded() {

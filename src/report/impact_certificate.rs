@@ -1,4 +1,4 @@
-//! The proved enclosures of an impact, and with them the errors of its closed forms.
+//! The proved enclosures of an impact, and the errors of its closed forms that follow from them.
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
@@ -8,16 +8,16 @@ use crate::exact::Rational;
 use crate::impact::{Impact, PhaseReading};
 use crate::verify::Verdict;
 
-/// An impact and what is proved of it.
+/// An impact and its proved enclosures.
 #[derive(Clone, Debug)]
 pub struct ImpactCertificateReport<'a> {
     /// The impact with its closed forms.
     pub impact: &'a Impact,
     /// The enclosures.
     pub enclosure: &'a ImpactEnclosure,
-    /// A, xc and gamma as they were taken.
+    /// A, xc and gamma as exact numbers.
     pub exact: [&'a Rational; 3],
-    /// The relative error up to which a closed form passes.
+    /// The largest relative error of a passing closed form.
     pub tolerance: f64,
 }
 
@@ -51,7 +51,7 @@ impl ImpactCertificateReport<'_> {
 
 /// The document of a proved impact.
 pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<'a> {
-    // As they are: in decimals where they end.
+    // Exact values, as decimals if these are finite.
     let exactly = |value: &Rational| exact_decimal(value).unwrap_or_else(|| value.to_string());
     let [amplitude, barrier, stiffness] = report.exact.map(exactly);
     let given = vec![

@@ -1,4 +1,5 @@
-//! Every method on one impact: the equation, a row each, and why the others have none.
+//! Comparison of all methods on one impact: the equation, a row for each method, and the reasons
+//! for the methods without one.
 
 use super::impact::problem_blocks;
 use super::{Block, Document};

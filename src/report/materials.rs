@@ -1,5 +1,5 @@
-//! A study of materials: what was asked, the first contact of each barrier, its way to rest, and
-//! what holding something else fixed changes. The sentences follow from the numbers.
+//! A study of materials: the problem, the first contact of each barrier, the motion until rest, and
+//! the effect of holding another form of the damping fixed. The sentences follow from the numbers.
 
 use super::{Block, Document, cell};
 use crate::decimal::{decimal, significant};
@@ -8,11 +8,11 @@ use crate::impact::{
     Parameter, REST_FRACTION, YieldCheck,
 };
 
-/// Part of the rest time below which materials rest at the same time, for the decision of an
-/// engineer.
+/// Relative difference below which rest times count as equal for the choice of a material.
 const SAME: f64 = 0.01;
 
-/// Energies that are listed of one material; JSON and tables of comma-separated values have all.
+/// Largest number of listed energies of one material; JSON and tables of comma-separated values
+/// have all.
 const LISTED: usize = 10;
 
 /// The document of a study of materials.
@@ -118,8 +118,8 @@ fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
     blocks
 }
 
-/// alpha in parts of the amplitude up to which the rest times of a chain are within a percent;
-/// `docs/chain.md`.
+/// Largest ratio of alpha to the amplitude for which the rest times of a chain are within one
+/// percent; `docs/chain.md`.
 const CHAIN_FRICTION: f64 = 0.02;
 
 /// The form that is given, with its number: `held fixed: zeta = 0.02`.
@@ -417,7 +417,7 @@ fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     ))
 }
 
-/// The benefit of a barrier at all.
+/// The benefit of a barrier over none, in words; `None` if it is not known.
 fn baseline(study: &MaterialStudy) -> Option<String> {
     if study.rows.iter().all(|row| row.course.impacts.is_empty()) {
         return None;

@@ -1,5 +1,5 @@
-//! A mechanism: its energies, its equations of motion, where it rests, how it swings there, and on
-//! how many numbers it depends.
+//! A mechanism: its energies, its equations of motion, its equilibria, its modes there, and its
+//! dimensionless groups.
 
 use std::borrow::Cow;
 
@@ -174,7 +174,7 @@ fn rest_in_words(rest: &RestStudy, coordinates: &[Symbol]) -> String {
     format!("{}{condition}{zero}", places.join(", "))
 }
 
-/// A mode; `unpulled` is what to say of one that neither swings nor grows.
+/// A mode in words; `unpulled` is the text for one that neither oscillates nor grows.
 fn mode_in_words(mode: &Mode, coordinates: &[Symbol], unpulled: &str) -> String {
     let shape = mode.shape.as_ref().filter(|shape| shape.len() > 1).map(|shape| {
         let parts: Vec<String> = coordinates.iter().map(|name| name.name().to_owned()).collect();
@@ -276,7 +276,7 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
     blocks
 }
 
-/// The section of the paper's equations, each beside what the mechanism of the paper makes of it.
+/// The section of the paper's equations, each compared with that of the paper's mechanism.
 ///
 /// ```
 /// use lindstedt::{audit::paper, mechanics::study};

@@ -4,8 +4,8 @@
 //! In come results: a [`Solution`] with its [`Verification`], a
 //! [`Comparison`](crate::verify::comparison::Comparison), an [`Impact`](crate::impact::Impact), a
 //! [`FrictionStudy`](crate::impact::friction::FrictionStudy). Out go documents, sections of blocks;
-//! every format of `export` knows each kind of block and nothing of the results. Which law is
-//! shown, what is left out and what stands beside what is chosen here, once.
+//! every format of `export` handles each kind of block and does not depend on the results. The
+//! choice of the displayed law, of omissions and of the order is made here, once.
 
 mod audit;
 mod certificate;
@@ -70,7 +70,7 @@ pub struct Document<'a> {
     pub sections: Vec<Vec<Block<'a>>>,
 }
 
-/// One thing that a report says.
+/// An element of a report.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Block<'a> {
@@ -89,13 +89,14 @@ pub enum Block<'a> {
     Heading(String),
     /// A note on the result.
     Note(String),
-    /// A note of second rank, such as a list of the other limit cycles.
+    /// A secondary note, such as a list of the other limit cycles.
     Remark(String),
-    /// A sentence that follows from the numbers; it is broken where a line ends.
+    /// A sentence that follows from the numbers; it is wrapped to the width of the page.
     Sentence(String),
     /// A detail for the longest format only.
     Detail(String),
-    /// A law: omega^2 or omega, or zero of a relation between omega and the amplitude.
+    /// A law: omega^2 or omega, or a relation between omega and the amplitude with zero on the
+    /// left.
     Law {
         /// The left side.
         left: Expr,
@@ -118,9 +119,9 @@ pub enum Block<'a> {
         /// Its value.
         amplitude: Sum,
     },
-    /// The motion of an answer; it may be zero, where only quadrature gives it.
+    /// The motion of an answer; it is zero if only quadrature gives it.
     Motion(&'a Solution),
-    /// A symbol and what it stands for.
+    /// A symbol and its definition.
     Definition(&'a Definition),
     /// A symbol and its number.
     Value {
@@ -131,16 +132,14 @@ pub enum Block<'a> {
         /// The source of the value.
         source: Option<&'a str>,
     },
-    /// A formula judged at given values.
+    /// The verification of a formula at given values.
     Judged {
         /// The verification.
         verification: &'a Verification,
-        /// The error of the series of omega, where it stands beside omega^2 and differs.
+        /// The error of the series of omega, if it is shown with that of omega^2 and differs.
         series_of_omega: Option<f64>,
         /// The name of hbar, if it was chosen by the least squared residual.
         hbar: Symbol,
-        /// The error up to which it passes.
-        tolerance: f64,
     },
     /// The true frequency, which a table is compared with.
     Truth {
@@ -148,7 +147,7 @@ pub enum Block<'a> {
         equation: &'a Equation,
         /// The values.
         at: &'a Values,
-        /// The frequency, or why there is none.
+        /// The frequency, or the reason why there is none.
         frequency: Result<f64, String>,
     },
     /// A table of methods.
@@ -157,19 +156,19 @@ pub enum Block<'a> {
         rows: Vec<MethodRow<'a>>,
         /// The values at which they are judged.
         at: &'a Values,
-        /// The error up to which they pass.
+        /// The largest error that passes.
         tolerance: f64,
     },
-    /// Names with what is said of each.
+    /// Names with a text for each.
     Entries {
         /// The common heading.
         heading: &'static str,
         /// The names and the words.
         entries: Vec<(String, String)>,
     },
-    /// Quantities, and the number of each with what is said of it.
+    /// Quantities, each with its number and a remark.
     Facts(Vec<(&'static str, String)>),
-    /// A table of numbers as they are to be written, and words; an empty cell says nothing.
+    /// A table of words and numbers, these as they are to be printed; a cell may be empty.
     Table {
         /// The heading of each column.
         head: Vec<Heading>,
@@ -211,7 +210,7 @@ pub enum Block<'a> {
         /// The release, in words.
         release: String,
     },
-    /// The numbers of an impact beside those of Runge-Kutta.
+    /// The numbers of an impact compared with those of Runge-Kutta.
     Quantities {
         /// The columns.
         columns: Vec<PhaseReading>,
@@ -234,14 +233,14 @@ pub enum Block<'a> {
         rows: &'a [ImpactRow],
         /// Time to contact, speed, penetration, duration and period of the true motion.
         truth: [f64; 5],
-        /// The error up to which they pass.
+        /// The largest error that passes.
         tolerance: f64,
     },
     /// The verdicts on an impact.
     Verdicts {
-        /// On each column.
+        /// The verdict on each column.
         verdicts: Vec<(PhaseReading, Verdict)>,
-        /// The error up to which they pass.
+        /// The largest error that passes.
         tolerance: f64,
     },
     /// A quantity in SI units: its letter, the formula that it follows from, its number.
@@ -257,7 +256,7 @@ pub enum Block<'a> {
         /// Its description in words.
         words: &'static str,
     },
-    /// The numbers of an impact in SI units, with what of the paper's stands beside them.
+    /// The numbers of an impact in SI units.
     SiQuantities {
         /// The columns.
         columns: Vec<PhaseReading>,
@@ -282,9 +281,9 @@ impl Block<'_> {
 /// The heading of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heading {
-    /// In plain letters.
+    /// The heading in plain text.
     pub text: &'static str,
-    /// In LaTeX.
+    /// The heading in LaTeX.
     pub latex: &'static str,
 }
 
@@ -300,7 +299,7 @@ impl From<(&'static str, &'static str)> for Heading {
     }
 }
 
-/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
+/// A signed relative error in percent: `-1.49 %`; an error of the size of rounding is named so.
 ///
 /// ```
 /// assert_eq!(lindstedt::report::percent(-0.0149), "-1.49 %");
@@ -313,7 +312,7 @@ pub fn percent(error: f64) -> String {
     format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
 }
 
-/// A size in percent: `2.86 %`; what is rounding is called that.
+/// An absolute value in percent: `2.86 %`; a value of the size of rounding is named so.
 pub(crate) fn size_in_percent(size: f64) -> String {
     match size < 1e-9 {
         true => "< 1e-7 %".to_owned(),
@@ -321,12 +320,13 @@ pub(crate) fn size_in_percent(size: f64) -> String {
     }
 }
 
-/// A number, or a stroke where there is none.
+/// A number, or a dash if there is none.
 fn cell(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), decimal)
 }
 
-/// Whether the first column of a table has names, no number among them: then it stands on the left.
+/// Whether the first column of a table consists of names without numbers, so that it is aligned
+/// left.
 pub(crate) fn are_names(rows: &[Vec<String>]) -> bool {
     let mut first = rows.iter().filter_map(|row| row.first()).peekable();
     first.peek().is_some() && first.all(|name| name.parse::<f64>().is_err())

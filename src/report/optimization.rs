@@ -1,5 +1,5 @@
-//! A search for the best damper: what was asked, the best design beside the paper's, how far the
-//! runs agree, what else finds as much, and what decides; or the front of several objectives. The
+//! A search for the best damper: the problem, the best design compared with the paper's, the spread
+//! of the runs, other searches, and the limiting factors; or the front of several objectives. The
 //! sentences follow from the numbers.
 
 mod sentences;
@@ -16,7 +16,8 @@ use crate::optimize::{
     Study,
 };
 
-/// Rows of a front that are listed; JSON and tables of comma-separated values have all.
+/// Largest number of rows of a front that are listed; JSON and tables of comma-separated values
+/// have all.
 const LISTED: usize = 24;
 
 /// Generations whose best value is listed.
@@ -65,7 +66,7 @@ fn with_unit(objective: Objective, value: f64) -> String {
     format!("{} {}", decimal(value), objective.unit()).trim_end().to_owned()
 }
 
-/// `length`, or `material` beyond the numbers.
+/// The name of a variable: `length`, or `material` for the index after the numbers.
 fn name_of(study: &Study, index: usize) -> &'static str {
     let variable = study.question.variables.get(index);
     variable.map_or("material", |variable| variable.parameter.name())
@@ -141,7 +142,7 @@ fn route(study: &Study) -> &'static str {
     }
 }
 
-/// The largest part by which closed forms are off for the best designs, judged again.
+/// The largest relative error of closed forms for the best designs, which were verified.
 fn closed_forms_off(study: &Study) -> f64 {
     let finite = study.finalists.iter().filter(|finalist| finalist.values[0].is_finite());
     let off = finite
@@ -333,7 +334,7 @@ fn options(study: &Study) -> Vec<String> {
     words
 }
 
-/// The numbers of a design beside each other.
+/// The numbers of a design.
 fn quantities(study: &Study, design: &EvaluatedDesign) -> Vec<(Heading, String)> {
     let mut rows: Vec<(Heading, String)> = [
         Objective::RestTime,

@@ -1,5 +1,5 @@
-//! The main mass with its damper: what it is, what happened, where the energy went, and what the
-//! damper is worth.
+//! The main mass with its damper: its parameters, the events, the energy balance, and the effect of
+//! the damper.
 
 use super::trajectory::{Doubt, TRUSTED};
 use super::{Block, Document, cell};
@@ -9,7 +9,7 @@ use crate::impact::primary::{Alone, PrimaryMotion, PrimaryParameter, PrimaryRow}
 use crate::impact::sweep::{Axis, grid_values};
 use crate::symbol::Symbol;
 
-/// The most impacts that are listed.
+/// Largest number of listed impacts.
 const MOST_IMPACTS: usize = 12;
 
 /// A motion of main mass and pendulum to be reported.
@@ -19,18 +19,18 @@ pub struct PrimaryReport<'a> {
     pub motion: &'a PrimaryMotion,
     /// The units of the numbers.
     pub units: &'a Units,
-    /// The times at which states are asked for, in units of 1/omega.
+    /// The times at which states are requested, in units of 1/omega.
     pub samples: &'a [f64],
 }
 
 impl PrimaryReport<'_> {
-    /// The energy that is not accounted for, where it is more than [`TRUSTED`].
+    /// The energy that is not accounted for, if it exceeds [`TRUSTED`]; `None` otherwise.
     pub fn doubt(&self) -> Option<Doubt> {
         let residual = self.motion.energy.residual;
         (residual > TRUSTED).then_some(Doubt::Energy(residual))
     }
 
-    /// Whether the motion was followed as long as asked, and its energy is accounted for.
+    /// Whether the motion covers the whole duration, and its energy is accounted for.
     pub fn is_complete(&self) -> bool {
         self.motion.is_complete() && self.doubt().is_none()
     }
@@ -249,7 +249,7 @@ fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 pub struct PrimarySweepReport<'a> {
     /// The values that are swept; the last axis varies fastest.
     pub axes: &'a [Axis],
-    /// The parameters that they are values of, in the same order.
+    /// The parameters of the axes, in the same order.
     pub parameters: &'a [PrimaryParameter],
     /// A row for each motion.
     pub rows: &'a [PrimaryRow],
@@ -263,8 +263,8 @@ impl PrimarySweepReport<'_> {
         grid_values(self.axes, row)
     }
 
-    /// Whether a force drives any of the motions: then their amplitudes in the long run are asked
-    /// for, otherwise their rest times.
+    /// Whether a force drives any of the motions: then the report shows their amplitudes in the
+    /// long run, otherwise their rest times.
     pub fn is_driven(&self) -> bool {
         self.rows.iter().any(PrimaryRow::is_driven)
     }

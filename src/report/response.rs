@@ -1,5 +1,5 @@
-//! Steady states of an oscillator: branches with their stability, where they change, how far all is
-//! from the true motion.
+//! Steady states of an oscillator: branches with their stability, their bifurcations, and the error
+//! against the true motion.
 
 use std::borrow::Cow;
 
@@ -14,10 +14,10 @@ use crate::response::{Branch, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// The rows of the table of a branch.
+/// Number of rows of the table of a branch.
 const ROWS: usize = 13;
 
-/// Folds and the like that are listed.
+/// Largest number of listed bifurcations.
 const MOST_BIFURCATIONS: usize = 40;
 
 /// The document of a response.
@@ -123,7 +123,7 @@ pub(crate) fn motion_frequency(response: &ResponseDiagram) -> String {
     }
 }
 
-/// theta in time.
+/// theta as a function of time.
 fn phase(response: &ResponseDiagram) -> String {
     let time = Expr::product([response.frequency.clone(), Expr::symbol("t")]);
     match (time.terms().len(), response.question.periods) {
@@ -199,7 +199,7 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
     blocks
 }
 
-/// The reason why a branch ends at a point, where that is worth saying.
+/// The reason why a branch ends at a point, in words; `None` if it needs no mention.
 fn end_in_words(
     response: &ResponseDiagram,
     end: BranchEnd,
@@ -238,7 +238,7 @@ fn end_in_words(
 
 /// The parts of a branch on which dry friction holds the motion for a time.
 fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
-    /// Stretches that are listed.
+    /// Largest number of listed parts.
     const MOST: usize = 4;
     let name = response.question.parameter;
     let sticks = |point: &SteadyMotion| point.stuck > 0.0;
@@ -348,7 +348,7 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
     Some(blocks)
 }
 
-/// Folds that were left out.
+/// A note on folds that were left out.
 fn ripple(response: &ResponseDiagram) -> Option<Block<'static>> {
     let ripple = response.ripple?;
     let name = response.question.parameter.name();
@@ -383,7 +383,7 @@ fn backbone(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
     Some(blocks)
 }
 
-/// The slow equations, their steady motions, and how far these are from the branches.
+/// The slow equations, their steady motions, and the differences of these from the branches.
 fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let solution = &slow.solution;

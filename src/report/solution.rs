@@ -1,4 +1,4 @@
-//! A derived formula, and the verdict where it was judged.
+//! A derived formula, and its verification if there is one.
 
 use std::borrow::Cow;
 
@@ -23,17 +23,16 @@ use crate::verify::Verification;
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
-/// let document = lindstedt::report::solution(&solution, None, 0.01);
+/// let document = lindstedt::report::solution(&solution, None);
 /// assert!(lindstedt::export::latex::document(&document).contains(r"\omega^{2}"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution<'a>(
     solution: &'a Solution,
     verification: Option<&'a Verification>,
-    tolerance: f64,
 ) -> Document<'a> {
     if let Some(response) = &solution.response {
-        return super::driven::driven(solution, response, verification, tolerance);
+        return super::driven::driven(solution, response, verification);
     }
     let title = Block::Title {
         words: solution.title(),
@@ -67,8 +66,7 @@ pub fn solution<'a>(
     let notes = notes.map(Block::Note);
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
-    sections
-        .extend(verification.map(|verification| vec![judged(solution, verification, tolerance)]));
+    sections.extend(verification.map(|verification| vec![judged(solution, verification)]));
     Document { sections }
 }
 
@@ -100,13 +98,14 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: DisplayedLaw<'a>) -> V
     }
 }
 
-/// Binary digits of a number that is read as it is: some six hundred decimal ones.
+/// Largest number of binary digits of a number that is printed exactly: some six hundred decimal
+/// ones.
 const LONGEST: u64 = 2000;
 
 /// Digits of the coefficients of a closed form that are rounded themselves.
 const ROUNDED_DIGITS: usize = 15;
 
-/// A quotient of polynomials whose coefficients are rounded, or too long for eyes, in decimals;
+/// A quotient of polynomials whose coefficients are rounded, or too long to be read, in decimals;
 /// `None` for everything else.
 fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
     solution.degrees?;
@@ -167,7 +166,7 @@ fn rounded_to<'a>(longest: u64) -> Block<'a> {
     ))
 }
 
-/// The definitions, polynomials with coefficients that are too long for eyes in decimals.
+/// The definitions; polynomials with coefficients that are too long to be read are in decimals.
 fn definitions(solution: &Solution) -> Vec<Block<'_>> {
     let polynomial = |meaning: &Expr| meaning.to_polynomial(&mut |_| None).ok().flatten();
     let mut blocks = vec![];
@@ -191,7 +190,7 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
 fn slow_equations<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Block<'a>> {
     let rates = [(slow.amplitude, &slow.amplitude_rate), (slow.phase, &slow.phase_rate)];
     let polynomials = rates.map(|(_, right)| right.to_polynomial(&mut |_| None).ok().flatten());
-    // One form for both.
+    // Both rates are shown in the same form.
     let both = polynomials.iter().all(Option::is_some);
     let equation = |((name, right), polynomial): ((Symbol, &'a Expr), Option<Polynomial>)| {
         let left = Expr::from(name.derivative());
@@ -203,7 +202,7 @@ fn slow_equations<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Block
     rates.into_iter().zip(polynomials).map(equation).collect()
 }
 
-/// The amplitudes that stay, and the motion from its start in closed form.
+/// The steady amplitudes, and the motion from its start in closed form.
 fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
     let mut sections = vec![];
     if !slow.steady.is_empty() {
@@ -217,15 +216,15 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
     sections
 }
 
-/// Towards a limit cycle or away from it: the slow equations, and the motion from its start in
-/// closed form.
+/// The motion towards a limit cycle or away from it: the slow equations, and the motion from its
+/// start in closed form.
 fn approach<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Vec<Block<'a>>> {
     let mut blocks = vec![Block::Heading("Off the cycle".to_owned())];
     blocks.extend(slow_equations(solution, slow));
     std::iter::once(blocks).chain(from_start(slow)).collect()
 }
 
-/// The motion from its start in closed form, where there is one.
+/// The motion from its start in closed form; `None` if there is none.
 fn from_start(slow: &Modulation) -> Option<Vec<Block<'_>>> {
     let transient = slow.transient.as_ref()?;
     let start = transient.start;
@@ -250,9 +249,9 @@ fn from_start(slow: &Modulation) -> Option<Vec<Block<'_>>> {
     Some(blocks.collect())
 }
 
-/// The verdict, with what of it is worth saying.
-fn judged<'a>(solution: &Solution, verification: &'a Verification, tolerance: f64) -> Block<'a> {
-    /// Errors that differ by less are one.
+/// The verdict, with the relevant numbers.
+fn judged<'a>(solution: &Solution, verification: &'a Verification) -> Block<'a> {
+    /// Difference below which two errors count as equal.
     const SAME: f64 = 1e-9;
     let differs = |other: &f64| {
         let error = verification.relative_error;
@@ -262,7 +261,6 @@ fn judged<'a>(solution: &Solution, verification: &'a Verification, tolerance: f6
         verification,
         series_of_omega: verification.error_of_omega.filter(differs),
         hbar: convergence_control(solution),
-        tolerance,
     }
 }
 

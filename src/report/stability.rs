@@ -1,5 +1,5 @@
-//! The transition curves of a linear equation with periodic coefficients, and how they stand beside
-//! Floquet's multipliers.
+//! The transition curves of a linear equation with periodic coefficients, compared with Floquet's
+//! multipliers.
 
 use std::borrow::Cow;
 
@@ -17,7 +17,7 @@ pub struct StabilityReport<'a> {
     pub curves: &'a TransitionCurves,
     /// The given values and the verdict on each curve; `None` without values.
     pub judged: Option<(&'a Values, &'a [JudgedCurve])>,
-    /// The error up to which a curve passes.
+    /// The largest error of a passing curve.
     pub tolerance: f64,
 }
 

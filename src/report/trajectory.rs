@@ -1,4 +1,4 @@
-//! A motion in numbers: the equations, the numbers in them, the states, and where the energy went.
+//! A simulated motion: the equations, the numbers in them, the states, and the energy balance.
 
 use std::borrow::Cow;
 
@@ -12,17 +12,17 @@ use crate::trajectory::{
     Crossing, DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest, in_words,
 };
 
-/// The most times of rest that are listed.
+/// Largest number of listed times of sticking.
 const MOST_HELD: usize = 6;
 
-/// The most states of a section that are listed.
+/// Largest number of listed states of a section.
 const MOST_ON_SECTION: usize = 40;
 
-/// The rows of the table where no samples are asked for.
+/// Number of rows of the table if no samples are requested.
 const ROWS: u32 = 20;
 
-/// The part of the energy that may go astray, or of the largest displacement by which two
-/// integrators may differ, in a motion that is trusted.
+/// Largest unaccounted part of the energy, or difference of two integrators relative to the largest
+/// displacement, of a motion that is trusted.
 pub const TRUSTED: f64 = 1e-6;
 
 /// A motion to be reported.
@@ -30,9 +30,9 @@ pub const TRUSTED: f64 = 1e-6;
 pub struct TrajectoryReport<'a> {
     /// The motion.
     pub motion: &'a Trajectory,
-    /// The motion by the other integrator, if it is judged.
+    /// The motion by the other integrator, if it was computed for verification.
     pub judge: Option<&'a Trajectory>,
-    /// The times at which states are asked for.
+    /// The times at which states are requested.
     pub samples: &'a [f64],
     /// The time until which the motion is known to six digits, if that is not its end
     /// ([`Trajectory::known_until`]).
@@ -66,8 +66,8 @@ impl std::fmt::Display for Doubt {
 }
 
 impl TrajectoryReport<'_> {
-    /// The energy that is not accounted for, or the difference of two integrators, where it is more
-    /// than [`TRUSTED`].
+    /// The energy that is not accounted for, or the difference of two integrators, if either
+    /// exceeds [`TRUSTED`]; `None` otherwise.
     pub fn doubt(&self) -> Option<Doubt> {
         let residual = self.motion.balance.as_ref().map(|balance| balance.residual);
         let difference = self.judge.map(|judge| self.motion.difference(judge));
@@ -76,14 +76,14 @@ impl TrajectoryReport<'_> {
         energy.or_else(|| difference.filter(is_doubtful).map(Doubt::Integrators))
     }
 
-    /// Whether the motion, and its judge, were followed as long as asked, and nothing speaks
-    /// against them.
+    /// Whether the motion, and that of the other integrator, cover the whole duration, and there is
+    /// no [doubt](Self::doubt).
     pub fn is_complete(&self) -> bool {
         let motions = [Some(self.motion), self.judge];
         motions.into_iter().flatten().all(Trajectory::is_complete) && self.doubt().is_none()
     }
 
-    /// The times of the table: those asked for, or equally spaced ones.
+    /// The times of the table: those requested, or equally spaced ones.
     pub fn times(&self) -> Vec<f64> {
         let end = self.motion.end();
         match self.samples.is_empty() {
@@ -189,8 +189,8 @@ pub(crate) fn section_in_words(section: &PoincareSection) -> String {
     }
 }
 
-/// The document of many motions, a row each: what is varied, the end, the extremes and how many
-/// states lie on the section.
+/// The document of many motions, a row each: the varied values, the end, the extremes and the
+/// number of states on the section.
 pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
     let equation =
@@ -200,7 +200,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
         .coordinates
         .iter()
         .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
-    // The names of a table live as long as the program.
+    // The names of a table must have the lifetime of the program.
     head.extend(extremes.map(|name| Symbol::new(&name).name()));
     let on_section = course.section.is_some();
     if on_section {

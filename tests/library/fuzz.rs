@@ -15,7 +15,7 @@ use lindstedt::verify::comparison::compare;
 use proptest::prelude::*;
 
 fn cases() -> u32 {
-    std::env::var("LINDSTEDT_FUZZ_CASES").ok().and_then(|number| number.parse().ok()).unwrap_or(300)
+    std::env::var("LINDSTEDT_FUZZ_CASES").ok().and_then(|number| number.parse().ok()).unwrap_or(100)
 }
 
 /// Pieces of equations, right and wrong, in any order.
@@ -78,7 +78,7 @@ fn answer(equation: &str) {
                     let written = serde_json::to_value(&document).expect("JSON");
                     let read = json::read_solution(&written).expect("what is written can be read");
                     assert_eq!(json::solution(&read, None), document);
-                    assert!(!text::solution(&solution, None, 0.01).is_empty());
+                    assert!(!text::solution(&solution, None).is_empty());
                     assert!(
                         !text::steps(&solution).is_empty()
                             && !latex::solution(&solution, None).is_empty()

@@ -420,7 +420,7 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
     }
     let judged = judge(&oscillator, &root, &"eps = 1, A = 1".parse().expect("values"), 0.01)
         .expect("a verdict");
-    let words = text::solution(&root, Some(&judged), 0.01);
+    let words = text::solution(&root, Some(&judged));
     let (_, reach) = words.split_once("within 1 % up to A = ").expect("a range");
     let reach: f64 = reach.split_whitespace().next().expect("a number").parse().expect("a number");
     assert!(reach > 40.0, "{words}");
@@ -482,7 +482,7 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
             by(Method::HomotopyPerturbation, None, None),
         ] {
             let solution = solve(&oscillator, &options).expect("an answer");
-            let words = text::solution(&solution, None, 0.01);
+            let words = text::solution(&solution, None);
             assert!(longest(&words) <= 15, "{equation}: {words}");
             let numbers = [("A".into(), 0.01)].into();
             let squared = |solution: &Solution| {
@@ -507,7 +507,7 @@ fn digits_that_cancel_are_said_to_be_lost() {
     for (amplitude, is_said) in [(1, false), (6, true)] {
         let at = format!("A = {amplitude}").parse().expect("a value");
         let judged = judge(&morse, &solution, &at, 0.01).expect("a verdict");
-        let words = text::solution(&solution, Some(&judged), 0.01);
+        let words = text::solution(&solution, Some(&judged));
         let said = words.split_once("rounding moves omega^2 by ");
         assert_eq!(said.is_some(), is_said, "{words}");
         let truth = 1.0 - (1.0 - f64::exp(-f64::from(amplitude))).powi(2);

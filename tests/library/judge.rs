@@ -705,7 +705,7 @@ fn a_verdict_says_what_it_is_reached_on() {
         let options = Options { method: Some(method), order: Some(1), ..Options::default() };
         let solution = solve(&oscillator, &options).expect(equation);
         let judged = judge(&oscillator, &solution, &at.parse().expect(at), 0.01).expect(equation);
-        judged.verdict_in_words(0.01)
+        judged.verdict_in_words()
     };
     let balanced = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1");
     assert_eq!(balanced, "pass: frequency within 1 %, motion off by 4.47 %");
@@ -758,11 +758,26 @@ fn latex_says_what_a_verdict_is_reached_on() {
         let options = Options { method: Some(method), order: Some(1), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let found = judge(&oscillator, &solution, &values(&at), 0.03).unwrap();
-        let words = found.verdict_in_words(0.03);
-        let document = lindstedt::report::solution(&solution, Some(&found), 0.03);
+        let words = found.verdict_in_words();
+        let document = lindstedt::report::solution(&solution, Some(&found));
         let latex = lindstedt::export::latex::document(&document);
-        let both = found.verdict_on_both(0.03).is_some();
+        let both = found.verdict_on_both().is_some();
         assert_eq!(latex.contains(&format!("verdict {words}\n")), both, "{words}: {latex}");
         assert!(both || latex.contains("verdict pass\n"), "{latex}");
     }
+}
+
+/// A formula is judged on the equation that it answers alone, whatever the other one is called.
+#[test]
+fn a_formula_of_another_equation_is_not_judged() {
+    let duffing = Oscillator::parse("x'' + x + x^3 = 0").unwrap();
+    let law = solve(&duffing, &Options::default()).unwrap();
+    let at = values(&[("A", "1")]);
+    for other in ["x'' + sin(x) = 0", "x'' + x + x^3 + x^5 = 0", "y'' + y + y^3 = 0"] {
+        let error = judge(&Oscillator::parse(other).unwrap(), &law, &at, 0.01).unwrap_err();
+        assert!(matches!(error, VerificationError::OtherEquation { .. }), "{other}: {error}");
+    }
+    // The same equation in another order and with a fraction written otherwise.
+    let same = Oscillator::parse("2*x^3/2 + x'' = -x").unwrap();
+    assert!(judge(&same, &law, &at, 0.01).is_ok());
 }

@@ -149,7 +149,7 @@ fn free_linear_equations_are_answered_exactly() {
             motion,
             "{equation}"
         );
-        let text = lindstedt::export::text::solution(&solution, None, 0.01);
+        let text = lindstedt::export::text::solution(&solution, None);
         assert!(
             text.contains("exact: the equation is linear") && !text.contains("truncated"),
             "{text}"
@@ -163,11 +163,7 @@ fn free_linear_equations_are_answered_exactly() {
             ..Options::default()
         };
         let oscillator = Oscillator::parse(equation).expect(equation);
-        lindstedt::export::text::solution(
-            &solve(&oscillator, &options).expect(equation),
-            None,
-            0.01,
-        )
+        lindstedt::export::text::solution(&solve(&oscillator, &options).expect(equation), None)
     };
     assert!(!text("x'' + 4*x = 0").contains("truncated"));
     assert!(text("x'' + 4*x + x^3 = 0").contains("truncated"));

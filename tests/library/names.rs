@@ -74,7 +74,7 @@ fn a_name_of_the_program_is_never_one_of_the_user() {
             let Some(plain) = answer(equation, "kappa", method) else {
                 continue;
             };
-            let report = |solution: &Solution| text::solution(solution, None, 0.01);
+            let report = |solution: &Solution| text::solution(solution, None);
             let expected = words(&report(&plain))["kappa"];
             for name in NAMES {
                 let solution = answer(equation, name, method).expect("as with kappa");
@@ -173,7 +173,7 @@ struct Report {
 
 impl Report {
     fn of(solution: &Solution) -> Self {
-        let steps = text::steps(solution) + &text::solution(solution, None, 0.01);
+        let steps = text::steps(solution) + &text::solution(solution, None);
         let formulas = latex::steps(solution) + &latex::solution(solution, None);
         // Comments and running text spell names as they are typed.
         let formulas: Vec<&str> = formulas.lines().filter(|line| !line.starts_with('%')).collect();
@@ -371,8 +371,7 @@ fn a_coordinate_may_be_called_theta() {
             );
             continue;
         };
-        let text =
-            |solution: &Solution| text::steps(solution) + &text::solution(solution, None, 0.01);
+        let text = |solution: &Solution| text::steps(solution) + &text::solution(solution, None);
         // First the phase, then the coordinate: the other order would make them one.
         let expected = words_replaced(&text(&plain), "theta", "phi");
         let expected = words_replaced(&expected, "dx", "dtheta_");
@@ -437,9 +436,9 @@ fn letters_of_an_answer_give_way_to_names_of_the_equation() {
             // Every name of the equation stands where it stands in the answer to the other, every
             // letter of the answer likewise.
             let letters = found.letters();
-            let report = text::solution(&found, None, 0.01) + &text::steps(&found);
+            let report = text::solution(&found, None) + &text::steps(&found);
             let words_found = words(&report);
-            let report = text::solution(&expected, None, 0.01) + &text::steps(&expected);
+            let report = text::solution(&expected, None) + &text::steps(&expected);
             let words_expected = words(&report);
             let count =
                 |words: &BTreeMap<&str, usize>, name: &str| words.get(name).copied().unwrap_or(0);
@@ -481,7 +480,7 @@ fn letters_stand_in_every_format() {
         values.insert(apart.resolve_symbol(name), value).expect("a value");
     }
     let judged = lindstedt::judge(&apart, &solution, &values, 0.01).expect("a verdict");
-    let report = text::solution(&solution, Some(&judged), 0.01);
+    let report = text::solution(&solution, Some(&judged));
     assert!(report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "), "{report}");
     assert!(report.contains("within 1 % up to C = "), "{report}");
     let read = json::read_solution(&serde_json::to_value(&document).expect("a document"))

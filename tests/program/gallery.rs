@@ -118,6 +118,34 @@ fn the_example_of_two_links_prints_what_it_printed() {
     snapshots(|| insta::assert_snapshot!("two-links", two_links::report().expect("a motion")));
 }
 
+#[path = "../../examples/coupled_modes.rs"]
+mod coupled_modes;
+#[path = "../../examples/first_law.rs"]
+mod first_law;
+#[path = "../../examples/impact_phases.rs"]
+mod impact_phases;
+#[path = "../../examples/poincare_section.rs"]
+mod poincare_section;
+#[path = "../../examples/resonance_curve.rs"]
+mod resonance_curve;
+#[path = "../../examples/which_method.rs"]
+mod which_method;
+
+/// The programs that a reader of the README would write first run to their end.
+#[test]
+fn the_first_programs_run() {
+    for program in [
+        coupled_modes::main,
+        first_law::main,
+        impact_phases::main,
+        poincare_section::main,
+        resonance_curve::main,
+        which_method::main,
+    ] {
+        program().expect("a program that runs to its end");
+    }
+}
+
 /// The table of every method in text, LaTeX and JSON.
 #[test]
 fn every_comparison_prints_what_it_printed() {

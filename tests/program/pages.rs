@@ -197,7 +197,6 @@ fn the_name_of_the_output_decides_where_no_format_is_given() {
         ("law.tex", "latex"),
         ("law.svg", "svg"),
         ("law.py", "python"),
-        ("law.c", "c"),
         ("law.m", "matlab"),
         ("law.txt", "text"),
         ("law", "text"),
@@ -206,6 +205,11 @@ fn the_name_of_the_output_decides_where_no_format_is_given() {
         let asked = result(&[question.as_slice(), &["--format", format]].concat());
         assert_eq!(written(name, &[]), asked, "{name}");
     }
+    // In C, which has no modules, functions have the name of their file.
+    let program = written("law-2.c", &[]);
+    assert!(program.contains("double law_2_displacement(double t"), "{program}");
+    let plain = result(&[question.as_slice(), &["--format", "c"]].concat());
+    assert_eq!(program.replace("law_2_", ""), plain);
     check(&written("LAW.HTML", &[]));
     assert_eq!(written("text.json", &["--format", "text"]), result(&question));
     let place = folder.join("impact.c");

@@ -237,8 +237,7 @@ fn methods() -> Vec<Case> {
             let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
             let omega = own.frequency_squared.sqrt();
             let text = |language| {
-                code::solution(&oscillator, &solution, Some(&verification), 0.01, language)
-                    .expect(&name)
+                code::solution(&oscillator, &solution, Some(&verification), language).expect(&name)
             };
             let mut values: BTreeMap<String, f64> =
                 numbers.iter().map(|(name, value)| (name.to_string(), *value)).collect();

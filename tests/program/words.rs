@@ -130,6 +130,53 @@ fn formats_are_known_by_their_endings() {
     assert!(command.status.success() && command == kind);
 }
 
+/// The words of a command as a shell takes them apart, places below `examples/` in the project.
+fn words_of(command: &str) -> Vec<String> {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let words = command.split('"').enumerate().flat_map(|(index, part)| match index % 2 {
+        0 => part.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![part.to_owned()],
+    });
+    let in_project = |word: String| match word.strip_prefix("examples/") {
+        Some(_) => root.join(word).display().to_string(),
+        None => word,
+    };
+    words.map(in_project).collect()
+}
+
+/// Runs every command of an example, the lines that begin with `$ lindstedt`, and holds what the
+/// last of them prints to the lines below it: all of it, but for what a line of three points stands
+/// for.
+fn holds(example: &str, folder: &std::path::Path) {
+    let (mut printed, mut shown) = (String::new(), vec![String::new()]);
+    for line in example.lines() {
+        let Some(command) = line.strip_prefix("$ lindstedt ") else {
+            match (line.trim(), shown.last_mut()) {
+                ("...", _) => shown.push(String::new()),
+                (_, Some(piece)) => *piece += &format!("{line}\n"),
+                _ => {}
+            }
+            continue;
+        };
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+            .args(words_of(command))
+            .current_dir(folder)
+            .env("COLUMNS", "90")
+            .output()
+            .expect("the program starts");
+        let both = [output.stdout, output.stderr].concat();
+        printed = String::from_utf8(both).expect("text");
+    }
+    let printed: String = printed.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
+    let mut rest = printed.strip_prefix(shown[0].as_str());
+    for piece in &shown[1..] {
+        rest = rest.and_then(|rest| Some(&rest[rest.find(piece.as_str())? + piece.len()..]));
+    }
+    let all =
+        rest.is_some_and(|rest| rest.is_empty() || shown.last().is_some_and(String::is_empty));
+    assert!(all, "{example}\nprints\n{printed}");
+}
+
 /// Every help begins with commands and the first lines of what the last of them prints.
 #[test]
 fn help_begins_with_a_command_and_its_output() {
@@ -139,41 +186,37 @@ fn help_begins_with_a_command_and_its_output() {
     for file in std::fs::read_dir(root.join("src/cli/help")).expect("the folder of examples") {
         let path = file.expect("a file").path();
         let example = std::fs::read_to_string(&path).expect("an example");
-        let (mut printed, mut shown) = (String::new(), String::new());
-        for line in example.lines() {
-            let Some(command) = line.strip_prefix("$ lindstedt ") else {
-                shown += &format!("{line}\n");
-                continue;
-            };
-            let words = command.split('"').enumerate().flat_map(|(index, part)| match index % 2 {
-                0 => part.split_whitespace().map(str::to_owned).collect(),
-                _ => vec![part.to_owned()],
-            });
-            let words = words.map(|word| match word.strip_prefix("examples/") {
-                Some(_) => root.join(word).display().to_string(),
-                None => word,
-            });
-            let output = std::process::Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-                .args(words)
-                .current_dir(folder.path())
-                .env("COLUMNS", "90")
-                .output()
-                .expect("the program starts");
-            assert!(output.stderr.is_empty(), "{command}");
-            printed = String::from_utf8(output.stdout).expect("text");
-        }
-        let printed: String =
-            printed.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
-        match shown.strip_suffix("...\n") {
-            Some(begin) => assert!(printed.starts_with(begin), "{path:?}: {printed}"),
-            None => assert_eq!(printed, shown, "{path:?}"),
-        }
+        holds(&example, folder.path());
         let name = path.file_stem().and_then(|name| name.to_str()).expect("a name");
         let help = String::from_utf8(run_plain(&[name, "--help"]).stdout).expect("text");
         assert!(help.starts_with(&example), "{help}");
         count += 1;
     }
     assert_eq!(count, 16);
+}
+
+/// What pages show below a command is what it prints, in a terminal of 90 characters.
+#[test]
+fn pages_show_what_commands_print() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let below = |folder: &str| {
+        let files = std::fs::read_dir(root.join(folder)).expect("a folder of pages");
+        files.map(|file| file.expect("a file").path()).collect::<Vec<_>>()
+    };
+    let mut count = 0;
+    for path in [below("docs"), below("docs/methods"), vec![root.join("README.md")]].concat() {
+        if path.extension().is_none_or(|ending| ending != "md") {
+            continue;
+        }
+        let page = std::fs::read_to_string(&path).expect("a page");
+        let blocks = page.split("```text\n").skip(1).filter_map(|rest| rest.split_once("```"));
+        for (block, _) in blocks.filter(|(block, _)| block.starts_with("$ lindstedt")) {
+            holds(block, folder.path());
+            count += 1;
+        }
+    }
+    assert!(count >= 19, "{count}");
 }
 
 /// Completions name every command, and the manual page of each is its own.

@@ -1,10 +1,11 @@
-//! Systems of equations of any number, and the equations that energies make.
+//! Systems of any number of first-order equations, and equations of motion from energies.
 //!
 //! In: rates as expressions, or a kinetic and a potential energy. Out: motions in numbers,
 //! equations of motion, units, dimensionless groups, equilibria and modes.
 //!
-//! Five names to know: [`system::System`], first-order equations that are followed by Taylor series
-//! or Runge-Kutta; [`mechanics`]'s Lagrangian, generalized forces, dimensions and modes.
+//! Five names to know: [`system::System`], first-order equations that are integrated by Taylor
+//! series or Runge-Kutta; and in [`mechanics`] `Mechanism`, `EquationsOfMotion`, `Dimension` and
+//! `Modes`.
 
 #![warn(missing_docs)]
 

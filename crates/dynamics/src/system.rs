@@ -1,13 +1,13 @@
-//! First-order equations `y' = F(t, y)` of any number, written as expressions and followed by their
-//! Taylor series, or by Runge-Kutta, which knows nothing of the series: each is a check of the
+//! Systems of first-order equations `y' = F(t, y)`, written as expressions and integrated by their
+//! Taylor series, or by a Runge-Kutta method, which does not use the series: each is a check of the
 //! other.
 //!
-//! In: the names of the states, the name of time, one expression a state, numbers for everything
-//! else. Out: a [`Path`] that answers every state at any time between, the events it met, and why
-//! it ended. Corners (`abs`, `sgn`, `H`, `max`, `min`) end a step where their argument changes its
-//! sign and begin the next on the other side; a motion that sticks to a corner, as dry friction
-//! makes it, is handed back up to there with its reason. Where a function turns faster than the
-//! motion, as a narrow well does, its argument tells beforehand, and steps end beside it.
+//! In: the names of the states, the name of time, one expression for each state, numbers for all
+//! other symbols. Out: a [`Path`] with every state at any time between, the events it met, and the
+//! reason why it ended. At a corner (`abs`, `sgn`, `H`, `max`, `min`) a step ends where the
+//! argument changes its sign, and the next begins on the other side; a motion that sticks to a
+//! corner, as with dry friction, ends there with that reason. If a function changes faster than the
+//! motion, as in a narrow well, its argument shows this in advance, and steps end beside the place.
 //!
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
@@ -26,6 +26,7 @@
 mod narrow;
 mod polynomial;
 mod runge_kutta;
+mod steps;
 mod taylor;
 
 use std::collections::BTreeMap;
@@ -39,12 +40,13 @@ use crate::symbol::Symbol;
 pub use taylor::LANES;
 
 use narrow::Argument;
-use taylor::{SystemSeries, TaylorRun, TaylorStep};
+use steps::TaylorSteps;
+use taylor::{SystemSeries, TaylorRun};
 
-/// Equations ready to be followed.
+/// A system of first-order equations, ready for integration.
 ///
-/// A pendulum of two equal links: angles a and b from the vertical, rates p and q; length, mass and
-/// gravity are one.
+/// As an example, a pendulum of two equal links: angles a and b from the vertical, rates p and q;
+/// length, mass and gravity are one.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -68,7 +70,7 @@ pub struct System {
     right: Vec<Expr>,
     numbers: BTreeMap<Symbol, f64>,
     critical: Vec<f64>,
-    /// Arguments of functions that may vary faster than the motion.
+    /// The arguments of functions that may vary faster than the motion.
     narrow: Vec<Argument>,
 }
 
@@ -76,27 +78,27 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SystemError {
-    /// As many expressions as states.
+    /// The number of right sides, or of initial values, is not that of the states.
     #[error("{states} states need {states} right sides, not {right_sides}")]
     Length {
-        /// The number of states, or of initial values.
+        /// The number of states.
         states: usize,
-        /// The number of right sides.
+        /// The number of right sides, or of initial values.
         right_sides: usize,
     },
-    /// A right side that cannot be read.
+    /// A right side has a syntax error.
     #[error(transparent)]
     Parse(#[from] ParseError),
-    /// A name without a value, or a function without a recurrence.
+    /// A name has no value, or a function has no recurrence.
     #[error(transparent)]
     Expression(#[from] RecurrenceError),
-    /// An expression that cannot be written piece by piece between its corners.
+    /// An expression cannot be written with signs in place of its corners.
     #[error(transparent)]
     Piecewise(#[from] ExprError),
-    /// An expression that cannot be evaluated.
+    /// An expression cannot be evaluated.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    /// A corner whose argument jumps at another corner.
+    /// The argument of a corner jumps at another corner.
     #[error("`{0}` has a corner whose argument jumps itself: write it without `H` or `sgn` inside")]
     JumpInCorner(Expr),
     /// A right side has no finite value or no series at the start.
@@ -105,12 +107,13 @@ pub enum SystemError {
     /// An event has no finite value at the start.
     #[error("event {0}, counted from 0, has no finite value or no series at the start")]
     Event(usize),
-    /// A state that begins where numbers end.
+    /// A state begins beyond the largest size that is followed.
     #[error(
         "`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit"
     )]
     Large(Symbol, f64),
-    /// A start, an end or a tolerance that is not a finite number, or an end before the start.
+    /// The start, an initial value, the end or the tolerance is out of range, or the end lies
+    /// before the start.
     #[error(
         "start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1"
     )]
@@ -123,7 +126,7 @@ pub enum Integrator {
     /// The Taylor series of the states, to rounding accuracy.
     #[default]
     Taylor,
-    /// Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands nothing.
+    /// Verner's Runge-Kutta pair of order 9, which only evaluates the right sides.
     RungeKutta,
 }
 
@@ -132,12 +135,12 @@ pub enum Integrator {
 pub struct SystemOptions {
     /// The integration method.
     pub integrator: Integrator,
-    /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than
-    /// 1e-14.
+    /// Relative error of a step, in units of the size of each state on it; Runge-Kutta uses 1e-14
+    /// at least.
     pub tolerance: f64,
-    /// Steps after which the run ends; those of Runge-Kutta that had to be repeated count.
+    /// Largest number of steps of a run; rejected steps of Runge-Kutta count.
     pub step_limit: usize,
-    /// The interrupt.
+    /// The request to stop the run.
     pub interrupt: Interrupt,
 }
 
@@ -153,27 +156,27 @@ impl Default for SystemOptions {
     }
 }
 
-/// An expression in time and states whose zero matters.
+/// An event: an expression in time and states whose zeros are located.
 #[derive(Clone, Debug)]
 pub struct Event {
     expression: Expr,
     stops: bool,
-    /// The only direction of crossing that counts, where not both do: `true` upwards.
+    /// The direction of crossing that counts, `true` for upwards; `None` for both.
     rising: Option<bool>,
 }
 
 impl Event {
-    /// An event that is only listed.
+    /// An event that is only recorded. Crossings in both directions count.
     pub fn record(expression: Expr) -> Self {
         Self { expression, stops: false, rising: None }
     }
 
-    /// An event that ends the path.
+    /// An event that ends the path. Crossings in both directions count.
     pub fn stop(expression: Expr) -> Self {
         Self { stops: true, ..Self::record(expression) }
     }
 
-    /// Counts only where the expression grows through zero.
+    /// Counts only crossings from negative to positive.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -191,7 +194,7 @@ impl Event {
         Self { rising: Some(true), ..self }
     }
 
-    /// Counts only where the expression falls through zero.
+    /// Counts only crossings from positive to negative.
     #[must_use]
     pub fn falling(self) -> Self {
         Self { rising: Some(false), ..self }
@@ -203,53 +206,53 @@ impl Event {
     }
 }
 
-/// An event that happened.
+/// One occurrence of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventCrossing {
     /// Index of the event.
     pub event: usize,
     /// The time.
     pub time: f64,
-    /// Whether its expression grew through zero.
+    /// Whether the expression crossed zero from negative to positive.
     pub rising: bool,
 }
 
 /// The reason why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
-    /// The end time.
+    /// The end time was reached.
     Reached,
-    /// The event of this index.
+    /// The event of this index stopped the path.
     Event(usize),
-    /// After as many steps as were allowed.
+    /// The largest number of steps was used up.
     StepLimit,
-    /// The steps vanish, or a state or an event has no value any more: a pole, or a root at zero.
+    /// The steps vanish, or a state or an event becomes undefined: at a pole, or a root at zero.
     Singular,
-    /// A state overflowed: it is larger than 1e300, or so large that its rates are.
+    /// A state overflowed: it exceeds 1e300, or is so large that its rates do.
     Overflow,
     /// The state stays on a corner: the rates on both sides lead back to it.
     Sticks,
-    /// An interrupt.
+    /// The run was interrupted.
     Interrupted,
 }
 
-/// The relative tolerances of a step that can be asked for.
+/// The relative tolerances of a step that are accepted.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-16..=0.1;
 
 /// Largest size of a state: doubles end at 1.8e308, and sums and products within a step need room.
 const LARGEST: f64 = 1e300;
 
-/// A state from which on rates without a value are too large rather than undefined: fourth powers
-/// are beyond [`LARGEST`].
+/// Size of a state beyond which rates without a value count as too large rather than undefined,
+/// since fourth powers exceed [`LARGEST`].
 const LARGE: f64 = 1e75;
 
-/// Whether all of these are numbers that are followed.
+/// Whether no state exceeds the largest size that is followed.
 fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
     states.all(|state| state.abs() <= LARGEST)
 }
 
-/// The reason why a run ends in these states where its rates have no value, or no next step is
-/// possible, behind a step from one time to another.
+/// Returns the reason why a run ends in these states, after a step from one time to another, if its
+/// rates have no value or no further step is possible.
 fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> PathEnd {
     match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
         true => PathEnd::Overflow,
@@ -257,14 +260,14 @@ fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> PathE
     }
 }
 
-/// Whether a step from one time to another, both since the start, is so short that it stands before
-/// a pole: what its states have become there means nothing.
+/// Whether a step from one time to another, both since the start, is so short that it lies just
+/// before a pole, where the size of the states is meaningless.
 fn is_vanishing([from, to]: [f64; 2]) -> bool {
     to - from <= 1e-10 * to
 }
 
-/// The last place up to this one at which all states are within the range of numbers, where they
-/// leave it before.
+/// Returns the last place before `length` at which all states are within range; `None` if they are
+/// still within range at `length`.
 fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f64> {
     const HALVINGS: u32 = 60;
     if is_within(length) {
@@ -274,7 +277,7 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
     Some(within)
 }
 
-/// The states from the start to the end.
+/// The solution of a system from the start to the end.
 #[derive(Clone, Debug)]
 pub struct Path {
     motion: PathRepresentation,
@@ -286,17 +289,17 @@ pub struct Path {
 /// The representation from which states are interpolated.
 #[derive(Clone, Debug)]
 enum PathRepresentation {
-    Taylor { steps: Vec<TaylorStep>, start: f64 },
+    Taylor { steps: TaylorSteps, start: f64 },
     RungeKutta(runge_kutta::ScaledTrajectory),
 }
 
 impl Path {
-    /// The time at which it ends.
+    /// The time at which the path ends.
     pub fn end(&self) -> f64 {
         self.end
     }
 
-    /// The reason why it ends there.
+    /// The reason why the path ends there.
     pub fn reason(&self) -> PathEnd {
         self.reason
     }
@@ -309,7 +312,7 @@ impl Path {
     /// The number of steps.
     pub fn step_count(&self) -> usize {
         match &self.motion {
-            PathRepresentation::Taylor { steps, .. } => steps.len(),
+            PathRepresentation::Taylor { steps, .. } => steps.count(),
             PathRepresentation::RungeKutta(motion) => motion.step_count(),
         }
     }
@@ -320,27 +323,46 @@ impl Path {
             return None;
         }
         match &self.motion {
-            PathRepresentation::Taylor { steps, start } => taylor::states_at(steps, time - start),
+            PathRepresentation::Taylor { steps, start } => steps.states_at(time - start),
             PathRepresentation::RungeKutta(motion) => motion.states_at(time),
         }
     }
 }
 
 impl Path {
-    /// One state, by its number, at a time; `None` outside the path.
+    /// One state, by its index, at a time; `None` outside the path.
     pub fn state_at(&self, time: f64, state: usize) -> Option<f64> {
         match &self.motion {
             PathRepresentation::Taylor { .. } if time.is_nan() || time > self.end => None,
-            PathRepresentation::Taylor { steps, start } => {
-                taylor::state_at(steps, time - start, state)
-            }
+            PathRepresentation::Taylor { steps, start } => steps.state_at(time - start, state),
             PathRepresentation::RungeKutta(_) => self.states_at(time)?.get(state).copied(),
         }
     }
 
-    /// The states at many times, in increasing order: those of the times that are within the path
-    /// are added to `kept`, and the first states there to the columns, one each. Costs less than as
-    /// many calls of [`Path::states_at`] and has the same values.
+    /// Returns the times from `from` on at which a state, given by its index, passes through zero,
+    /// in increasing order: every root of its series. Returns `None` for Runge-Kutta, which has no
+    /// series.
+    ///
+    /// ```
+    /// # use lindstedt_dynamics as lindstedt;
+    /// use lindstedt::system::{SystemOptions, System};
+    ///
+    /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
+    /// let path = wave.solve(0.0, &[0.0, 1.0], 10.0, &[], &SystemOptions::default())?;
+    /// let zeros = path.zeros(0, 1.0).expect("a path of series");
+    /// assert_eq!(zeros.len(), 3);
+    /// assert!((zeros[2] - 3.0 * std::f64::consts::PI).abs() < 1e-13);
+    /// # Ok::<(), lindstedt::system::SystemError>(())
+    /// ```
+    pub fn zeros(&self, state: usize, from: f64) -> Option<Vec<f64>> {
+        let PathRepresentation::Taylor { steps, start } = &self.motion else { return None };
+        let zeros = steps.zeros([from - start, self.end - start], state);
+        Some(zeros.into_iter().map(|time| start + time).collect())
+    }
+
+    /// Samples the states at many times in increasing order: the times that are within the path are
+    /// added to `kept`, and the values of the first states there to the columns, one for each
+    /// state. This is faster than as many calls of [`Path::states_at`], and gives the same values.
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
             PathRepresentation::Taylor { steps, start } => {
@@ -349,7 +371,7 @@ impl Path {
                 let own = &own[..own.partition_point(|time| *time <= self.end)];
                 kept.extend_from_slice(own);
                 let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
-                taylor::sample(steps, &since_start, columns);
+                steps.sample(&since_start, columns);
             }
             PathRepresentation::RungeKutta(_) => {
                 for time in times {
@@ -366,7 +388,7 @@ impl Path {
     }
 }
 
-/// A system made ready to be followed many times: its recurrences are found once.
+/// A system prepared for many integrations: its recurrences are derived once.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -384,14 +406,15 @@ pub struct Solver {
     system: System,
     events: Vec<Event>,
     options: SystemOptions,
-    /// Runge-Kutta has no use for it.
+    /// The recurrences; `None` for Runge-Kutta.
     expansion: Option<Result<SystemSeries, RecurrenceError>>,
 }
 
 impl Solver {
-    /// These equations take other numbers for their letters. `None` says that they have to be made
-    /// ready anew: beside corners, whose arguments may be in proportion for some numbers and not
-    /// for others, and where a letter is one, a factor that may be left out.
+    /// Returns the solver with other values of the parameters. Returns `None` if the recurrences
+    /// must be derived anew: if there are corners, whose arguments may be proportional for some
+    /// values and not for others; if a parameter is one, a factor that may be left out; and for
+    /// Runge-Kutta.
     #[must_use]
     pub fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let Some(Ok(expansion)) = &self.expansion else {
@@ -405,16 +428,16 @@ impl Solver {
         })
     }
 
-    /// Its equations with other critical times.
+    /// Returns the solver with other critical times, see [`System::with_critical_times`].
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
         Self { system: self.system.with_critical_times(times), ..self }
     }
 
-    /// As [`System::solve`].
+    /// Integrates as [`System::solve`] does.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`System::solve`].
     pub fn solve(&self, start: f64, values: &[f64], end: f64) -> Result<Path, SystemError> {
         self.system.check(start, values, end, &self.options)?;
         let (system, events, options) = (&self.system, &self.events, &self.options);
@@ -429,9 +452,9 @@ impl Solver {
     }
 }
 
-/// As [`Solver::solve`] for several motions between the same times, each from its values: those
-/// whose solvers differ in numbers alone go side by side, [`LANES`] at a time, each bit for bit as
-/// it is alone.
+/// Integrates several motions between the same times as [`Solver::solve`] does, each from its own
+/// values. Motions whose solvers differ only in numbers are computed side by side, [`LANES`] at a
+/// time; each result is bit for bit the same as alone.
 pub fn solve_together(
     motions: &[(&Solver, &[f64])],
     start: f64,
@@ -456,7 +479,7 @@ pub fn solve_together(
 }
 
 impl System {
-    /// The equations `(state, right side)` in the time `t`, as texts; every other symbol has its
+    /// Reads equations `(state, right side)` in the time `t` from texts; every other symbol has its
     /// value in `numbers`.
     ///
     /// # Errors
@@ -497,9 +520,9 @@ impl System {
         Ok(system)
     }
 
-    /// Returns these equations with times that no step crosses: where the right sides turn faster
-    /// than can be seen from afar, as at both ends of a short pulse. The times come in any order;
-    /// those that are not finite are left out.
+    /// Returns these equations with times that no step crosses: times near which the right sides
+    /// change too fast to be noticed from afar, such as both ends of a short pulse. The times may
+    /// have any order; those that are not finite are ignored.
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
         let mut critical: Vec<f64> =
@@ -508,13 +531,13 @@ impl System {
         Self { critical, ..self }
     }
 
-    /// Follows the states from `start` until `end`, or to the first event that stops. Costs, by
-    /// Taylor series, for each step of order p, p^2 operations a product or function of the right
-    /// sides; by Runge-Kutta, which makes three to five times as many steps, 22 evaluations of
-    /// them.
+    /// Integrates from `start` to `end`, or to the first event that stops. By Taylor series a step
+    /// of order p costs p^2 operations for each product or function of the right sides; by
+    /// Runge-Kutta, which needs three to five times as many steps, it costs 22 evaluations of them.
     ///
     /// # Errors
-    /// [`SystemError`] where the run cannot begin; one that ends early says so by [`Path::reason`].
+    /// [`SystemError`] if the run cannot begin. A run that ends early is no error: see
+    /// [`Path::reason`].
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -557,9 +580,9 @@ impl System {
         }
     }
 
-    /// This system ready to be followed many times with these events.
+    /// Prepares this system for many integrations with these events.
     pub fn solver(self, events: &[Event], options: &SystemOptions) -> Solver {
-        // A tolerance out of range has no order; the runs refuse it.
+        // There is no order for a tolerance out of range, which every run refuses.
         let has_order = TOLERANCES.contains(&options.tolerance);
         let expansion = match options.integrator {
             Integrator::Taylor if has_order => {
@@ -570,7 +593,7 @@ impl System {
         Solver { system: self, events: events.to_vec(), options: *options, expansion }
     }
 
-    /// Whether it can be followed from these values between these times.
+    /// Checks that the system can be integrated from these values between these times.
     fn check(
         &self,
         start: f64,
@@ -595,8 +618,8 @@ impl System {
     }
 }
 
-/// A corner whose argument jumps at another corner: which side it is on after the jump does not
-/// follow from where it was.
+/// Returns a corner whose argument jumps at another corner, so that its side after the jump does
+/// not follow from the side before; `None` if there is none.
 fn jump_in_corner(expression: &Expr) -> Option<Expr> {
     use Function::{Absolute, Maximum, Minimum, Sign, Step};
     let jumps = |part: &Expr| part.contains_function(Step) || part.contains_function(Sign);

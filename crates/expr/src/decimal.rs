@@ -1,7 +1,7 @@
-//! Floating-point numbers in the usual form.
+//! Decimal text of numbers, and the fractions that decimals stand for.
 //!
-//! In: a double or a fraction, and how many digits. Out: decimal text, or the fraction that these
-//! digits stand for.
+//! In: a double or a fraction, and a number of digits. Out: decimal text, or the fraction that
+//! these digits stand for.
 
 use num_traits::{Pow, Signed, Zero};
 
@@ -9,7 +9,8 @@ use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::scaled::Scaled;
 use crate::exact::{Integer, Rational};
 
-/// Six significant digits or more, in the usual form: `0.860608`, `3.0407e7`, `-1.49`.
+/// Returns a number with six significant digits, in the usual form: `0.860608`, `3.0407e7`,
+/// `-1.49`.
 ///
 /// ```
 /// use lindstedt_expr::decimal::decimal;
@@ -20,7 +21,7 @@ pub fn decimal(value: f64) -> String {
     significant(value, 6)
 }
 
-/// `value` with this many significant digits, without trailing zeros.
+/// Returns `value` with this many significant digits, without trailing zeros.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -42,13 +43,13 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
-/// Fifteen significant digits of a number, as a fraction.
+/// Returns a number rounded to fifteen significant digits, as a fraction.
 pub fn rounded(value: f64) -> Rational {
     rounded_to(value, 15)
 }
 
-/// A number rounded to this many significant digits, as a fraction; seventeen tell any two numbers
-/// apart.
+/// Returns a number rounded to this many significant digits, as a fraction; seventeen digits tell
+/// any two doubles apart.
 pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
     parsed(&format!("{value:.decimals$e}"))
@@ -72,8 +73,8 @@ pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
     Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)
 }
 
-/// The decimals of this many significant digits next to a fraction, the first not above it and the
-/// second not below: both are the fraction itself where it is one.
+/// Returns the two decimals of this many significant digits next to a fraction, the first not above
+/// it and the second not below; both are the fraction itself if it is such a decimal.
 pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     let (_, power) = scientific(value, digits);
     let unit: Rational = Pow::pow(Rational::from_integer(10.into()), power);
@@ -81,8 +82,8 @@ pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     [count.floor() * &unit, count.ceil() * unit]
 }
 
-/// A fraction with this many significant digits, as [`significant`] writes it, beyond the range of
-/// doubles as well.
+/// Returns a fraction with this many significant digits, as [`significant`] writes a double; the
+/// fraction may lie beyond the range of doubles.
 pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     let double = to_f64(value);
     if value.is_zero() || double.is_normal() {
@@ -92,7 +93,7 @@ pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     in_powers(value, &mantissa, power)
 }
 
-/// `1.5e300`, of a whole number and a power of ten that make a fraction.
+/// Writes `mantissa * 10^power` in the form `1.5e300`, with the sign of `value`.
 fn in_powers(value: &Rational, mantissa: &Integer, power: i32) -> String {
     let sign = if value.is_negative() { "-" } else { "" };
     let text = mantissa.abs().to_string();
@@ -103,13 +104,14 @@ fn in_powers(value: &Rational, mantissa: &Integer, power: i32) -> String {
     format!("{sign}{first}{point}{rest}e{exponent}")
 }
 
-/// The decimal of this many significant digits next below a number that is not negative, as
-/// [`significant`] writes it.
+/// Returns a number, not negative, rounded down to this many significant digits, as [`significant`]
+/// writes it.
 pub fn rounded_down(value: f64, digits: usize) -> String {
     rounded_to_side(value, digits, 0)
 }
 
-/// The decimal of this many significant digits next above a number that is not negative, likewise.
+/// Returns a number, not negative, rounded up to this many significant digits, as [`significant`]
+/// writes it.
 pub fn rounded_up(value: f64, digits: usize) -> String {
     rounded_to_side(value, digits, 1)
 }
@@ -121,13 +123,13 @@ fn rounded_to_side(value: f64, digits: usize, side: usize) -> String {
     }
 }
 
-/// The fraction that the shortest decimal of a finite double stands for, 1/100 for `0.01`: the
-/// number that was typed, where it had at most fifteen digits.
+/// Returns the fraction that the shortest decimal of a finite double stands for, 1/100 for `0.01`:
+/// the number that was typed, if it had at most fifteen digits.
 pub fn as_typed(value: f64) -> Rational {
     parsed(&format!("{value:e}"))
 }
 
-/// The largest double that is not above the decimal a double was [typed as](as_typed).
+/// Returns the largest double that is not above the decimal that a double was [typed as](as_typed).
 pub fn not_above_typed(value: f64) -> f64 {
     match from_f64(value) {
         Some(exact) if exact > as_typed(value) => value.next_down(),
@@ -135,8 +137,8 @@ pub fn not_above_typed(value: f64) -> f64 {
     }
 }
 
-/// A decimal in full, as [`significant`] writes it; `None` if it has more than forty significant
-/// digits.
+/// Returns a fraction as a decimal in full, as [`significant`] writes it; `None` if it would need
+/// more than forty significant digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
     (1..=MOST).find(|digits| neighbours(value, *digits)[0] == *value).map(|digits| {
@@ -149,8 +151,8 @@ pub fn exact_decimal(value: &Rational) -> Option<String> {
     })
 }
 
-/// A fraction with this many decimals at most, without zeros at the end; of what is very large or
-/// small fifteen digits.
+/// Returns a fraction with at most this many decimals, without trailing zeros; with fifteen
+/// significant digits if it is very large or small.
 pub fn plain_decimal(value: &Rational, decimals: usize) -> String {
     match has_plain_decimals(value) {
         true => fixed(value, decimals),
@@ -184,7 +186,7 @@ fn fixed(value: &Rational, decimals: usize) -> String {
     format!("{sign}{whole}{point}{fraction}")
 }
 
-/// Whether a fraction has a decimal that ends.
+/// Whether a fraction is a terminating decimal.
 pub fn ends(value: &Rational) -> bool {
     let mut rest = value.denom().clone();
     for factor in [2, 5].map(Integer::from) {
@@ -195,17 +197,16 @@ pub fn ends(value: &Rational) -> bool {
     rest == Integer::from(1)
 }
 
-/// The decimal that a fraction is, where it ends and its text is shorter than that of a long
-/// fraction: `1e-300`, `3.00853856091339`; `None` for short fractions and all others.
+/// Returns the decimal of a long fraction, if it terminates and is shorter than the fraction:
+/// `1e-300`, `3.00853856091339`. Returns `None` for short fractions and all others.
 pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
-    /// The longest fraction that is written as one.
+    /// The longest text that is kept as a fraction, in characters.
     const SHORT: usize = 12;
-    /// Whole numbers are written out up to here.
+    /// The longest whole number that is written out, in digits.
     const WRITTEN_OUT: usize = 21;
-    /// The most characters; a longer one is not a number of an equation that somebody typed.
+    /// The longest numerator or denominator, in bits; nobody types a longer one into an equation.
     const LONGEST_BITS: u64 = 4_000;
-    /// Digits that tell any two doubles apart: more of them are no number that was rounded or
-    /// typed.
+    /// Digits that tell any two doubles apart: a number with more was neither rounded nor typed.
     const DIGITS: usize = 17;
     let bits = [value.numer(), value.denom()].map(Integer::bits);
     if bits.iter().sum::<u64>() < 30 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
@@ -213,11 +214,11 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     }
     let ten = Integer::from(10);
     let has_factor = |number: &Integer, factor: &Integer| (number % factor).is_zero();
-    // m/10^k, where 2^a 5^b with the larger of a and b for k is the denominator.
+    // The fraction is m/10^k if its denominator is 2^a 5^b, with k the larger of a and b.
     let mut rest = value.denom().clone();
     let mut decimals: i32 = 0;
     for factor in [5, 2].map(Integer::from) {
-        // Beyond the fives no more than 25 twos: m has a five for each of them.
+        // More than 25 twos beyond the fives are too many: m has a factor 5 for each of them.
         if rest.bits() > decimals.unsigned_abs() as u64 + 26 && factor == Integer::from(2) {
             return None;
         }
@@ -259,12 +260,13 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     (fraction > longest && text.len() < fraction).then(|| format!("{sign}{text}"))
 }
 
-/// A whole number of this many digits, and the power of ten that makes it the fraction, rounded.
+/// Returns a whole number of this many digits and a power of ten, whose product is the rounded
+/// fraction.
 fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
     if value.is_zero() {
         return (Integer::zero(), 0);
     }
-    // The logarithm may be off by one: a digit too many or too few is seen and mended.
+    // The logarithm may be off by one: a digit too many or too few is corrected.
     let logarithm = Scaled::of_fraction(value).logarithm() / std::f64::consts::LN_10;
     let mut power = logarithm.floor() as i32 - digits as i32 + 1;
     loop {

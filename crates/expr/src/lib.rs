@@ -1,4 +1,4 @@
-//! Exact numbers, and expressions: the one tree that every formula and every equation is.
+//! Exact numbers, and expressions: the tree in which every formula and every equation is kept.
 //!
 //! In: text. Out: numbers exact to the last digit or with a proved bound, and a tree in one normal
 //! form that prints, differentiates, substitutes and evaluates.
@@ -6,9 +6,9 @@
 //! Five names to know: [`exact::Rational`], a fraction of integers of any length; [`exact::Ring`],
 //! the operations that a derivation needs of its coefficients; [`expr::Expr`], the tree, and
 //! [`expr::parse_equation`], its parser; [`expr::CompiledFunction`], its evaluation in numbers.
-//! Numbers and expressions share a crate because a polynomial prints as the expression that it is;
-//! [`parallel`], pieces of work on all threads, is here because the letters of an answer go with
-//! each piece.
+//! Numbers and expressions share a crate because a polynomial prints as an expression.
+//! [`parallel`], which runs pieces of work on all threads, is here because every piece needs the
+//! letters of its answer.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! Independent pieces of work on all threads of the current pool; one after the other without the
-//! feature `parallel`.
+//! Runs independent pieces of work on all threads of the current pool; one after the other without
+//! the feature `parallel`.
 //!
 //! Results are in the order of the items, whatever the number of threads.
 
@@ -20,8 +20,8 @@ pub fn par_map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> 
         .collect()
 }
 
-/// Every number up to this one; a function of its own, so that it is built once for all kinds of
-/// work.
+/// Calls `work` with every number below `count`. It is not generic, so that it is compiled once for
+/// all kinds of work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
     let letters = ResultSymbols::in_force_here();
     let work = &|number| {
@@ -45,7 +45,7 @@ pub fn threads() -> usize {
     return 1;
 }
 
-/// Work in a pool of this many threads; in the current one where no other can be made.
+/// Runs `work` in a pool of this many threads; in the current pool if no other can be made.
 #[cfg(feature = "parallel")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {

@@ -2,8 +2,8 @@
 
 use strsim::levenshtein;
 
-/// The name among `known` that needs the fewest changes to become `typed`, where at most a third of
-/// it changes.
+/// Returns the name among `known` that needs the fewest changes to become `typed`; `None` if more
+/// than a third of it would change.
 ///
 /// ```
 /// use lindstedt_expr::spelling::nearest;
@@ -20,19 +20,18 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// A text from a file as it may be shown: what would steer a terminal, or turn the order of the
-/// letters, stands as its code, `\u{1b}`. Line ends and tabs stay.
+/// Makes a text from a file safe to show: characters that would control a terminal, or reverse the
+/// order of the letters, are written as codes such as `\u{1b}`. Line ends and tabs stay.
 pub fn printable(text: &str) -> String {
     escaped(text, |letter| !matches!(letter, '\n' | '\t') && is_invisible(letter))
 }
 
-/// A text from a file in one line, line ends and tabs as codes too.
+/// Makes a text from a file safe to show in one line: line ends and tabs are written as codes too.
 pub fn printable_in_line(text: &str) -> String {
     escaped(text, is_invisible)
 }
 
-/// Returns whether a letter steers what shows it: control characters, and marks of the direction of
-/// writing.
+/// Whether a character is invisible: a control character, or a mark of the direction of writing.
 pub fn is_invisible(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')

@@ -25,14 +25,14 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Symbol(&'static str);
 
-/// Greek letters by name: what a coordinate may be called beside a single letter, and what is set
-/// as that letter in formulas.
+/// Names of Greek letters, which a coordinate may have besides a single letter, and which formulas
+/// show as that letter.
 pub const GREEK: [&str; 21] = [
     "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
     "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
 ];
 
-/// Last character of a symbol that is [apart](Symbol::apart); no name that is typed has it.
+/// Last character of a symbol that is [apart](Symbol::apart); no typed name has it.
 const APART: char = '\u{1}';
 
 static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
@@ -54,14 +54,14 @@ impl Symbol {
         self.0.strip_suffix(APART).unwrap_or(self.0)
     }
 
-    /// The name as it is printed: that of something in an answer gives way to the same name of an
-    /// equation, see `ResultSymbols`.
+    /// The name as it is printed: a symbol of an answer is renamed if the equation uses its name,
+    /// see `ResultSymbols`.
     pub fn written(self) -> &'static str {
         letters::written(self)
     }
 
-    /// A symbol of the same name for something in an equation, which is not the symbol of that name
-    /// in an answer.
+    /// A symbol of the same name for use in an equation, distinct from the symbol of that name in
+    /// an answer.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -75,12 +75,12 @@ impl Symbol {
         Self::new(&format!("{}{APART}", self.name()))
     }
 
-    /// Whether it is such a symbol.
+    /// Whether the symbol is one that [`Symbol::apart`] returns.
     pub fn is_apart(self) -> bool {
         self.0.ends_with(APART)
     }
 
-    /// The symbol of another name that is apart where this one is.
+    /// The symbol of another name, apart if this one is.
     fn with_name(self, name: &str) -> Self {
         let symbol = Self::new(name);
         if self.is_apart() { symbol.apart() } else { symbol }
@@ -96,7 +96,7 @@ impl Symbol {
         self.name().len() - self.name().trim_end_matches('\'').len()
     }
 
-    /// Whether the name is that of a Greek letter, with an index or without.
+    /// Whether the name is that of a Greek letter, with or without an index.
     pub fn is_greek(self) -> bool {
         let stem = self.name().trim_end_matches(|letter: char| letter.is_ascii_digit());
         GREEK.contains(&stem.trim_end_matches('_'))
@@ -108,8 +108,8 @@ impl Symbol {
     }
 }
 
-/// A name for something that the program introduces: `wanted` where nothing in `taken` is called
-/// so, else the first of `wanted_`, `wanted__`, ... that is free.
+/// Returns a name for a symbol that the program introduces: `wanted` if it is not in `taken`, else
+/// the first of `wanted_`, `wanted__`, ... that is free.
 ///
 /// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
 ///
@@ -127,8 +127,8 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
     Symbol::new(&name)
 }
 
-/// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken`
-/// continues with digits.
+/// Returns a stem for a whole family `stem0`, `stem1`, ..., `stem_n`, chosen as by [`fresh`]: no
+/// name in `taken` is the stem followed by digits.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -150,8 +150,7 @@ pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
     stem
 }
 
-/// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its
-/// own `theta`.
+/// Returns the name of the phase of a motion: `theta`, or `phi` if `theta` is taken.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;

@@ -1,8 +1,8 @@
 //! Exact values of symbols, as a user gives them.
 //!
 //! In: names with numbers or multiples of pi, as text or one by one. Out: the same, exact or as
-//! doubles; in the units of whoever wrote the equation. What is not a number, or is given twice, is
-//! a [`ValueError`].
+//! doubles; in the units of the equation. A value that is not a number, or a name that is given
+//! twice, is a [`ValueError`].
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -91,7 +91,7 @@ impl Values {
         value.as_number().map(to_f64).or_else(|| value.evaluate(&BTreeMap::new()).ok())
     }
 
-    /// The values of `names`, and the others.
+    /// Splits the values into those of `names`, and the others.
     pub fn split(&self, names: &[Symbol]) -> (BTreeMap<Symbol, Expr>, Self) {
         let (those, others) =
             self.0.clone().into_iter().partition(|(name, _)| names.contains(name));
@@ -103,7 +103,7 @@ impl Values {
         self.0.is_empty()
     }
 
-    /// All values as floating-point numbers, this one among them.
+    /// All values as floating-point numbers, with this value added or replaced.
     pub fn with(&self, name: Symbol, value: f64) -> BTreeMap<Symbol, f64> {
         let mut numbers = self.numbers();
         numbers.insert(name, value);
@@ -136,7 +136,7 @@ impl<const N: usize> TryFrom<[(&str, f64); N]> for Values {
     }
 }
 
-/// `A = 3/2, eps = 1`.
+/// Reads names and values such as `A = 3/2, eps = 1`.
 impl FromStr for Values {
     type Err = ValueError;
 

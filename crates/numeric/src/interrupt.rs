@@ -1,5 +1,5 @@
-//! A request to stop: long work looks at it between its steps, and hands back what it has. How far
-//! it has come is told the same way.
+//! A request to stop, which a long computation checks between its steps and answers by returning
+//! its results so far; and a counter that shows its progress.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -20,12 +20,12 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub struct Interrupt(Option<&'static AtomicBool>);
 
 impl Interrupt {
-    /// Takes the flag that asks for a stop.
+    /// Makes an interrupt that is requested while `flag` is set.
     pub fn from_flag(flag: &'static AtomicBool) -> Self {
         Self(Some(flag))
     }
 
-    /// Whether to stop.
+    /// Whether the computation is asked to stop.
     pub fn is_requested(self) -> bool {
         self.0.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
@@ -55,12 +55,12 @@ impl Counter {
 }
 
 impl Progress {
-    /// Takes the counter that shows the progress.
+    /// Makes an observer that shows the progress in `counter`.
     pub fn from_counter(counter: &'static Counter) -> Self {
         Self(Some(counter))
     }
 
-    /// Work of this many parts begins.
+    /// Begins to count the parts of a computation, `parts` in all.
     pub fn begin(self, parts: usize) {
         if let Some(counter) = self.0 {
             counter.done.store(0, Ordering::Relaxed);
@@ -68,7 +68,7 @@ impl Progress {
         }
     }
 
-    /// A part is done.
+    /// Counts one more part as done.
     pub fn advance(self) {
         if let Some(counter) = self.0 {
             counter.done.fetch_add(1, Ordering::Relaxed);

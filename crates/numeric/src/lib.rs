@@ -1,5 +1,5 @@
-//! Motions and searches in plain numbers: everything takes closures and slices of `f64`, nothing
-//! knows an equation in symbols.
+//! Numerical motions and searches: everything takes closures and slices of `f64`, nothing handles
+//! symbolic equations.
 //!
 //! In: a right-hand side, a start, tolerances. Out: trajectories, roots, integrals, periods, the
 //! best of a search.

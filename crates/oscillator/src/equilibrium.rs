@@ -65,7 +65,7 @@ pub struct Centred {
     /// Whether the force pulls towards it as `1/x` does: the potential there is minus infinity, the
     /// speed of every motion infinite.
     pub endless: bool,
-    /// The motions through it over the wells on both sides, where it is no bottom but a hilltop
+    /// The motions through it over the wells on both sides, where it is a maximum of the potential
     /// between them.
     pub cross_well: Option<CrossWell>,
 }
@@ -91,8 +91,8 @@ impl Centred {
 /// irrational.
 ///
 /// # Errors
-/// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no
-/// equilibrium, or one that has no closed form in the parameters.
+/// An unstable `x = 0`, or a requested position that is no equilibrium (the stable ones are named);
+/// no equilibrium, or one that has no closed form in the parameters.
 pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let t = Symbol::new("t");
     if !oscillator.force.contains(t) {
@@ -101,7 +101,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
     let Ok(expanded) = oscillator.force.expand() else {
         return Ok(Centred::at_origin(oscillator));
     };
-    // Terms with the time in them do not decide about the equilibrium.
+    // The terms that contain time do not determine the equilibrium.
     let (driving, quiet): (Vec<Expr>, Vec<Expr>) =
         expanded.terms().iter().cloned().partition(|term| term.contains(t));
     let mut free = oscillator.clone();
@@ -121,7 +121,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
     Ok(found)
 }
 
-/// As [`centred`], of a force that does not know the time.
+/// Does the work of [`centred`] for a force without terms in time.
 fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
     // If the force has no value at rest, the methods refuse it.
@@ -146,8 +146,8 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     };
     if rests {
         let stable = force.is_stable_at_zero();
-        // Letters are given the benefit of the doubt, but a root that has no value is no matter of
-        // theirs.
+        // Where stability depends on parameters it is assumed; but whether an even root is real for
+        // both signs of x does not depend on them.
         if (!stable || !force.is_numerical())
             && let Some(error) = one_sided::refusal(oscillator, &still)
             && force.stable_equilibria().positions.is_empty()
@@ -157,7 +157,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         return match stable {
             true => Ok(Centred {
                 endless: pull == Some(SingularAttraction::Inverse),
-                // Letters may have made it a hilltop.
+                // Values of the parameters may make it a maximum of the potential.
                 cross_well: match oscillator.of_position_alone() && !force.is_numerical() {
                     true => force.cross_well(&Expr::zero()),
                     false => None,
@@ -303,7 +303,8 @@ fn about(
     if let Some(found) = nearest(true) {
         return seen_from(oscillator, &force.exact_or_rounded(found.position), degree);
     }
-    // About a place known by its number alone no force is odd.
+    // Cross-well motions need an odd force, and only about a position in closed form is it known to
+    // be odd.
     if let Some(EquilibriumPosition::Exact(hilltop)) =
         nearest(false).map(|found| force.exact_or_rounded(found.position))
     {
@@ -324,7 +325,7 @@ fn about_zero_of_force(
     let there = shifted_force(still, oscillator.coordinate, place)?;
     let there = PositionForce::new(&there, oscillator.coordinate);
     let stable = there.is_stable_at_zero();
-    // Without a drive, which has been taken out of the force, and without what velocities add.
+    // The residual is asked about time, because the drive has been taken out of the force.
     let conservative =
         oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
     let cross_well = match conservative && !(stable && there.is_numerical()) {
@@ -340,15 +341,15 @@ fn about_zero_of_force(
     }))
 }
 
-/// The refusal of an equilibrium that was asked for because it is no stable one.
+/// The refusal of an equilibrium that was asked for because it is not stable.
 pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
     let asked = oscillator.about.clone().unwrap_or_else(Expr::zero);
     let stable = PositionForce::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
     OscillatorError::NoSuchEquilibrium { coordinate: oscillator.coordinate, asked, stable }
 }
 
-/// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put
-/// in for these decide. `None` if there are none.
+/// The error of an unstable `x = 0` where the stable equilibria contain parameters, whose values
+/// decide; `None` if there are no such equilibria.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
     let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
     if still.contains(Symbol::new("t")) {
@@ -381,7 +382,7 @@ fn rests_beside_corners(
     Ok(rests.then_some(sides))
 }
 
-/// The equation in the deviation from a place.
+/// The equation in the deviation from a position.
 fn seen_from(
     oscillator: &Oscillator,
     place: &EquilibriumPosition,
@@ -473,8 +474,8 @@ fn rounded_force(
             polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.clone().into()))?
         }
     };
-    // Number and size of what was added up, by the powers of coordinate and velocity and what else
-    // stands in the term.
+    // The sum of the coefficients and that of their absolute values, by the powers of coordinate
+    // and velocity and the rest of the term.
     let mut sums: BTreeMap<(i32, i32, Monomial), (f64, f64)> = BTreeMap::new();
     for (monomial, factor) in polynomial.terms() {
         let mut value = to_f64(factor);

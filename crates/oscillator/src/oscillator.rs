@@ -293,8 +293,8 @@ impl Oscillator {
         }
     }
 
-    /// Whether the force is one of the position alone, so that its energy gives the period; not
-    /// where it cannot be taken apart.
+    /// Whether the force is one of the position alone, so that its energy gives the period; `false`
+    /// where its terms cannot be told apart.
     pub fn of_position_alone(&self) -> bool {
         self.parts().is_ok_and(|parts| parts.of_position_alone())
     }
@@ -363,7 +363,7 @@ impl Oscillator {
             [only] => Ok(SmallParameter::Parameter(*only)),
             [first, others @ ..] => {
                 match others.iter().all(|other| self.stand_together(*first, *other)) {
-                    // Either gives the same orders; a Greek letter is the likelier one.
+                    // Both give the same expansion; a Greek letter is the likelier choice.
                     true => Ok(SmallParameter::Parameter(
                         candidates.iter().copied().find(|name| name.is_greek()).unwrap_or(*first),
                     )),
@@ -399,7 +399,7 @@ impl Oscillator {
     /// The expanded force would be too long.
     pub fn polynomial_degree(&self) -> Result<Option<u32>, OscillatorError> {
         let own = [self.coordinate, self.velocity()];
-        // The judge asks at every amplitude, and a high power is long when written out.
+        // Verification asks for the degree at every amplitude, and expanding a high power is slow.
         if !self.force.contains(own[1])
             && let Some(degree) = self.force.degree_at_sight(self.coordinate)
         {

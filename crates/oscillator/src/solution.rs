@@ -132,11 +132,11 @@ pub fn constant_in_words(value: &Expr) -> String {
     }
 }
 
-/// A number with more signs than this must be a rounded one.
+/// A number with more characters than this must be a rounded one.
 const MANY: usize = 16;
 
-/// The number that a constant is, where it is a fraction of this many digits that it must be a
-/// rounded number.
+/// The value of a constant that is a fraction of so many digits that it must be rounded; `None` for
+/// any other.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
     value.as_number().filter(|number| !number.is_integer() && number.to_string().len() > MANY)
 }
@@ -307,8 +307,7 @@ impl Solution {
         response.map(|response| &response.motion)
     }
 
-    /// The slow equations, where the motion is one whose amplitude changes; of a periodic motion
-    /// none.
+    /// The slow equations if the amplitude of the motion changes; `None` for a periodic motion.
     pub fn slow(&self) -> Option<&Modulation> {
         let slow = self.modulation.as_ref();
         let free =
@@ -398,7 +397,7 @@ impl Solution {
     pub fn round_coefficients(&mut self) {
         let round = |number: &Rational| rounded_fraction(number, 15);
         let rounded = |polynomial: &Polynomial| polynomial.map(round);
-        // Of expressions the long numbers alone: an exponent of 1/3 is no rounded number.
+        // In expressions only the long numbers are rounded: an exponent of 1/3 is exact.
         let round_long = |number: &Rational| match number.to_string().len() > MANY {
             true => round(number),
             false => number.clone(),
@@ -658,8 +657,8 @@ impl Solution {
         Some(self.precision() * sizes?.iter().sum::<f64>() / amplitude.abs())
     }
 
-    /// The harmonics that a balance solves for, each with the name of its coefficient; the place
-    /// about which the motion swings is none.
+    /// The harmonics that a balance solves for, each with the name of its coefficient; the mean
+    /// position is not among them.
     pub fn balanced_harmonics(&self) -> Vec<(usize, Symbol)> {
         let known = |name: &Symbol| {
             self.defines(*name) || self.parameters.contains(name) || name.name() == "pi"

@@ -4,8 +4,9 @@
 //! In: an expression, an order. Out: coefficients of any ring, order by order, none computed twice.
 //!
 //! Five names to know: [`series::FourierSeries`]; [`mod@series::taylor`], the expansion of an
-//! expression; [`series::recurrence`], the same as recurrences of numbers; [`series::singularity`],
-//! where a long series ceases to converge; [`series::terms`], sums as they are written.
+//! expression; [`series::recurrence`], its floating-point counterpart by recurrences;
+//! [`series::singularity`], the singularity that limits the convergence of a long series;
+//! [`series::terms`], sums as they are written.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! The truth that a formula is held against.
+//! Verification: the true motion with which a formula is compared.
 //!
 //! In: the original equation, and a solution to be judged. Out: trajectories, Floquet multipliers,
 //! verdicts, proofs, and the steady states of driven and self-excited oscillators.

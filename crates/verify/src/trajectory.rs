@@ -298,8 +298,8 @@ impl TrajectoryRequest {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(self) -> Result<Trajectory, TrajectoryError> {
-        let first = self.clone().followed_by(Integrator::Taylor, Accounted::Yes);
-        self.or_by_evaluation(first, Accounted::Yes)
+        let first = self.clone().follow_by(Integrator::Taylor);
+        self.or_by_evaluation(first)
     }
 
     /// A motion that was followed by its series; where there is none at the start, or it ends, it
@@ -307,12 +307,11 @@ impl TrajectoryRequest {
     fn or_by_evaluation(
         self,
         first: Result<Trajectory, TrajectoryError>,
-        accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
         match first {
             Ok(motion) if motion.reason != PathEnd::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
-                let second = self.followed_by(Integrator::RungeKutta, accounted);
+                let second = self.follow_by(Integrator::RungeKutta);
                 match (&first, &second) {
                     (Ok(one), Ok(other)) if one.end() >= other.end() => first,
                     (Ok(_), Err(_)) => first,
@@ -328,21 +327,13 @@ impl TrajectoryRequest {
     /// # Errors
     /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
-        self.followed_by(integrator, Accounted::Yes)
-    }
-
-    fn followed_by(
-        self,
-        integrator: Integrator,
-        accounted: Accounted,
-    ) -> Result<Trajectory, TrajectoryError> {
         let ready = self.ready(integrator)?;
         let first = ready.solver.solve(0.0, &ready.start(&self), self.duration)?;
-        self.finish(&ready, first, (integrator, accounted))
+        self.finish(&ready, first, integrator)
     }
 
     /// Follows several courses by their series, those that differ in numbers and starts alone side
-    /// by side, and accounts for no energy; `ready` is one of them, made ready.
+    /// by side; `ready` is one of them, made ready.
     fn followed_together(
         courses: Vec<Self>,
         ready: Option<&Ready>,
@@ -362,15 +353,15 @@ impl TrajectoryRequest {
         let paths = solve_together(&motions.collect::<Vec<_>>(), 0.0, duration);
         let mut paths = paths.into_iter();
         let mut first = |course: &Self, ready: &Ready| match paths.next() {
-            Some(path) => course.clone().finish(ready, path?, (Integrator::Taylor, Accounted::No)),
-            None => course.clone().followed_by(Integrator::Taylor, Accounted::No),
+            Some(path) => course.clone().finish(ready, path?, Integrator::Taylor),
+            None => course.clone().follow_by(Integrator::Taylor),
         };
         let followed = |(course, ready): (Self, &Result<(Ready, Vec<f64>), TrajectoryError>)| {
             let first = match ready {
                 Ok((ready, _)) => first(&course, ready),
                 Err(error) => Err(error.clone()),
             };
-            course.or_by_evaluation(first, Accounted::No)
+            course.or_by_evaluation(first)
         };
         courses.into_iter().zip(&all).map(followed).collect()
     }
@@ -380,7 +371,7 @@ impl TrajectoryRequest {
         self,
         ready: &Ready,
         first: Path,
-        (integrator, accounted): (Integrator, Accounted),
+        integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
         let equations = StateEquations {
             states: &ready.states,
@@ -399,9 +390,7 @@ impl TrajectoryRequest {
             on_section: OnSection::default(),
             reason,
         };
-        if accounted == Accounted::Yes {
-            motion.balance = motion.account();
-        }
+        motion.balance = motion.account();
         motion.on_section = motion.find_on_section()?;
         Ok(motion)
     }
@@ -474,13 +463,6 @@ impl TrajectoryRequest {
             critical,
         })
     }
-}
-
-/// Whether the energy of a motion is accounted for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Accounted {
-    Yes,
-    No,
 }
 
 /// The equations of a course, made ready to be followed.

@@ -6,7 +6,7 @@ use crate::spelling::nearest;
 use std::ops::Range;
 use toml::Spanned;
 
-/// The quantities that are no names of numbers.
+/// The quantities that are not names of numbers.
 pub(super) const KINDS: [&str; 9] = [
     "value",
     "coefficient",
@@ -19,11 +19,11 @@ pub(super) const KINDS: [&str; 9] = [
     "options",
 ];
 
-/// Keys that some quantities read and others do not.
+/// Keys that only some quantities read.
 pub(super) const OF_A_LAW: [&str; 6] =
     ["equation", "method", "order", "small", "amplitude", "taylor"];
 
-/// The keys of the question that a quantity reads.
+/// The keys of the computation that a quantity reads.
 pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
     let own: &[&str] = match kind {
         "coefficient" => &["of", "term"],
@@ -50,7 +50,8 @@ pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
     [own, of_a_law, of_a_number].concat()
 }
 
-/// The quantity: one of [`KINDS`], a name of a number, or empty if only what is missing is told.
+/// The quantity: one of [`KINDS`], a name of a number, or empty if the claim only states what is
+/// missing.
 pub(super) fn kind(section: &Section) -> ReadResult<&str> {
     let Some(quantity) = &section.quantity else {
         return match section.needs.is_empty() {
@@ -74,7 +75,7 @@ pub(super) fn kind(section: &Section) -> ReadResult<&str> {
     helped(quantity.span(), format!("unknown quantity `{name}`"), help)
 }
 
-/// Refuses what this quantity would not read.
+/// Refuses keys that this quantity does not read.
 pub(super) fn check_keys(section: &Section, kind: &str) -> ReadResult<()> {
     let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
     let given: [(&str, Option<Range<usize>>); 19] = [

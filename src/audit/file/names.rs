@@ -1,4 +1,4 @@
-//! The names of a claim: each has a value, and each value is asked for.
+//! The check of the names of a claim: each has a value, and each value is used.
 
 use super::values::{number, symbol};
 use super::{ReadResult, Section, helped, mistake};
@@ -11,7 +11,7 @@ use crate::symbol::Symbol;
 use std::collections::BTreeSet;
 use toml::Spanned;
 
-/// The names that a question uses, through the values that they are made of.
+/// The names that a computation uses, including those in the values of others.
 pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
     let mut formulas: Vec<Expr> = match &claim.question.quantity {
         ClaimQuantity::Value(formula) | ClaimQuantity::Trend(formula) => vec![formula.clone()],
@@ -38,8 +38,7 @@ pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
     found
 }
 
-/// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks
-/// for.
+/// Refuses names that resemble those of numbers, a missing equation, and keys that no name uses.
 pub(super) fn check_names(section: &Section, claim: &Claim) -> ReadResult<()> {
     if !matches!(claim.question.quantity, ClaimQuantity::Value(_) | ClaimQuantity::Trend(_)) {
         return Ok(());
@@ -123,14 +122,14 @@ pub(super) fn asked_by<'a>(
     let own =
         words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
     let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
-    // An impact has the parameters of its swing, and the amplitude of a law has either letter.
+    // An impact has the parameters of its swing, and the amplitude of a law has either symbol.
     let parameters =
         equation.filter(|_| needs.is_some()).into_iter().flat_map(|equation| &equation.parameters);
     let letter = of_a_law.then(|| Symbol::new("a"));
     own.map(Symbol::new).chain(parameters.copied()).chain(letter)
 }
 
-/// Refuses values of a claim that nothing asks for.
+/// Refuses values of a claim that are not used.
 pub(super) fn check_values(section: &Section, claim: &Claim) -> ReadResult<()> {
     let quantity = &claim.question.quantity;
     let mut used = used(claim);

@@ -1,5 +1,5 @@
-//! Single values of a claims file: expressions, equations, methods, verdicts, each with its place
-//! for messages.
+//! Single values of a claims file: expressions, equations, methods, verdicts, each with its
+//! position for messages.
 
 use super::{Mistake, NamedValues, ReadResult, Text, mistake};
 use crate::audit::claim::Verdict;
@@ -54,7 +54,7 @@ pub(super) fn parsed(text: &str, span: Range<usize>) -> ReadResult<Expr> {
     })
 }
 
-/// A formula, or of an equation the difference of its sides.
+/// A formula, or the difference of the sides of an equation.
 pub(super) fn equal_to_zero(text: &Text) -> ReadResult<Expr> {
     match text.get_ref().split_once('=') {
         None => expression(text),
@@ -66,7 +66,8 @@ pub(super) fn equation(text: &Text) -> ReadResult<Oscillator> {
     let equation =
         catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
     Oscillator::parse(equation).or_else(|error| {
-        // Its own picture of the place is that of the text alone.
+        // The picture of the position in the error refers to the text alone, so that it is left
+        // out.
         let what = error.to_string();
         mistake(text.span(), what.lines().next().unwrap_or_default())
     })

@@ -1,4 +1,4 @@
-//! The contact time of the paper beside that of every reading of the contact.
+//! The contact time of the paper compared with that of every reading of the contact.
 
 use crate::impact::{ImpactQuantity, SiImpact};
 
@@ -6,8 +6,8 @@ use crate::impact::{ImpactQuantity, SiImpact};
 /// computed from.
 pub const CONTACT_TIME: f64 = 9.258e-8;
 
-/// The contact time of every reading over the printed [`CONTACT_TIME`]: one, if that were
-/// reproduced.
+/// The ratio of the contact time of every reading to the printed [`CONTACT_TIME`]; it would be one
+/// if that were reproduced.
 ///
 /// ```
 /// use lindstedt::audit::paper::over_contact_time;

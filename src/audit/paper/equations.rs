@@ -1,4 +1,4 @@
-//! The paper's equations (1) to (8), each held against the equation that follows from the energies
+//! The paper's equations (1) to (8), each compared with the equation that follows from the energies
 //! of its pendulum and barrier.
 //!
 //! A printed equation is never computed with: it is compared with the derived one term by term and
@@ -76,7 +76,7 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
         ("E", [1, -1, -2]),
         ("c", [1, 2, -1]),
         ("F", [1, 2, -2]),
-        // A torque over omega x': that is what equations (5) and (7) make of it.
+        // A torque over omega x', as equations (5) and (7) imply.
         ("mu4", [1, 2, 0]),
     ]
     .map(|(name, exponents)| (Symbol::new(name), Dimension::from_exponents(exponents)))
@@ -89,7 +89,7 @@ pub fn mechanism() -> MechanismQuestion {
     MechanismQuestion { mechanism: pendulum(), units: Some(units()), values: BTreeMap::new() }
 }
 
-/// The paper's equations (1) to (8), each beside what is derived.
+/// The paper's equations (1) to (8), each compared with the derived one.
 ///
 /// # Errors
 /// [`MechanicsError`] is never met for the mechanism of [`pendulum`].
@@ -150,7 +150,7 @@ pub fn findings() -> Result<Vec<Finding>, MechanicsError> {
     Ok(findings)
 }
 
-/// Equation (1): the term that is no energy, and what the square makes of it.
+/// Equation (1): the term that is not an energy, and the effect of the square.
 fn kinetic(
     mechanism: &Mechanism,
     energy: &Dimension,

@@ -1,8 +1,8 @@
-//! Table 1 of the paper, recomputed, and the value of pi that its digits were made with.
+//! Table 1 of the paper, recomputed, and the value of pi with which its digits were computed.
 //!
-//! The printed digits stand in [`SPEEDS`] to be compared with; nothing is computed from them but
-//! the range of pi that they allow. They are read from Table 1 of the paper as it is printed, signs
-//! and number of digits included.
+//! The printed digits in [`SPEEDS`] serve only for comparison, and for the range of pi that they
+//! allow. They are read from Table 1 of the paper as it is printed, signs and number of digits
+//! included.
 
 use std::f64::consts::PI;
 
@@ -33,11 +33,11 @@ pub const SPEEDS: [(f64, PrintedSpeed); 11] = [
     (5.0, PrintedSpeed { value: "+0.99923", error: "0.076667" }),
 ];
 
-/// The values of pi that are tried: short ones, fractions, and pi itself.
+/// The values of pi that are tried: short decimals, fractions, and pi itself.
 const TRIED: [&str; 11] =
     ["3", "3.1", "22/7", "3.14", "3.141", "3.142", "3.1415", "3.1416", "3.14159", "355/113", "pi"];
 
-/// The number that is written so: a decimal or a fraction; pi itself for its name.
+/// The value of such a name: a decimal, a fraction, or pi itself.
 fn value_of(name: &str) -> f64 {
     let (above, below) = name.split_once('/').unwrap_or((name, "1"));
     match (above.parse::<f64>(), below.parse::<f64>()) {
@@ -46,26 +46,26 @@ fn value_of(name: &str) -> f64 {
     }
 }
 
-/// Whether a number has the printed digits, as many as are printed, rounded and cut off.
+/// Whether a number has the printed digits if it is rounded, and if it is cut off.
 fn has_digits(printed: &str, number: f64) -> [bool; 2] {
     let wanted = printed.trim_start_matches('+');
     let decimals = wanted.split_once('.').map_or(0, |(_, digits)| digits.len());
     let unit = 10_f64.powi(decimals as i32);
     [number, (number * unit).trunc() / unit].map(|number| {
-        // No sign stands before a zero.
+        // A zero is printed without a sign.
         let written = format!("{number:.decimals$}");
         written == wanted || number == 0.0 && written.trim_start_matches('-') == wanted
     })
 }
 
-/// A printed number, and how the number that belongs there comes to its digits with some pi.
+/// A printed number, and whether a computed number gives its digits with some pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PrintedDigits {
     /// The entry as it is printed.
     pub printed: &'static str,
-    /// Whether they are those of the rounded number.
+    /// Whether its digits are those of the rounded number.
     pub rounded: bool,
-    /// Whether they are those of the number cut off.
+    /// Whether its digits are those of the number cut off.
     pub cut: bool,
 }
 
@@ -91,23 +91,23 @@ impl PrintedDigits {
 pub struct TableRow {
     /// The two laws at its speed.
     pub laws: SpeedRow,
-    /// The printed value and error at a speed of the paper, with what the best pi makes of them;
-    /// nothing at any other speed.
+    /// The printed value and error at a speed of the paper, compared with those by the best pi;
+    /// `None` at any other speed.
     pub printed: Option<[PrintedDigits; 2]>,
 }
 
-/// The number of printed entries that come out with one value of pi.
+/// The number of printed entries that one value of pi reproduces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PiReading {
     /// The value as it is written, `22/7`.
     pub name: &'static str,
     /// The value.
     pub value: f64,
-    /// Entries that it gives rounded.
+    /// Number of entries that it reproduces rounded.
     pub rounded: usize,
-    /// Entries that it gives cut off.
+    /// Number of entries that it reproduces cut off.
     pub cut: usize,
-    /// Entries that it gives in one of the two ways.
+    /// Number of entries that it reproduces in one of the two ways.
     pub either: usize,
 }
 
@@ -132,7 +132,7 @@ impl PiReading {
         PI / self.value
     }
 
-    /// The speed beyond which the arctangent is larger than 1, where there is one.
+    /// The speed beyond which the arctangent is larger than 1, if there is one; `None` otherwise.
     pub fn exceeds_from(&self) -> Option<f64> {
         (self.value < PI).then(|| (0.5 * self.value).tan() / STEEPNESS)
     }
@@ -159,7 +159,7 @@ pub struct FrictionTable {
 }
 
 impl FrictionTable {
-    /// Table 1 of the paper, and the speeds of a study beside its own.
+    /// Table 1 of the paper, and the speeds of a study that it does not contain.
     ///
     /// ```
     /// use lindstedt::{audit::paper::FrictionTable, impact::friction};
@@ -171,7 +171,7 @@ impl FrictionTable {
     pub fn from_study(study: &FrictionStudy) -> Self {
         let readings: Vec<PiReading> =
             TRIED.map(|name| PiReading::new(name, value_of(name))).into();
-        // Of equals the first, which is the shortest.
+        // Among equally good values the first is chosen, which is the shortest.
         let best = (0..readings.len())
             .rev()
             .max_by_key(|index| (readings[*index].either, readings[*index].rounded));
@@ -206,7 +206,7 @@ fn pi_range() -> Option<[f64; 2]> {
             let size = text.trim_start_matches(['+', '-']);
             let unit = 0.1_f64.powi(size.split_once('.')?.1.len() as i32);
             let size: f64 = size.parse().ok()?;
-            // From half a unit below, rounded up, to a whole one above, cut off.
+            // The range extends from half a unit below (rounded up) to one unit above (cut off).
             Some([size - 0.5 * unit, size + unit])
         };
         let [least, greatest] = allowed(printed.value)?;

@@ -111,6 +111,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("const double {name} = "), ";".to_owned()],
     result: ["return ", ";"],
     size: |name| format!("{name} = fabs({name});"),
+    unused: Some(|name| format!("(void){name};")),
     positive: |name, _, reason| format!("if (!({name} > 0.0)) {{\n    return NAN; // {reason}\n}}"),
     breaks: Break::BeforeSigns,
     beginning,

@@ -70,6 +70,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), String::new()],
     result: ["return ", ""],
     size: |name| format!("{name} = abs({name})"),
+    unused: None,
     positive: |name, _, reason| format!("{name} > 0 || throw(DomainError({name}, \"{reason}\"))"),
     breaks: Break::AfterSigns(""),
     beginning: |_: &UsedRoutines| String::new(),
@@ -94,7 +95,8 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// Whole numbers as arguments are made floating-point ones: their powers would overflow.
+/// Whole numbers as arguments are converted to floating-point ones, because their powers would
+/// overflow.
 fn routine(text: &Text) -> String {
     let head =
         format!("\"{}.\"\nfunction {}({})\n", text.about, text.name, text.arguments.join(", "));

@@ -1,5 +1,5 @@
 //! MATLAB and GNU Octave. Arguments may be arrays. A number that does not exist is NaN, or an error
-//! of `realsqrt` and its like, which stand for functions that would make complex numbers.
+//! of `realsqrt` and similar functions, which replace functions that would give complex numbers.
 
 use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
@@ -62,6 +62,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), ";".to_owned()],
     result: ["value = ", ";"],
     size: |name| format!("{name} = abs({name});"),
+    unused: None,
     positive: |name, spoilt, reason| format!("{spoilt}(~({name} > 0)) = NaN;  % {reason}"),
     breaks: Break::AfterSigns(" ..."),
     beginning,
@@ -89,7 +90,7 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// A file has one function that others can call: here it hands the others out.
+/// Only one function of a file can be called from outside; it returns handles of the others.
 fn beginning(used: &UsedRoutines) -> String {
     let handles = used.routines.iter().map(|name| format!("    motion.{name} = @{name};\n"));
     let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\n\

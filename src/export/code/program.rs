@@ -27,7 +27,7 @@ const VELOCITY: &str = "velocity";
 const ABOUT_DISPLACEMENT: &str = "The displacement at the time t, equilibrium included";
 const ABOUT_VELOCITY: &str = "Its derivative, the velocity at the time t";
 
-/// Letters in a line of the header.
+/// Greatest length of a line of the header, in characters.
 const WIDTH: usize = 96;
 
 /// The program of an answer.
@@ -35,7 +35,6 @@ pub(super) fn of_solution(
     oscillator: &Oscillator,
     solution: &Solution,
     verification: Option<&Verification>,
-    tolerance: f64,
 ) -> Result<Program, NoCode> {
     if solution.response.is_some() {
         return Err(NoCode::Driven);
@@ -44,7 +43,7 @@ pub(super) fn of_solution(
         return Err(NoCode::Slow);
     }
     let names = ProgramNames::new(solution);
-    let mut header = header(solution, verification, tolerance);
+    let mut header = header(solution, verification);
     let mut remarks: Vec<String> = Vec::new();
     let formula = formula(solution);
     let is_exact = MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact;
@@ -59,6 +58,7 @@ pub(super) fn of_solution(
             } else if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
+            share_arguments(&names, &mut routines);
             remarks.extend(unchecked_conditions(oscillator, solution));
             remarks.extend(at_rest(solution, law));
         }
@@ -92,9 +92,37 @@ pub(super) fn of_solution(
     Ok(Program { header, routines })
 }
 
+/// Gives every function the same arguments, whether it needs them or not, after the time of a
+/// motion.
+fn share_arguments(names: &ProgramNames, routines: &mut [Routine]) {
+    let mut all: Vec<Symbol> = vec![];
+    // The motion has the most, in the order of their names.
+    for routine in routines.iter().rev() {
+        let new = |name: &&Symbol| **name != names.time && !all.contains(name);
+        let new: Vec<Symbol> = routine.arguments.iter().filter(new).copied().collect();
+        all.extend(new);
+    }
+    for routine in routines {
+        let needed = std::mem::take(&mut routine.arguments);
+        let time = needed.first().filter(|name| **name == names.time);
+        routine.arguments = time.into_iter().chain(&all).copied().collect();
+        let mut passed_on = false;
+        for statement in &mut routine.body {
+            if let Statement::Variable(_, Value::Call(_, arguments)) = statement {
+                arguments.clone_from(&all);
+                passed_on = true;
+            }
+        }
+        if !passed_on {
+            let unused = all.iter().filter(|name| !needed.contains(name)).copied();
+            routine.body.splice(0..0, unused.map(Statement::Unused));
+        }
+    }
+}
+
 /// The report of the answer without its formulas.
-fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> Vec<String> {
-    let document = report::solution(solution, verification, tolerance);
+fn header(solution: &Solution, verification: Option<&Verification>) -> Vec<String> {
+    let document = report::solution(solution, verification);
     let is_formula = |block: &Block| {
         let words = matches!(
             block,
@@ -114,7 +142,7 @@ fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f
     lines.flat_map(wrapped).collect()
 }
 
-/// A line in lines of a certain width, the next ones farther in.
+/// A line wrapped to the width of the header, continuation lines being indented.
 fn wrapped(line: &str) -> Vec<String> {
     let margin = line.len() - line.trim_start().len();
     let mut lines = vec![String::new()];
@@ -139,11 +167,11 @@ struct ProgramNames {
     theta: Symbol,
     omega: Symbol,
     omega_squared: Symbol,
-    /// The displacement by the size of the amplitude.
+    /// The displacement for the absolute value of the amplitude.
     shape: Symbol,
     /// dx/dtheta.
     slope: Symbol,
-    /// Positive where enough of the digits are left.
+    /// A number that is positive if enough digits are left.
     digits: Symbol,
     /// The sign of the amplitude.
     sign: Symbol,
@@ -173,7 +201,7 @@ struct Law {
     squared: bool,
 }
 
-/// The law that is judged, or why it is not a formula.
+/// The law that is judged, or the reason why it is not a formula.
 fn formula(solution: &Solution) -> Result<Law, String> {
     let polynomial = |law: &Polynomial, squared| Law {
         value: ordered(solution, law),
@@ -207,7 +235,7 @@ fn formula(solution: &Solution) -> Result<Law, String> {
     }
 }
 
-/// A polynomial, its terms in the order in which they are read.
+/// A polynomial with its terms in reading order.
 fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
     let sum = solution.ordered(polynomial);
     let term = |(monomial, number): (&_, &Rational)| {
@@ -301,7 +329,7 @@ fn frequency(
         }
     };
     Routine {
-        name: FREQUENCY,
+        name: FREQUENCY.to_owned(),
         about: match law.squared {
             true => of_frequency(
                 "The angular frequency in radians per unit of time, the root of omega^2",
@@ -314,12 +342,12 @@ fn frequency(
     }
 }
 
-/// The routine of a frequency that is known in numbers alone.
+/// The routine of a frequency that is only known as a number.
 fn constant_frequency(verification: &Verification) -> Result<Routine, NoCode> {
     let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
     let frequency = verification.frequency.ok_or_else(no_motion)?;
     Ok(Routine {
-        name: FREQUENCY,
+        name: FREQUENCY.to_owned(),
         about: "The angular frequency in radians per unit of time".to_owned(),
         arguments: vec![],
         body: vec![],
@@ -338,8 +366,7 @@ fn wave(function: Function, k: usize, theta: Symbol) -> Value {
     Value::Expression(wave.unwrap_or_else(|_| Expr::zero()))
 }
 
-/// A harmonic: `k`, what stands before the cosine and what before the sine; nothing where that is
-/// zero.
+/// A harmonic: `k` and the coefficients of the cosine and the sine; `None` for a zero coefficient.
 struct Harmonic {
     k: usize,
     cosine: Option<Value>,
@@ -400,8 +427,12 @@ fn motion(
             }
         }
         body.extend(variables(definitions.clone()));
-        body.push(Statement::Variable(names.omega, Value::Call(FREQUENCY, of_frequency.to_vec())));
-        // A definition enters the motion over omega^2.
+        body.push(Statement::Variable(
+            names.omega,
+            Value::Call(FREQUENCY.to_owned(), of_frequency.to_vec()),
+        ));
+        // A definition enters the motion divided by omega^2, so that the digits are compared with
+        // omega^2 A.
         let scale = Expr::product([names.omega, names.amplitude].map(Expr::from));
         body.extend(digits(names, definitions.iter().map(|own| &own.meaning), names.omega, &scale));
         body.push(match sign {
@@ -416,7 +447,8 @@ fn motion(
         |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
     let all: BTreeSet<Symbol> = harmonics.iter().flat_map(symbols).flatten().collect();
     let beginnings = match sign {
-        // The shift that lets the turned motion begin at its amplitude contains all harmonics.
+        // The correction by which the shifted motion begins at its amplitude contains all
+        // harmonics.
         Sign::HalfPeriod => {
             let all = &all | &solution.equilibrium.symbols();
             [beginning(all.clone()), beginning(all)]
@@ -434,7 +466,8 @@ fn motion(
         let scaled: Polynomial = polynomial.map(|number| number * &factor);
         (!scaled.is_zero()).then(|| ordered(solution, &scaled))
     };
-    // The first harmonic with what lets the turned motion begin at its amplitude.
+    // The first harmonic includes the correction by which the shifted motion begins at its
+    // amplitude.
     let cosines = |k: usize, cosine: &Polynomial, factor: i64| match (&start, k) {
         (Some(start), 1) => {
             let start = Value::Expression(Expr::from(factor) * start);
@@ -474,7 +507,7 @@ fn written_motion(
         let (definitions, mut arguments) = resolved(solution, names, expression.symbols());
         arguments.insert(0, names.time);
         Routine {
-            name,
+            name: str::to_owned(name),
             about: about.to_owned(),
             arguments,
             body: variables(definitions).collect(),
@@ -487,15 +520,15 @@ fn written_motion(
     ])
 }
 
-/// `omega*t`, for a negative amplitude half a period later.
+/// `omega*t`, shifted by half a period for a negative amplitude.
 fn turned_angle(names: &ProgramNames) -> Expr {
     let half = Expr::pi() * Expr::number(Rational::new(1.into(), 2.into()));
     Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
 }
 
-/// The coefficient of `cos(theta)` beside the first harmonic, for a negative amplitude: half a
-/// period later the even harmonics have kept their signs, and the motion begins at its amplitude
-/// with it.
+/// The correction of the coefficient of `cos(theta)` for a negative amplitude: half a period later
+/// the even harmonics keep their signs, and with this correction the motion begins at its
+/// amplitude.
 fn missing_at_start(
     solution: &Solution,
     names: &ProgramNames,
@@ -517,7 +550,7 @@ fn angle(names: &ProgramNames) -> Statement {
     Statement::Variable(names.theta, Value::Expression(angle))
 }
 
-/// Displacement and velocity; `before` stands before either.
+/// The routines of displacement and velocity; both begin with the statements `before`.
 fn displacement_and_velocity(
     names: &ProgramNames,
     beginnings: [FunctionPrologue; 2],
@@ -539,7 +572,7 @@ fn displacement_and_velocity(
         }
     };
     let displacement = Routine {
-        name: DISPLACEMENT,
+        name: DISPLACEMENT.to_owned(),
         about: ABOUT_DISPLACEMENT.to_owned(),
         arguments: displacement.arguments,
         body: displacement.body,
@@ -558,7 +591,7 @@ fn displacement_and_velocity(
         }
     };
     let velocity = Routine {
-        name: VELOCITY,
+        name: VELOCITY.to_owned(),
         about: ABOUT_VELOCITY.to_owned(),
         arguments: velocity.arguments,
         body: velocity.body,
@@ -567,14 +600,14 @@ fn displacement_and_velocity(
     [displacement, velocity]
 }
 
-/// The transformation of a motion to negative amplitudes, if its formula holds for the size of the
-/// amplitude.
+/// The transformation of a motion to negative amplitudes, if its formula holds for the absolute
+/// value of the amplitude.
 enum Sign {
     /// The formula holds for either sign.
     Any,
-    /// With the opposite sign.
+    /// The motion changes its sign.
     Opposite,
-    /// Half a period later, with what it lacks then at its start.
+    /// The motion is shifted by half a period, and corrected so that it begins at its amplitude.
     HalfPeriod,
 }
 
@@ -601,7 +634,7 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &ProgramN
     }
 }
 
-/// Whether a symbol is defined by way of the amplitude.
+/// Whether the definition of a symbol contains the amplitude.
 fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &ProgramNames) -> bool {
     let behind = solution.definitions_behind(BTreeSet::from([symbol]));
     behind.iter().any(|definition| definition.meaning.contains(names.amplitude))
@@ -642,9 +675,9 @@ fn motion_in_numbers(
     )
 }
 
-/// Ends a function where the terms of its formulas cancel and more than half of the digits of
-/// `value*scale` with them: as the amplitude goes to zero, several of them become infinite and
-/// their sum does not.
+/// Ends a function if the terms of its formulas cancel so far that more than half of the digits of
+/// `value*scale` are lost: as the amplitude goes to zero, several of them become infinite and their
+/// sum does not.
 fn digits<'a>(
     names: &ProgramNames,
     formulas: impl IntoIterator<Item = &'a Expr>,
@@ -678,7 +711,7 @@ fn digits<'a>(
     ]
 }
 
-/// Conditions that a program does not check and a numerical answer does: whether there is a motion,
+/// Conditions that a program, unlike a numerical answer, does not check: whether there is a motion,
 /// and whether the force is defined all along it.
 fn unchecked_conditions(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {

@@ -31,6 +31,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     variable: |name, _| [format!("{name} = "), String::new()],
     result: ["return ", ""],
     size: |name| format!("{name} = abs({name})"),
+    unused: None,
     positive: |name, _, reason| format!("if not {name} > 0:\n    raise ValueError(\"{reason}\")"),
     breaks: Break::InParentheses,
     beginning,
@@ -55,7 +56,7 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
+/// The imports: `pow` of the module raises a `ValueError` where the built-in one would return a
 /// complex number.
 fn beginning(used: &UsedRoutines) -> String {
     /// A loop over the elements, in which each finds its own error and its own branch.

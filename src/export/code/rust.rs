@@ -21,13 +21,14 @@ pub(super) const SYNTAX: Syntax = Syntax {
     power,
     function,
     helper,
-    // A number written out has no type of its own.
+    // A literal number has no definite type.
     variable: |name, literal| {
         let kind = if literal { ": f64" } else { "" };
         [format!("let {name}{kind} = "), ";".to_owned()]
     },
     result: ["", ""],
     size: |name| format!("let {name} = {name}.abs();"),
+    unused: Some(|name| format!("let _ = {name};")),
     positive: |name, _, reason| {
         format!("if {name}.is_nan() || {name} <= 0.0 {{\n    return f64::NAN; // {reason}\n}}")
     },
@@ -36,7 +37,8 @@ pub(super) const SYNTAX: Syntax = Syntax {
     routine,
 };
 
-/// A power. That of a literal number cannot be a method call: it has no type of its own.
+/// A power. That of a literal number cannot be a method call, because a literal has no definite
+/// type.
 fn power(base: &Base, exponent: Exponent) -> String {
     let Base { inside, operand, literal } = base;
     let call = |method: &str, argument: &str| match (literal, argument) {
@@ -86,7 +88,7 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// Names keep the letters that they have in the formulas.
+/// Names keep the spelling of the formulas, so that lints for names are switched off.
 fn beginning(used: &UsedRoutines) -> String {
     let signatures =
         || used.text.lines().filter(|line| line.contains("fn ") || line.contains("let "));

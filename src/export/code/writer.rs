@@ -13,7 +13,7 @@ use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// Letters in a line, where it can be broken.
+/// Greatest length of a line that can be broken, in characters.
 const WIDTH: usize = 100;
 
 /// The source text of a program.
@@ -27,7 +27,8 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
         parts.push(writer.routine(routine)?);
     }
     let text = parts.join("\n");
-    let routines: Vec<&str> = program.routines.iter().map(|routine| routine.name).collect();
+    let routines: Vec<&str> =
+        program.routines.iter().map(|routine| routine.name.as_str()).collect();
     let beginning = (syntax.beginning)(&UsedRoutines { text: &text, routines: &routines });
     let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
     let renamed: Vec<String> =
@@ -47,7 +48,7 @@ fn expressions(program: &Program) -> Vec<&Expr> {
     let bodies = program.routines.iter().flat_map(|routine| {
         let values = routine.body.iter().filter_map(|statement| match statement {
             Statement::Variable(_, value) => Some(value),
-            Statement::Size(_) | Statement::Positive(..) => None,
+            Statement::Size(_) | Statement::Positive(..) | Statement::Unused(_) => None,
         });
         values.chain([&routine.result])
     });
@@ -70,7 +71,7 @@ fn functions(program: &Program) -> BTreeSet<Function> {
         _ => None,
     };
     let mut functions: BTreeSet<Function> = nodes.filter_map(function).collect();
-    // The computation of all three functions is in the first of them.
+    // The code of all three functions is in the first of them.
     if [Function::JacobiCn, Function::JacobiDn].iter().any(|function| functions.contains(function))
     {
         functions.insert(Function::JacobiSn);
@@ -78,8 +79,7 @@ fn functions(program: &Program) -> BTreeSet<Function> {
     functions
 }
 
-/// The name of every variable: its own, with underscores where that means something else in the
-/// language.
+/// The name of every variable: its own, with underscores added if the language uses that name.
 fn names(
     program: &Program,
     syntax: &Syntax,
@@ -88,7 +88,7 @@ fn names(
     let variables = |routine: &Routine| {
         let locals = routine.body.iter().filter_map(|statement| match statement {
             Statement::Variable(name, _) => Some(*name),
-            Statement::Size(_) | Statement::Positive(..) => None,
+            Statement::Size(_) | Statement::Positive(..) | Statement::Unused(_) => None,
         });
         locals.chain(routine.arguments.iter().copied()).collect::<Vec<Symbol>>()
     };
@@ -96,7 +96,7 @@ fn names(
     let called: Vec<&str> = functions
         .iter()
         .map(|function| (syntax.function)(*function))
-        .chain(program.routines.iter().map(|routine| routine.name))
+        .chain(program.routines.iter().map(|routine| routine.name.as_str()))
         .chain(functions.contains(&Function::JacobiSn).then_some("jacobi_functions"))
         .collect();
     let mut names: BTreeMap<Symbol, String> = BTreeMap::new();
@@ -128,12 +128,12 @@ enum Precedence {
 /// A part of an expression as text.
 #[derive(Clone)]
 struct CodeFragment {
-    /// Without its sign.
+    /// The text without its sign.
     text: String,
-    /// Whether a minus stands before it.
+    /// Whether its sign is minus.
     negative: bool,
     level: Precedence,
-    /// Whether it is made of numbers written out alone.
+    /// Whether it consists only of literal numbers.
     literal: bool,
     /// The denominator, if this is a factor of a fraction.
     below: Option<Box<CodeFragment>>,
@@ -148,7 +148,7 @@ impl CodeFragment {
         Self { literal: true, ..Self::new(text, level) }
     }
 
-    /// With its sign.
+    /// The text with its sign.
     fn with_sign(&self) -> String {
         match self.negative {
             true => format!("-{}", self.text),
@@ -156,7 +156,7 @@ impl CodeFragment {
         }
     }
 
-    /// As an operand that must hold together this tightly.
+    /// The text as an operand, in parentheses if its precedence is lower than `level`.
     fn as_operand(&self, level: Precedence) -> String {
         match self.level < level || self.negative {
             true => format!("({})", self.with_sign()),
@@ -193,6 +193,9 @@ impl Writer<'_> {
                     lines.extend(self.lines(&before, value, &after)?);
                 }
                 Statement::Size(name) => lines.push((self.syntax.size)(&self.name(*name))),
+                Statement::Unused(name) => {
+                    lines.extend(self.syntax.unused.map(|unused| unused(&self.name(*name))));
+                }
                 Statement::Positive(name, spoilt, reason) => {
                     let condition =
                         (self.syntax.positive)(&self.name(*name), &self.name(*spoilt), reason);
@@ -205,7 +208,7 @@ impl Writer<'_> {
         let arguments: Vec<String> =
             routine.arguments.iter().map(|name| self.name(*name)).collect();
         Ok((self.syntax.routine)(&Text {
-            name: routine.name,
+            name: &routine.name,
             about: &routine.about,
             arguments: &arguments,
             lines: &lines,
@@ -269,7 +272,7 @@ impl Writer<'_> {
                 let unsigned =
                     parts.into_iter().map(|part| CodeFragment { negative: false, ..part });
                 let factors: Vec<CodeFragment> = unsigned.filter(|part| !part.is_one()).collect();
-                // A fraction stands before what it is multiplied with, without parentheses.
+                // A fraction precedes its other factors without parentheses.
                 let first = factors.first().map(|first| CodeFragment {
                     level: if first.level == Precedence::Product {
                         Precedence::Power
@@ -336,7 +339,7 @@ impl Writer<'_> {
             written.join(", ")
         };
         let text = match (name.strip_prefix('.'), arguments) {
-            // A number written out has no type of which it would be a method.
+            // A literal number has no definite type on which a method could be called.
             (Some(method), [first, ..]) if first.literal => {
                 format!("f64::{method}({})", written(arguments))
             }
@@ -376,7 +379,7 @@ impl Writer<'_> {
         Ok(CodeFragment::new((self.syntax.power)(&written.as_base(), exponent), level))
     }
 
-    /// A sum of pieces, which has at least one.
+    /// A sum of one or more pieces.
     fn sum(&self, terms: &[CodeFragment]) -> CodeFragment {
         if let [only] = terms {
             return only.clone();
@@ -402,7 +405,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Factors over factors.
+    /// A quotient of two products.
     fn fraction(&self, above: Vec<CodeFragment>, below: Vec<CodeFragment>) -> CodeFragment {
         let one =
             || vec![CodeFragment::literal(format!("1{}", self.syntax.point), Precedence::Atom)];
@@ -457,11 +460,11 @@ impl Writer<'_> {
     }
 
     /// Two operands with the sign of a product or a quotient between them, and whether each is a
-    /// number written out.
+    /// literal number.
     fn joined(&self, operator: usize, left: (&str, bool), right: (&str, bool)) -> String {
         let between_values = match operator {
             0 => !left.1 && !right.1,
-            // A quotient by a value is one of every element.
+            // A quotient by a variable is taken element by element.
             _ => !right.1,
         };
         let operators =
@@ -477,13 +480,13 @@ impl Writer<'_> {
         })
     }
 
-    /// The size of a number, what stands above and below the line; one of many digits is a decimal,
-    /// which stands above.
+    /// Numerator and denominator of the absolute value of a number; one of many digits is a decimal
+    /// in the numerator.
     fn number_parts(
         &self,
         value: &Rational,
     ) -> Result<(Option<CodeFragment>, Option<CodeFragment>), NoCode> {
-        /// All of them a double tells apart.
+        /// Number of digits that a double always distinguishes.
         const DIGITS: usize = 15;
         let size = value.abs();
         let [above, below] = [size.numer(), size.denom()].map(ToString::to_string);
@@ -503,7 +506,7 @@ impl Writer<'_> {
     }
 }
 
-/// The shortest text that is read as this number and no other.
+/// The shortest text that is read back as this number.
 fn decimal(value: f64) -> String {
     match (1e-4..1e15).contains(&value) {
         true => format!("{value:?}"),
@@ -511,8 +514,8 @@ fn decimal(value: f64) -> String {
     }
 }
 
-/// Terms as they are read: where those with a minus come first, those next without one stand before
-/// them.
+/// Terms in reading order: if the first ones have a minus sign, the following positive ones are put
+/// before them.
 fn positive_first(terms: &[CodeFragment]) -> Vec<CodeFragment> {
     let minus = terms.iter().take_while(|term| term.negative).count();
     let (minus, others) = terms.split_at(minus);
@@ -521,7 +524,7 @@ fn positive_first(terms: &[CodeFragment]) -> Vec<CodeFragment> {
     [plus, minus, others].concat()
 }
 
-/// A text broken before its signs; the first line has this many letters before it.
+/// A text broken before its signs; `before` characters precede the first line.
 fn filled(text: &str, before: usize) -> Vec<String> {
     let mut places: Vec<usize> = [" + ", " - "]
         .iter()
@@ -542,7 +545,8 @@ fn filled(text: &str, before: usize) -> Vec<String> {
     lines
 }
 
-/// Lines that each but the first begin with a sign, as the language has them.
+/// The lines of a broken expression, each but the first beginning with a sign, in the syntax of the
+/// language.
 fn broken(before: &str, lines: Vec<String>, after: &str, breaks: &Break) -> Vec<String> {
     let mut lines = lines;
     if lines.len() == 1 {

@@ -11,14 +11,15 @@ use kuva::prelude::{
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use kuva::render::render_utils::wrap_text;
 
+use super::super::escaped;
 use super::{Curve, CurveStyle, FigureError, GuideLine, POINTS, Panel, Scale};
 
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.
 const PAGE: f64 = 720.0;
 const MARGIN: f64 = 10.0;
-/// Points that are not joined, beyond which only every so many are drawn.
+/// Number of points that are not joined beyond which only a selection is drawn.
 const MOST_DOTS: usize = 12_000;
-/// Points of one curve beyond which it is thinned.
+/// Number of points of a curve beyond which it is thinned.
 const MOST_POINTS: usize = 2000;
 
 /// Sets panels two abreast, a last one alone across the page, or each across the page.
@@ -46,7 +47,7 @@ pub(super) fn arranged(
         }
         plots.push(lines);
         layouts.push(layout);
-        // Cells 0 and 1 are the row of the legend.
+        // Cells 0 and 1 are the row of the legend, so that panels begin with cell 2.
         let first = if abreast { index + 2 } else { 2 * index + 2 };
         cells.push((first..first + columns).collect());
     }
@@ -57,7 +58,8 @@ pub(super) fn arranged(
     let legend_height = 1.0 + 22.0 * entries.len().div_ceil(abreast) as f64;
     let legend = LegendPlot::from_entries(entries).with_cols(abreast).with_max_cols(abreast);
     plots.push(vec![Plot::LegendPlot(legend.without_box())]);
-    // A small font at a large scale: longer samples of the lines beside text of the usual size.
+    // A small font at a large scale gives longer line samples in the legend with text of the usual
+    // size.
     let layout = Layout::new((0.0, 1.0), (0.0, 1.0)).with_scale(1.5).with_body_size(8);
     layouts.push(layout.with_force_margins(16.0, 0.0).with_force_margins_y(6.0, 0.0));
     cells.push(vec![0, 1]);
@@ -75,8 +77,8 @@ pub(super) fn arranged(
     Ok(written(scene, caption))
 }
 
-/// The library's lines and axes for one panel that is one or two columns wide; refuses what has no
-/// place on them.
+/// The library's lines and axes for one panel that is one or two columns wide; an error for values
+/// that have no place on them.
 fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
     if panel.curves.is_empty() {
@@ -132,7 +134,7 @@ impl Scale {
     }
 }
 
-/// The points of a curve on the axes of its panel, no more than can be told apart.
+/// The points of a curve on the axes of its panel, thinned to those that can be distinguished.
 fn placed(
     Curve { label, points, style }: &Curve,
     panel: &Panel,
@@ -161,7 +163,7 @@ fn placed(
     Ok(points)
 }
 
-/// A curve of the library's, or dots.
+/// A curve or dots, as an object of the library.
 fn plot(
     label: &str,
     points: Vec<(f64, f64)>,
@@ -181,7 +183,7 @@ fn plot(
     Plot::Line(line.with_line_style(LineStyle::Custom(dashes.to_owned())))
 }
 
-/// The power of ten that an axis is in, and its range in units of it.
+/// The power of ten of an axis, and its range in units of it.
 type AxisExtent = (i32, (f64, f64));
 
 /// The axes of a panel.
@@ -218,8 +220,8 @@ fn axes(
     layout
 }
 
-/// The power of ten that makes the values readable, and their range in units of it (a constant in
-/// the middle of one).
+/// The power of ten that makes the values readable, and their range in units of it (a constant is
+/// in the middle of its range).
 fn extent(values: &[f64], scale: Scale) -> AxisExtent {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -245,7 +247,7 @@ fn axis_label(label: &str, power: i32) -> String {
     })
 }
 
-/// As short as nine decimals allow.
+/// A number with at most nine decimals, as short as possible.
 fn number(value: f64) -> String {
     let rounded = (value * 1e9).round() / 1e9;
     rounded.to_string().replace('-', "−")
@@ -273,8 +275,8 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept.into_iter().map(|index| points[index]).collect()
 }
 
-/// Words as they stand: the library reads `$...$` as mathematics, and XML has no control
-/// characters.
+/// Words without special characters: the library reads `$...$` as mathematics, and XML has no
+/// control characters.
 fn printable(text: &str) -> String {
     text.replace('$', "\\$")
         .replace(|c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " ")
@@ -283,7 +285,7 @@ fn printable(text: &str) -> String {
 /// The scene and its caption as SVG, without the library's version, and with the clip regions,
 /// which the library counts through the life of the process, numbered from 0.
 pub(in crate::export) fn written(mut scene: Scene, caption: &str) -> String {
-    // SVG runs ordinary spaces together.
+    // SVG collapses consecutive spaces.
     let mut lines = wrap_text(&printable(caption.trim()).replace("  ", " \u{a0}"), 106);
     lines.retain(|line| !line.is_empty());
     for content in lines {
@@ -313,10 +315,13 @@ pub(in crate::export) fn written(mut scene: Scene, caption: &str) -> String {
         *id = new;
     }
     let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
-    // A mitred corner of a thick line sticks out: a graze would seem to go far into the barrier.
-    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).replacen(
+    // A mitred corner of a thick line would extend beyond its point: a graze would seem to go far
+    // into the barrier. The caption is also the alternative text for readers who cannot see the
+    // picture.
+    let alternative = format!("  <title>{}</title>\n", escaped(&printable(caption.trim())));
+    svg.replacen("<svg ", "<svg role=\"img\" stroke-linejoin=\"round\" ", 1).replacen(
         &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
-        "",
+        &alternative,
         1,
     )
 }

@@ -2,9 +2,9 @@
 
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
 
-use super::words::escaped;
+use super::escaped;
 
-/// Sets formulas.
+/// Converts formulas from LaTeX to MathML.
 pub(super) struct Typesetter(Option<LatexToMathML>);
 
 impl Default for Typesetter {
@@ -44,7 +44,8 @@ impl Typesetter {
     fn set(&self, formula: &str, display: MathDisplay) -> Option<String> {
         let formula = words_apart(formula);
         let set = self.0.as_ref()?.convert_with_local_counter(&formula, display).ok()?;
-        // As indices they are shrunk once more by fonts that have them small already.
+        // Set as indices, primes are shrunk once more in fonts that have them small already; the
+        // class marks them for the style sheet.
         Some(["\u{2032}", "\u{2033}", "\u{2034}"].iter().fold(set, |set, primes| {
             set.replace(
                 &format!("<mo>{primes}</mo>"),
@@ -72,19 +73,19 @@ fn words_apart(formula: &str) -> String {
     apart
 }
 
-/// A formula that cannot be set, as it is typed.
+/// A formula that cannot be converted, as its LaTeX text.
 fn unset(formula: &str) -> String {
     format!("<code>{}</code>", escaped(formula))
 }
 
-/// Words and formulas in turn, the words as they are read.
+/// Words and formulas in turn, the words as plain text.
 fn pieces(text: &str) -> Vec<String> {
     let mut pieces = vec![String::new()];
     let mut letters = text.chars().peekable();
     let mut before = ' ';
     while let Some(letter) = letters.next() {
         let in_words = pieces.len() % 2 == 1;
-        // A name of two people, or a place left empty; an option keeps its hyphens.
+        // A dash between two names, or for an empty cell; an option keeps its hyphens.
         let dash = text == "--" || before.is_alphabetic();
         before = letter;
         let piece = match letter {
@@ -92,7 +93,7 @@ fn pieces(text: &str) -> Vec<String> {
                 pieces.push(String::new());
                 continue;
             }
-            // A hat has braces behind it.
+            // A hat is followed by braces.
             '\\' if in_words => match letters.next() {
                 Some('^') => {
                     letters.next_if_eq(&'{');

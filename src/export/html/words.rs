@@ -1,21 +1,8 @@
 //! Words, names and verdicts as HTML.
 
-/// Text in which nothing is read as HTML.
-pub(super) fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            _ => escaped.push(letter),
-        }
-    }
-    escaped
-}
+use super::escaped;
 
-/// Names with what is said of each; `class` is that of the list.
+/// Names with a text for each; `class` is that of the list.
 pub(super) fn definitions(class: &str, entries: &[(impl AsRef<str>, String)]) -> String {
     let class = match class {
         "" => String::new(),
@@ -35,7 +22,7 @@ pub(super) fn list(lines: &[String]) -> String {
     format!("<ul>\n{lines}</ul>\n")
 }
 
-/// A verdict at the beginning of words in its colour.
+/// Words that begin with a verdict, which is set in its colour.
 pub(super) fn verdict(words: &str) -> String {
     let (first, rest) = words.split_at(words.find(' ').unwrap_or(words.len()));
     match first {

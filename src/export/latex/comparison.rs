@@ -70,7 +70,8 @@ pub(in crate::export) fn with_hbar(method: &MethodRow) -> String {
     }
 }
 
-/// The law in one line, with the definitions it needs; in words where it is not a formula.
+/// The law in one line, with the definitions it needs; the error is a text for a law that is not a
+/// formula.
 fn formula(method: &MethodRow) -> Result<String, &'static str> {
     let ordered = |law| sum(&method.row.solution.ordered(law));
     let slow = method.row.solution.slow();

@@ -7,7 +7,8 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::{GREEK, Symbol};
 
-/// An expression. Without recursion: `open` holds what is still to be written, the next piece last.
+/// An expression. The algorithm is not recursive: `open` is a stack of the pieces still to be
+/// written.
 ///
 /// ```
 /// use lindstedt::{export::latex, expr::parse_expression};
@@ -19,7 +20,7 @@ pub fn expression(expression: &Expr) -> String {
     written(expression, LatexContext::Free)
 }
 
-/// As it stands in parentheses or below a root, which the caller writes.
+/// An expression for parentheses or a root that the caller writes.
 pub fn inside(expression: &Expr) -> String {
     written(expression, LatexContext::Inside)
 }
@@ -50,7 +51,7 @@ enum LatexContext {
     Inside,
     /// A term after its sign has been written: the sign is left out.
     Unsigned,
-    /// A single term whose minus has gone into a difference above the fraction bar.
+    /// A single term whose minus sign was absorbed by reversing a difference in the numerator.
     Turned,
     /// A factor that needs no sign between itself and its neighbours.
     Factor,
@@ -91,7 +92,7 @@ fn pieces(expr: &Expr, place: LatexContext) -> Vec<LatexItem> {
     }
 }
 
-/// The first difference above the line of a product, and it turned round.
+/// The first difference in the numerator of a product, and that difference reversed.
 fn difference(product: &Expr) -> Option<(usize, Expr)> {
     let (_, factors) = product.factors();
     let mut turned = factors.iter().map(Expr::turned_round).enumerate();
@@ -99,7 +100,7 @@ fn difference(product: &Expr) -> Option<(usize, Expr)> {
 }
 
 /// One term without its sign, as a fraction where there is a denominator; with its first difference
-/// turned round, if so asked.
+/// reversed if `turn` is set.
 fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
     let (coefficient, factors) = term.factors();
     let (mut above, mut below) = (vec![], vec![]);
@@ -114,7 +115,7 @@ fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
             _ => above.push((base, exponent)),
         }
     }
-    // A decimal stands above the line.
+    // A decimal is part of the numerator.
     let decimal = decimal_of_long_fraction(&coefficient.abs());
     let (numerator, denominator) = match decimal {
         Some(decimal) => (super::scientific_text(&decimal), Integer::one()),
@@ -122,7 +123,7 @@ fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
     };
     let is_fraction = !denominator.is_one() || !below.is_empty();
     let above = match above.as_slice() {
-        // As what is alone under it.
+        // A single base in the denominator needs no parentheses.
         [(base, exponent)] if is_fraction && numerator == "1" && exponent.is_one() => {
             vec![LatexItem::Expr(base.clone(), LatexContext::Inside)]
         }
@@ -172,8 +173,8 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<LatexItem> {
         }
         _ => LatexItem::Expr(exponent.clone(), LatexContext::Inside),
     };
-    // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative
-    // needs braces around its primes.
+    // The exponent of a function precedes its argument, `\sin^{2} x`; a power has an exponent
+    // already, and a derivative needs braces around its primes.
     let mut power = match base.node() {
         Node::Symbol(symbol) if symbol.primes() > 0 => {
             vec![text(format!("{{{}}}", self::symbol(*symbol)))]

@@ -20,7 +20,7 @@ pub(super) fn reading(reading: PhaseReading) -> String {
     format!("&\\text{{{words}:}}")
 }
 
-/// The line in place of the force of the barrier, and how it was fitted.
+/// The line in place of the force of the barrier, and the rule of its fit.
 pub(super) fn fitted(
     fitted: &FittedLine,
     barrier: f64,
@@ -149,7 +149,7 @@ fn signed(value: f64) -> String {
     format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()))
 }
 
-/// The name of a phase and when it is, and its closed form: a few waves to a row.
+/// The name of a phase, its interval of time, and its closed form, a few waves to a row.
 pub(super) fn phase(phase: &MotionPhase, letters: ImpactSymbols) -> Vec<String> {
     const WAVES_IN_A_ROW: usize = 3;
     let clock = match phase.joined_at() {

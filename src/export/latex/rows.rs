@@ -1,14 +1,14 @@
-//! Rows of `align*` that fit a line of an article: long sums break before a sign.
+//! Rows of `align*` that fit a line of an article; long sums break before a sign.
 //!
 //! A row breaks outside of its brackets where it can. Where a bracket alone is longer than a line, it
 //! breaks inside, and the bracket is set without `\left` and `\right`, which hold a line together.
 
-/// The width of a line of an article, in letters of a formula.
+/// The width of a line of an article, in characters of a formula.
 const WIDTH: f64 = 57.0;
 
-/// The rows of a formula, `left &= right`, one where it fits a line.
+/// The rows of a formula, `left &= right`, a single one if it fits a line.
 pub(in crate::export) fn rows(formula: &str) -> Vec<String> {
-    /// The widest left side beside which the right sides of other rows have room.
+    /// The widest left side that leaves room for the right sides of other rows.
     const WIDEST_LEFT: f64 = 22.0;
     match formula.split_once(" &= ") {
         Some((left, right)) if width(left) > WIDEST_LEFT => rows(&format!("&{left} = {right}")),
@@ -22,7 +22,7 @@ fn broken(formula: &str) -> Vec<String> {
     let begin = begins.into_iter().flatten().next().unwrap_or(0);
     let outside = breaks(formula, begin, 0);
     let longest = pieces(formula, &outside).into_iter().map(width).fold(0.0, f64::max);
-    // A bracket among words is short, whatever the words are.
+    // Brackets in formulas with words are short.
     match longest <= WIDTH || formula.contains("\\text{") {
         true => joined(&pieces(formula, &outside)),
         false => {
@@ -33,9 +33,9 @@ fn broken(formula: &str) -> Vec<String> {
     }
 }
 
-/// The pieces put together to rows as long as a line allows.
+/// The pieces joined to rows that fit a line.
 fn joined(pieces: &[&str]) -> Vec<String> {
-    /// How far a row that goes on is set in.
+    /// The indentation of a continuation row.
     const QUAD: f64 = 3.0;
     let mut rows: Vec<String> = Vec::new();
     let mut length = f64::INFINITY;
@@ -93,13 +93,13 @@ fn breaks(formula: &str, begin: usize, deepest: usize) -> Vec<usize> {
     places
 }
 
-/// The formula with its outermost brackets open to a break: `\bigl(` for `\left(`.
+/// The formula with outermost brackets inside which it may break: `\bigl(` for `\left(`.
 fn in_open_brackets(formula: &str) -> String {
     let mut open = String::with_capacity(formula.len());
     let (mut depth, mut rest) = (0_usize, formula);
     while let Some(letter) = rest.chars().next() {
         if let Some(after) = rest.strip_prefix("\\left") {
-            // `\leftarrow` is none.
+            // `\leftarrow` is not a bracket.
             let is_bracket = after.starts_with(['(', '[']);
             open.push_str(if is_bracket && depth == 0 { "\\bigl" } else { "\\left" });
             depth += usize::from(is_bracket);
@@ -117,8 +117,8 @@ fn in_open_brackets(formula: &str) -> String {
     open
 }
 
-/// About how many letters wide a formula is set: a fraction as wide as its wider part, an exponent
-/// or an index at two thirds.
+/// The approximate width of a formula in characters: a fraction as wide as its wider part, an
+/// exponent or an index at two thirds.
 pub(super) fn width(formula: &str) -> f64 {
     let mut letters = formula.chars().peekable();
     let mut widths: Vec<f64> = vec![0.0];

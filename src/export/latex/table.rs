@@ -27,8 +27,8 @@ impl LatexTable {
         }
     }
 
-    /// As it stands in an article: wider than a line, in small letters, and its widest columns as
-    /// paragraphs; longer than a page, over several.
+    /// The LaTeX text: a table wider than a line is set in small letters with its widest columns as
+    /// paragraphs; one longer than a page extends over several.
     pub(in crate::export) fn written(&self) -> String {
         const LINES_OF_A_PAGE: usize = 44;
         let widths = self.widths();
@@ -64,7 +64,7 @@ impl LatexTable {
         }
     }
 
-    /// How many letters wide each column is.
+    /// The width of each column in characters.
     fn widths(&self) -> Vec<f64> {
         let width = |column: usize| {
             let cells = std::iter::once(&self.head).chain(&self.rows);
@@ -75,11 +75,11 @@ impl LatexTable {
     }
 }
 
-/// The letters of a line, of ordinary size and small.
+/// The number of characters of a line, of ordinary size and small.
 const LINE: f64 = 76.0;
 const SMALL_LINE: f64 = 96.0;
 
-/// Between two columns.
+/// The width of the gap between two columns.
 const GAP: f64 = 2.0;
 
 /// The width of a cell: of its words as they are, of its formulas as they are set.

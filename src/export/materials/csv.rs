@@ -1,9 +1,9 @@
-//! A row for each material, to go on with.
+//! A study of materials as comma-separated values, a row for each material.
 
 use crate::export::csv::{cell, head, line, quoted};
 use crate::impact::MaterialStudy;
 
-/// Names and units of the columns: a first line of comment has the units.
+/// Names and units of the columns; the first line is a comment with the units.
 const COLUMNS: [(&str, &str); 17] = [
     ("material", "-"),
     ("modulus", "Pa"),
@@ -24,8 +24,8 @@ const COLUMNS: [(&str, &str); 17] = [
     ("energies", "m*g*L"),
 ];
 
-/// The table: what has no value is empty, the energies after the impacts stand in one field,
-/// between semicolons.
+/// The table. Cells without a value are empty; the energies after the impacts are in one field,
+/// separated by semicolons.
 ///
 /// ```
 /// use lindstedt::impact::{MaterialQuestion, study_materials};

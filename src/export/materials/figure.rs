@@ -1,5 +1,5 @@
-//! The paper's Figure 4 with its answer: the swing against every barrier, and its decay under two
-//! things held fixed.
+//! The paper's Figure 4 and its explanation: the swing against every barrier, and its decay with
+//! two forms of the damping held fixed.
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
@@ -12,8 +12,8 @@ use crate::impact::{
 /// Points of a motion, equally spaced in time.
 const POINTS: usize = 1200;
 
-/// The curves of the materials, as many as can be told apart: the first are drawn. Black is what
-/// stands beside them.
+/// The curves of the materials, as many as can be told apart: the first are drawn. Black is left
+/// for the comparisons.
 const STYLES: [CurveStyle; 8] = [
     CurveStyle::SERIES[0],
     CurveStyle::SERIES[1],
@@ -29,9 +29,9 @@ const STYLES: [CurveStyle; 8] = [
 const FIGURE_4: [f64; 2] = [1.0, 2.5];
 
 /// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
-/// its amplitude: as asked for, and beside it with the contact damping held fixed in the form under
-/// which the modulus says the opposite. With the decay stand those without a barrier and with one
-/// that loses nothing.
+/// its amplitude: as requested, and with the contact damping held fixed in the form under which the
+/// modulus has the opposite effect. The decays without a barrier and with a lossless one are drawn
+/// for comparison.
 ///
 /// # Errors
 /// As [`figure`]; a motion that cannot be followed.
@@ -50,7 +50,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     let window = FIGURE_4.map(|time| time / second);
     let window = match window[1] <= study.question.settings.duration {
         true => window,
-        // A slow pendulum, or a short run: from its start.
+        // A slow pendulum or a short run is drawn from its start.
         false => [0.0, study.question.settings.duration],
     };
     let end = 1.05 * last_rest(study);
@@ -103,7 +103,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     figure(&panels, &caption(study, contrast, drawn))
 }
 
-/// The time at which the last of them rests; the end of the run where one does not.
+/// The time at which the last of them rests; the end of the run if one does not rest.
 fn last_rest(study: &MaterialStudy) -> f64 {
     let of_rows = study.rows.iter().map(|row| row.course.rest_time);
     let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());
@@ -112,8 +112,7 @@ fn last_rest(study: &MaterialStudy) -> f64 {
     longest.unwrap_or(study.question.settings.duration)
 }
 
-/// The first of the forms that are worse than the given one: mu compared with lambda, lambda with
-/// mu.
+/// The form of the damping to contrast with the given one: mu for lambda, lambda for mu.
 fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
     let by_mu = |damping: ContactDamping| {
         matches!(damping.form(), Parameter::Mu | Parameter::ContactDamping)
@@ -122,7 +121,7 @@ fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
     study.held_fixed.iter().find(|held| by_mu(held.damping) != given)
 }
 
-/// A curve for each material; one point alone is none.
+/// A curve for each material with at least two points.
 fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve<'a>> {
     let rows = study.rows.iter().zip(points).zip(STYLES);
     rows.filter(|((_, points), _)| points.len() > 1)

@@ -1,10 +1,11 @@
-//! A row for each run, or for each design of a front, to go on with.
+//! A search as comma-separated values: a row for each run, or for each design of a front.
 
 use crate::export::csv::{cell, head, line, quoted};
 use crate::optimize::{Finalist, Objective, OptimizationProblem, SearchRun, Study};
 
-/// The table: for one objective the best design of every run as it has it, for several the front by
-/// integration. A first line of comment has the units; what has no value is empty.
+/// The table: for one objective the best design of every run as the search evaluated it, for
+/// several the front by integration. The first line is a comment with the units; cells without a
+/// value are empty.
 ///
 /// ```
 /// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
@@ -51,7 +52,8 @@ fn columns(question: &OptimizationProblem) -> Vec<(String, String)> {
     columns
 }
 
-/// The variables that have a column of their own: the mass may be an objective, which has one.
+/// The variables that have a column of their own: the mass has none if it is an objective, whose
+/// column shows it.
 fn own_variables(question: &OptimizationProblem) -> impl Iterator<Item = usize> {
     let is_objective =
         |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
@@ -59,7 +61,7 @@ fn own_variables(question: &OptimizationProblem) -> impl Iterator<Item = usize> 
         .filter(move |&index| !is_objective(question.variables[index].parameter.name()))
 }
 
-/// The quantities of a design beside the objectives and the variables.
+/// The quantities of a design other than the objectives and the variables.
 fn others(question: &OptimizationProblem) -> impl Iterator<Item = Objective> {
     let varies = |name: &str| {
         let mut variables = question.variables.iter();
@@ -72,7 +74,7 @@ fn others(question: &OptimizationProblem) -> impl Iterator<Item = Objective> {
         .filter(|objective| question.main_mass.is_some() || !objective.is_of_main_mass())
 }
 
-/// The best design of a run for one objective, and how the run went.
+/// The best design of a run for one objective, and the statistics of the run.
 fn best_of(run: &SearchRun, question: &OptimizationProblem) -> Vec<String> {
     let found = run.found.first();
     let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];

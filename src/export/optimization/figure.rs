@@ -7,7 +7,7 @@ use crate::export::figure::{
 };
 use crate::optimize::{Objective, Study, Variable, WITHIN};
 
-/// The most runs that are drawn.
+/// Largest number of runs that are drawn.
 const DRAWN: usize = 200;
 
 /// The picture of a search: for one objective the convergence of all runs and of the baselines, and
@@ -130,7 +130,7 @@ struct Designs {
 impl Designs {
     fn from_study(study: &Study) -> Self {
         let variables = &study.question.variables;
-        // Every variable once, two by two; the last one alone beside the first.
+        // Every variable is drawn once, in pairs; an odd last one is paired with the first.
         let pairs = (0..variables.len()).step_by(2);
         let pairs = pairs.filter_map(|index| match (index + 1 < variables.len(), index) {
             (true, _) => Some([index, index + 1]),

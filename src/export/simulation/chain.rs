@@ -1,4 +1,4 @@
-//! The chain of closed forms: the formulas that it adds to a simulation.
+//! The formulas of a chain of closed forms, as part of a simulation.
 
 use std::fmt::Write as _;
 
@@ -7,8 +7,7 @@ use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
 use crate::impact::{NoRest, PathSegment, Regime, Simulation};
 
-/// The phases of a chain: steps of an integration that follow each other are one, which has no
-/// formula.
+/// The phases of a chain: consecutive steps of an integration form one phase, which has no formula.
 pub(in crate::export) fn phases(motion: &Simulation) -> Vec<PathSegment> {
     let integrated =
         |piece: &PathSegment| piece.closed_form().is_none() && piece.regime != Regime::Stuck;
@@ -50,7 +49,7 @@ pub(super) fn formulas(text: &mut String, motion: &Simulation) {
     }
 }
 
-/// The formula of one phase, or what takes its place.
+/// The formula of one phase, or words for a phase without one.
 pub(super) fn formula(piece: &PathSegment) -> String {
     match (piece.closed_form(), piece.regime) {
         (Some(form), _) => format!("x(t) = {form}"),
@@ -59,7 +58,7 @@ pub(super) fn formula(piece: &PathSegment) -> String {
     }
 }
 
-/// A rest time beside that of the chain.
+/// A rest time compared with that of the chain.
 pub(super) fn rest_time_comparison(
     chain: Result<f64, NoRest>,
     integrated: Result<f64, NoRest>,

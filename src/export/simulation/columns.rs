@@ -1,4 +1,4 @@
-//! The columns of the table of a sweep: what each is called, its unit, what it means.
+//! The columns of the table of a sweep: name, unit and meaning of each.
 
 use crate::impact::Parameter;
 use crate::impact::sweep::Axis;
@@ -17,7 +17,7 @@ pub struct Column {
     pub meaning: String,
 }
 
-/// Name, unit and meaning of what came of each motion.
+/// Name, unit and meaning of each result of a motion.
 const RESULTS: [(&str, Option<&str>, &str); 10] = [
     (
         "impacts",
@@ -39,7 +39,7 @@ const RESULTS: [(&str, Option<&str>, &str); 10] = [
     ("stopped", None, "why the run ended"),
 ];
 
-/// The columns behind the rest time if the baseline was asked for.
+/// The columns after the rest time if the baseline was requested.
 const BASELINE: [(&str, Option<&str>, &str); 2] = [
     (
         "rest_no_barrier",
@@ -53,8 +53,8 @@ const BASELINE: [(&str, Option<&str>, &str); 2] = [
     ),
 ];
 
-/// The columns: the parameters in the order of the axes, then what came of each motion, with the
-/// rest times of the baseline or without.
+/// The columns: the parameters in the order of the axes, then the results of each motion, with or
+/// without the rest times of the baseline.
 ///
 /// ```
 /// use lindstedt::export::simulation::columns;

@@ -7,7 +7,7 @@ use super::columns::columns;
 use super::{Report, SweepReport};
 use crate::export::csv::{cell, head};
 
-/// Points inside each step of the integrator.
+/// Number of points inside each step of the integrator.
 const BETWEEN: usize = 3;
 
 /// The trajectory, below its units and the names of its columns: the steps of the integrator and a few points inside each, so that a contact of a
@@ -53,16 +53,16 @@ pub fn simulation(report: &Report) -> String {
             }
         }
     }
-    // A table that ends early says so, in a line that readers of tables can skip.
+    // A table that ends early gets a comment line, which readers of tables can skip.
     if !motion.stop.is_complete() {
         let _ = writeln!(text, "# incomplete: {}", motion.stop);
     }
     text
 }
 
-/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million.
-/// The first line has the units and begins with `#`, as a comment that readers of tables can be
-/// told to skip; the second has the names.
+/// The sweep: the parameters, then the results, written line by line, because there may be a
+/// million lines. The first line has the units and begins with `#`, as a comment that readers of
+/// tables can be told to skip; the second has the names.
 ///
 /// # Errors
 /// The errors of the writer.

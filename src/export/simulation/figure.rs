@@ -10,7 +10,7 @@ use crate::export::figure::{
 use crate::impact::sweep::{Axis, Spacing, Summary};
 use crate::impact::{Integrator, Simulation};
 
-/// Points of a curve, equally spaced in time; the turning points come on top.
+/// Number of points of a curve, equally spaced in time; the turning points are added.
 const POINTS: usize = 1600;
 
 /// The motion at equal distances of time and at its turning points, so that no peak is cut.
@@ -33,7 +33,7 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
-/// The motion in time, the phase plane, and where the energy goes.
+/// The motion in time, the phase plane, and the energy balance.
 ///
 /// # Errors
 /// As [`figure`].
@@ -73,7 +73,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let guides = |guide: fn(f64, &'static str) -> GuideLine<'static>| -> Vec<GuideLine<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
         let right = model.right.map(|at| guide(at, "barrier x_c"));
-        // A barrier out of reach would leave no room for the motion.
+        // A barrier out of reach is left out, because the axis would leave no room for the motion.
         match motion.touches() {
             true => left.into_iter().chain(right).collect(),
             false => Vec::new(),
@@ -158,7 +158,7 @@ const TIME: &str = "time t (units of 1/ω)";
 pub(super) struct SweepQuantity {
     pub(super) title: &'static str,
     pub(super) label: &'static str,
-    /// The name of the quantity, for a motion that has none.
+    /// The name of the quantity, for the message about motions that do not have it.
     name: &'static str,
     value: fn(&Summary) -> Option<f64>,
 }
@@ -269,12 +269,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 }
                 Spacing::Linear | Spacing::List => (Scale::Linear, one.values().to_vec()),
             };
-            // A list may go to and fro, a curve does not.
+            // The values of a list need not be sorted, those of a curve must be.
             let mut order: Vec<usize> = (0..values.len()).collect();
             order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
             let x_label = axis_label(one);
-            // A motion without the quantity interrupts the curve: nothing is drawn across what is
-            // not there, and one point alone is no curve.
+            // A motion without the quantity interrupts the curve, and a single point is not drawn.
             let runs = |quantity: &SweepQuantity| -> Vec<Points> {
                 let found: Vec<Option<(f64, f64)>> = order
                     .iter()

@@ -10,8 +10,7 @@ use crate::decimal::{decimal, significant};
 use crate::export::figure::{FigureError, power_of_ten, written};
 use crate::impact::sweep::{Axis, Spacing};
 
-/// The rows as the library draws them, upwards and to the right: an axis that falls is turned
-/// round.
+/// The rows as the library draws them, upwards and to the right: a decreasing axis is reversed.
 fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f64>> {
     let mut rows = grid.to_vec();
     if !down_rises {
@@ -26,17 +25,17 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
 /// The positions of the values of an axis on a map, at equal distances: the values themselves,
 /// their exponents, or their indices.
 struct Ruler {
-    /// The places of the first value and the last.
+    /// The positions of the first and the last value.
     ends: [f64; 2],
-    /// The text of a tick.
+    /// The format of the tick labels.
     ticks: TickFormat,
-    /// The distance of the places with something written; the library's choice where there is none.
+    /// The distance of the labelled ticks; `None` leaves it to the library.
     step: Option<f64>,
 }
 
 impl Ruler {
     fn from_axis(axis: &Axis) -> Self {
-        /// Steps between the exponents that are written.
+        /// Possible steps between labelled exponents.
         const STEPS: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
         let ends = axis.ends();
         let written = |value: f64| decimal((value * 1e12).round() / 1e12);

@@ -8,7 +8,8 @@ use crate::decimal::significant;
 use crate::export::latex::{LatexTable, scientific};
 use crate::impact::{ClosedForm, ContactRecord, PathSegment};
 
-/// Lines of a block of formulas: a page takes no more, and a block does not break.
+/// Largest number of lines of a block of formulas, which must fit a page because a block does not
+/// break.
 const LINES: usize = 24;
 
 /// The contacts and the phases of a chain.
@@ -113,7 +114,7 @@ fn phase(piece: &PathSegment) -> String {
                 format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave))
             };
             let [first, second, third] = sines;
-            // In one line they are wider than a page.
+            // In one line the formulas would be wider than a page.
             format!(
                 "{}{} \\\\\n&&&\\quad{}{}",
                 scientific(barrier),

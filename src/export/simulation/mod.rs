@@ -31,20 +31,20 @@ use crate::trajectory::DISPLACEMENT;
 pub struct Report<'a> {
     /// The motion.
     pub motion: &'a Simulation,
-    /// The run by the other integrator, if both were asked for.
+    /// The run by the other integrator, if both were requested.
     pub judge: Option<&'a Simulation>,
     /// The sources of gamma and mu.
     pub sources: [&'a str; 2],
-    /// The tolerance that was asked for; the steps of the integrator get a part of it.
+    /// The requested tolerance; each step of the integrator gets a fraction of it.
     pub tolerance: f64,
-    /// Times at which the state is wanted, all within the duration.
+    /// Times at which the state is requested, all within the duration.
     pub samples: &'a [f64],
-    /// The rest times of the same swing without a barrier and with a lossless one, where there is
-    /// something to compare.
+    /// The rest times of the same swing without a barrier and with a lossless one, if there is
+    /// anything to compare.
     pub baseline: Option<&'a Baseline>,
     /// The damping in every form, if known.
     pub dissipation: Option<&'a Dissipation>,
-    /// The pendulum in SI units, where they are known.
+    /// The pendulum in SI units; `None` if they are not known.
     pub units: Option<&'a Units>,
     /// The time until which the motion is known to six digits, if that is not its end
     /// ([`known_until`](crate::impact::known_until)).
@@ -61,7 +61,7 @@ pub struct SweepReport<'a> {
 }
 
 impl SweepReport<'_> {
-    /// Whether the rest times without a barrier and with a lossless one are there.
+    /// Whether the rows contain the rest times without a barrier and with a lossless one.
     pub(super) fn has_baseline(&self) -> bool {
         self.rows.iter().any(|row| row.baseline.is_some())
     }
@@ -72,7 +72,7 @@ impl SweepReport<'_> {
     }
 }
 
-/// Points of the comparison of two integrators.
+/// Number of points at which two integrators are compared.
 pub(super) const COMPARED: usize = 4001;
 
 pub(super) fn friction(friction: Friction) -> &'static str {
@@ -82,7 +82,7 @@ pub(super) fn friction(friction: Friction) -> &'static str {
     }
 }
 
-/// The notes beside the numbers.
+/// The notes on a run.
 pub(super) fn notes(report: &Report) -> Vec<String> {
     let motion = report.motion;
     let mut notes = Vec::new();
@@ -112,7 +112,7 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
             ),
         });
     }
-    // So small a part of the energy at the start is what rounding leaves of none.
+    // Such a small fraction of the initial energy is rounding.
     if let Some(first) = motion.impacts.first()
         && first.speed_in * first.speed_in
             < 1e-12 * motion.model.swing_energy(motion.start.x, motion.start.velocity)

@@ -1,4 +1,4 @@
-//! To read in a terminal.
+//! A simulation, or a sweep, as text for a terminal.
 
 use std::fmt::Write as _;
 use std::io;
@@ -12,10 +12,10 @@ use crate::impact::{
     Simulation, Units,
 };
 
-/// Impacts that are listed; a long run has thousands.
+/// Largest number of listed impacts; a long run has thousands.
 pub(super) const LISTED: usize = 24;
 
-/// One run.
+/// The text of a single run.
 ///
 /// ```
 /// use lindstedt::export::simulation::{Report, text};
@@ -43,8 +43,8 @@ pub fn simulation(report: &Report) -> String {
         chain::formulas(&mut text, motion);
     }
     rest(&mut text, report);
-    // The formulas of a chain know the energy at the ends of each phase; their own velocities do
-    // not close its books.
+    // The formulas of a chain give the energy only at the ends of each phase; within a phase their
+    // velocities do not satisfy the energy balance.
     if motion.integrator != Integrator::Chain {
         energy(&mut text, motion);
     }
@@ -76,7 +76,7 @@ pub fn simulation(report: &Report) -> String {
             method(judge),
             judge.steps,
             size(difference.displacement),
-            // Of a chain it would be that of two touches a moment apart.
+            // For a chain the difference would be dominated by touches at slightly different times.
             match motion.integrator {
                 Integrator::Chain => String::new(),
                 _ => format!(", in x' {}", size(difference.velocity)),
@@ -114,7 +114,7 @@ fn typed(value: f64) -> String {
     }
 }
 
-/// An order of magnitude is enough, and below rounding none is left.
+/// A number to its order of magnitude, limited by rounding.
 fn size(value: f64) -> String {
     if value < 1e-15 { "< 1e-15".to_owned() } else { format!("{value:.0e}") }
 }
@@ -237,8 +237,8 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
     text
 }
 
-/// The impacts: with a judge each with its errors below it, without one with the energy that it
-/// takes.
+/// The impacts: with a second integrator, each with its errors below it; without one, each with the
+/// energy lost in it.
 fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
     let count = motion.impacts.len();
     let judged = judge.is_some();
@@ -290,7 +290,7 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
         ["entry", "duration", "speed in", "speed out", "penetration", "restitution", "energy lost"];
     let columns = columns.map(str::to_owned);
     text += &line(["", "side"], &columns[..columns.len() - usize::from(judged)]);
-    // Of the errors one more is listed, for no last one stands below.
+    // With errors one more is listed, because the last impact is not repeated below.
     let listed = LISTED + usize::from(judged);
     let shown = if count <= listed { count } else { listed - 1 };
     text.extend((0..shown).map(row));
@@ -403,8 +403,8 @@ fn energy(text: &mut String, motion: &Simulation) {
         writeln!(text, "  {:<14} {:>13}   of the largest energy", "residual", size(book.residual));
 }
 
-/// A sweep, a line at a time, for there may be a million. Of three parameters or more the last two
-/// make a block.
+/// A sweep, written line by line, because there may be a million lines. With three or more
+/// parameters, each block varies the last two.
 ///
 /// # Errors
 /// The errors of the writer.

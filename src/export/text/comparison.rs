@@ -44,7 +44,7 @@ pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, Str
     format!("True {FREQUENCY}{place}: {truth}")
 }
 
-/// The table, and the formulas below it where it has no room for them.
+/// The table, with the formulas below it if they do not fit its rows.
 pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &TextLayout) -> String {
     let cells = cells(rows, tolerance);
     let formulas: Vec<String> = rows.iter().map(formula).collect();
@@ -61,7 +61,7 @@ pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &TextLayout) -> 
     text
 }
 
-/// Names together of which the same is said, and that.
+/// Names with the same text grouped together, and the text of each group.
 pub(in crate::export) fn grouped(
     entries: impl Iterator<Item = (String, String)>,
 ) -> Vec<(Vec<String>, String)> {
@@ -75,7 +75,7 @@ pub(in crate::export) fn grouped(
     groups
 }
 
-/// Names and what is said of each, those of which the same is said together.
+/// Names and reasons; names with the same reason are grouped together.
 fn reasons(
     heading: &str,
     entries: impl Iterator<Item = (String, String)>,
@@ -92,7 +92,7 @@ fn reasons(
     format!("{heading}\n") + &groups.collect::<String>()
 }
 
-/// Names and what is said of each.
+/// Names with a text for each.
 pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &TextLayout) -> String {
     let entries =
         entries.iter().map(|(name, words)| entry(name, words, page.longest_title, page.width));
@@ -120,7 +120,7 @@ pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[Strin
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
     let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within]
         .map(str::to_owned);
-    // All rows start where the first one does, whatever their formulas measure.
+    // All rows use the start of the first one, whatever the amplitude in their formulas means.
     let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
     let cells = |MethodRow { row, title, .. }: &MethodRow| {
         [
@@ -172,7 +172,7 @@ fn table(
     text
 }
 
-/// A name and what is said of it: side by side where there is room, one below the other where not.
+/// A name and its text: side by side if there is room, otherwise one below the other.
 fn entry(name: &str, words: &str, longest: usize, width: usize) -> String {
     const ROOM: usize = 60;
     if width < longest + 4 + ROOM {

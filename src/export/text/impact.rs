@@ -112,7 +112,7 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width
         ["to contact", "speed", "depth", "duration", "period", "approach", "contact", "return"];
     let titles: Vec<String> = rows.iter().map(ImpactRow::title).collect();
     let longest = titles.iter().map(|title| title.chars().count()).max().unwrap_or(0);
-    // Names stand on lines of their own where the numbers leave no room beside them.
+    // Names get lines of their own if the numbers leave no room beside them.
     let beside = longest + 88 <= width;
     let line = |name: &str, cells: [String; 8], last: &str| {
         let widths = [11, 11, 11, 11, 11, 9, 9, 9];

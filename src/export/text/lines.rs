@@ -3,7 +3,7 @@
 //! A formula breaks outside of its brackets where it can, and goes on below its first term; a value
 //! goes on below itself, everything else two blanks further in. Rows of tables stay as they are.
 
-/// The lines of a text, those longer than `width` broken.
+/// The lines of a text; lines longer than `width` are broken.
 ///
 /// ```
 /// use lindstedt::export::text::fitted;
@@ -55,8 +55,8 @@ fn broken(line: &str, width: usize, fitted: &mut String) {
     fitted.push_str(end);
 }
 
-/// The place in bytes where what can be broken begins, and the blanks before the lines that follow;
-/// `None` for a row of a table.
+/// The byte position from which a line may be broken, and the indentation of its continuation
+/// lines; `None` for a row of a table.
 fn indents(line: &str, width: usize) -> Option<(usize, usize)> {
     let indent = line.len() - line.trim_start().len();
     let gaps: Vec<usize> = line[indent..]
@@ -105,8 +105,8 @@ fn parts(text: &str) -> Vec<Part<'_>> {
     parts
 }
 
-/// The part with which the next line begins: the last that fits, or one outside of brackets and with
-/// a sign where that leaves two fifths of the line at least.
+/// The part with which the next line begins: the last that fits, or an earlier one outside of
+/// brackets and with a sign if that fills at least two fifths of the line.
 fn next_break(parts: &[Part], begin: usize, room: usize) -> usize {
     let mut length = 0;
     let mut best: Option<(usize, usize)> = None;

@@ -1,11 +1,11 @@
-//! A table as text: a first column of names on the left, everything else flush right, each column
-//! as wide as it must be. Where that is wider than the page, the widest columns leave the rows and
-//! stand below them, each cell with the name of its column.
+//! A table as text: a first column of names on the left, all others flush right, each column as
+//! wide as its cells. If that is wider than the page, the widest columns are moved out of the rows
+//! and printed below them, each cell with the name of its column.
 
 use super::lines::fitted;
 use crate::report::{Heading, are_names};
 
-/// The table in lines of at most `width` characters, where its cells allow it.
+/// The table in lines of at most `width` characters, if its cells allow it.
 pub(super) fn table(head: &[Heading], rows: &[Vec<String>], width: usize) -> String {
     let names = are_names(rows);
     let head: Vec<&str> = head.iter().map(|heading| heading.text).collect();
@@ -44,7 +44,8 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>], width: usize) -> Str
     line(&head) + &rows
 }
 
-/// The columns that leave the rows so that the others fit: the widest first, never the first.
+/// The columns that are moved below the rows so that the others fit: the widest first, never the
+/// first.
 fn columns_below(widths: &[usize], width: usize) -> Vec<usize> {
     let mut below: Vec<usize> = Vec::new();
     let mut total: usize = widths.iter().map(|width| width + 2).sum();

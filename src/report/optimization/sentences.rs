@@ -50,7 +50,7 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     sentences
 }
 
-/// The part by which a value lies above another one; `None` if that is zero and this is not.
+/// The relative difference of a value to a reference; `None` if only the reference is zero.
 fn apart(value: f64, reference: f64) -> Option<f64> {
     let apart = match value == reference {
         true => 0.0,
@@ -59,7 +59,8 @@ fn apart(value: f64, reference: f64) -> Option<f64> {
     Some(apart).filter(|apart| apart.is_finite())
 }
 
-/// A search that finds a design better by this part has shown that the best one here is no optimum.
+/// Relative improvement by another search from which on the best design of this one counts as no
+/// optimum.
 const BETTER: f64 = 1e-3;
 
 /// The search that found a better design than the best one of the study, and the relative
@@ -144,7 +145,7 @@ fn what_decides(study: &Study) -> Vec<String> {
             names(&elsewhere)
         ));
     }
-    // Whether anything that the constraint forbids is better.
+    // Whether a design that the constraint forbids would be better.
     let relieved = |sensitivity: &&Sensitivity| {
         sensitivity
             .range

@@ -1,9 +1,9 @@
-//! Sums of parameters that enter as one: of a ball that rolls in a bowl R - r alone, of two masses
-//! that move together m1 + m2.
+//! Sums of parameters that enter the energies only as one: R - r for a ball that rolls in a bowl,
+//! m1 + m2 for two masses that move together.
 //!
 //! In: a mechanism, whose energies are written with such sums. Out: each [`Combination`] with a
-//! name of its own, where that leaves fewer parameters: one of the sum is replaced by the sum and
-//! the others, and one of the others is gone then.
+//! name of its own, if that leaves fewer parameters: one parameter of the sum is expressed by the
+//! sum and the other parameters, one of which must then cancel.
 
 use std::collections::BTreeSet;
 
@@ -11,43 +11,43 @@ use super::Mechanism;
 use crate::expr::{Expr, ExprError, Node};
 use crate::symbol::{Symbol, fresh};
 
-/// A sum of parameters that stands for one.
+/// A sum of parameters that counts as a single one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
-    /// Its name.
+    /// The name of the sum.
     pub name: Symbol,
-    /// Its definition in the parameters: `R - r`.
+    /// The definition in the parameters: `R - r`.
     pub meaning: Expr,
-    /// The parameter that is replaced by it, and by what.
+    /// The parameter that is eliminated, and the expression that replaces it.
     replaced: (Symbol, Expr),
 }
 
 impl Combination {
-    /// An expression with the name in the place of the sum.
+    /// Returns an expression with the name in place of the sum.
     fn put_into(&self, expression: &Expr) -> Result<Expr, ExprError> {
         let (parameter, value) = &self.replaced;
         let put = expression.substitute(*parameter, value)?;
         match self.meaning.symbols().into_iter().any(|name| put.contains(name)) {
-            // Products that were written out.
+            // The sum was hidden in expanded products.
             true => put.expand(),
             false => Ok(put),
         }
     }
 
-    /// An expression with the sum in the place of the name.
+    /// Returns an expression with the sum in place of the name.
     fn written_out(&self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.substitute(self.name, &self.meaning)
     }
 }
 
-/// An expression in these combinations.
+/// Returns an expression in terms of these combinations.
 pub(super) fn put_into(expression: &Expr, combinations: &[Combination]) -> Result<Expr, ExprError> {
     let put = |expression: Expr, combination: &Combination| combination.put_into(&expression);
     combinations.iter().try_fold(expression.clone(), put)
 }
 
-/// An expression with every sum in the place of its name: a later one may be a sum with an earlier
-/// one.
+/// Returns an expression with every sum in place of its name. The last comes first, since it may
+/// contain the names of earlier ones.
 pub(super) fn written_out(
     expression: &Expr,
     combinations: &[Combination],
@@ -56,7 +56,7 @@ pub(super) fn written_out(
     combinations.iter().rev().try_fold(expression.clone(), write)
 }
 
-/// The combinations of a mechanism, and the mechanism in them.
+/// Returns the mechanism in terms of its combinations, and the combinations.
 pub(super) fn combined(mechanism: &Mechanism) -> Result<(Mechanism, Vec<Combination>), ExprError> {
     let mut own = mechanism.clone();
     let mut found: Vec<Combination> = Vec::new();
@@ -94,7 +94,7 @@ fn one_more(mechanism: &Mechanism) -> Result<Option<(Mechanism, Combination)>, E
                 Combination { name, meaning: sum.clone(), replaced: (parameter, value) };
             let next = mechanism.mapped(|part| combination.put_into(part))?;
             let left: BTreeSet<Symbol> = next.parameters().into_iter().collect();
-            // The name came for the parameter that it replaces; another one must have gone.
+            // The new name replaces one parameter, so another one must have cancelled.
             if left.len() < parameters.len() {
                 return Ok(Some((next, combination)));
             }

@@ -1,4 +1,4 @@
-//! Units of mechanics: what a quantity is measured in, and whether the terms of an energy can be
+//! Units of mechanics: the dimension of a quantity, and a check that the terms of an energy can be
 //! added.
 //!
 //! ```text
@@ -6,8 +6,7 @@
 //! ```
 //!
 //! In: units as text, `"N*s/m^(3/2)"`, for every parameter and coordinate. Out: the [`Dimension`]
-//! of an expression, or the term that does not belong where it stands. Angles have none: a radian
-//! is 1.
+//! of an expression, or the term whose dimension is wrong. Angles are dimensionless: a radian is 1.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,7 +20,7 @@ use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::symbol::Symbol;
 
-/// Exponents of kilogram, metre and second.
+/// A dimension: the exponents of kilogram, metre and second.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Dimension([Rational; 3]);
 
@@ -29,7 +28,7 @@ pub struct Dimension([Rational; 3]);
 const BASE: [&str; 3] = ["kg", "m", "s"];
 
 /// Units that have names, by their exponents of kilogram, metre and second. Multiples such as
-/// millimetres would need factors that no check of dimensions could see: they are none of them.
+/// millimetres are not among them, because a check of dimensions could not see their factors.
 const NAMED: [(&str, [i64; 3]); 12] = [
     ("1", [0, 0, 0]),
     ("rad", [0, 0, 0]),
@@ -45,11 +44,11 @@ const NAMED: [(&str, [i64; 3]); 12] = [
     ("N_m", [1, 2, -2]),
 ];
 
-/// The reason why a unit or a term cannot be taken.
+/// The reason why a unit or a term is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UnitError {
-    /// A unit that cannot be read.
+    /// The text of a unit has a syntax error.
     #[error("the unit of `{name}`: {error}")]
     Parse {
         /// The name of the symbol.
@@ -57,7 +56,7 @@ pub enum UnitError {
         /// The error of its syntax.
         error: Box<ParseError>,
     },
-    /// A word that is no unit.
+    /// A word is not a known unit.
     #[error("the unit of `{name}`: `{unit}` is no unit that is known here")]
     Unknown {
         /// The name of the symbol.
@@ -65,7 +64,7 @@ pub enum UnitError {
         /// The word.
         unit: String,
     },
-    /// A unit that is no product of powers.
+    /// A unit is not a product of powers of units.
     #[error("the unit of `{name}`: `{unit}` is no product of powers of units")]
     NoProduct {
         /// The name of the symbol.
@@ -73,13 +72,13 @@ pub enum UnitError {
         /// The text.
         unit: String,
     },
-    /// A parameter or a coordinate without a unit.
+    /// A parameter or a coordinate has no unit.
     #[error("`{0}` has no unit")]
     Missing(Symbol),
-    /// A unit for a name that does not occur.
+    /// A unit is given for a name that does not occur.
     #[error("there is a unit for `{0}`, which does not occur")]
     Unused(Symbol),
-    /// A term that is not measured in what the others are.
+    /// A term has a dimension other than that of the other terms.
     #[error("in the {part} the term `{term}` has the unit {found}, where {expected} belongs")]
     Term {
         /// The part of the mechanism.
@@ -91,7 +90,7 @@ pub enum UnitError {
         /// The expected unit.
         expected: String,
     },
-    /// Something of a unit inside a function that takes a number.
+    /// The argument of a function such as `sin` has a dimension.
     #[error("in the {part} the function in `{term}` takes a number, not {found}")]
     Argument {
         /// The part of the mechanism.
@@ -101,7 +100,8 @@ pub enum UnitError {
         /// The unit of the argument.
         found: String,
     },
-    /// An exponent that is not a number, on something of a unit; or an exponent of a unit.
+    /// A base with a dimension has an exponent that is not a number, or an exponent has a
+    /// dimension.
     #[error("in the {part} the power `{term}` has no unit: its base is measured in {found}")]
     Power {
         /// The part of the mechanism.
@@ -117,7 +117,7 @@ pub enum UnitError {
 }
 
 impl UnitError {
-    /// The way forward: what could be written instead; `None` if it is not known.
+    /// Returns advice on what to write instead; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Missing(name) => Some(format!(
@@ -132,7 +132,7 @@ impl UnitError {
 }
 
 impl Dimension {
-    /// The dimension of a number.
+    /// The dimension of a pure number.
     pub fn none() -> Self {
         Self::default()
     }
@@ -142,7 +142,7 @@ impl Dimension {
         Self(exponents.map(|exponent| Rational::from_integer(exponent.into())))
     }
 
-    /// Whether it is that of a number.
+    /// Whether the quantity is a pure number.
     pub fn is_none(&self) -> bool {
         self.0.iter().all(Zero::is_zero)
     }
@@ -170,7 +170,7 @@ impl Dimension {
 }
 
 impl fmt::Display for Dimension {
-    /// `kg m^2/s^2`; `1` for a number.
+    /// Writes `kg m^2/s^2`; `1` for a pure number.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let write = |sign: bool| -> Vec<String> {
             let units = BASE.iter().zip(&self.0);
@@ -200,7 +200,7 @@ impl fmt::Display for Dimension {
 impl FromStr for Dimension {
     type Err = UnitError;
 
-    /// `"N*s/m^(3/2)"`, or with spaces for products as it prints.
+    /// Reads `"N*s/m^(3/2)"`, or with spaces for products as `Display` writes it.
     fn from_str(text: &str) -> Result<Self, UnitError> {
         let name = || text.to_owned();
         let typed: Vec<&str> = text.split_whitespace().collect();
@@ -225,10 +225,11 @@ impl FromStr for Dimension {
     }
 }
 
-/// The dimension of an expression, if every symbol in it has a unit.
+/// Returns the dimension of an expression; every symbol in it must have a unit.
 ///
 /// # Errors
-/// [`UnitError`] names the term; `part` is where it stands.
+/// [`UnitError`] names the term; `part` is the part of the mechanism that contains it, for the
+/// message.
 pub fn dimension(
     expression: &Expr,
     units: &BTreeMap<Symbol, Dimension>,
@@ -273,7 +274,8 @@ pub fn dimension(
     })
 }
 
-/// The common dimension of all terms; the error names the term that most others disagree with.
+/// Returns the common dimension of all terms; the error names the first term that differs from the
+/// most frequent dimension.
 fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimension, UnitError> {
     let votes = |dimension: &Dimension| found.iter().filter(|other| *other == dimension).count();
     let expected =
@@ -289,10 +291,10 @@ fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimens
     }
 }
 
-/// Refuses the terms of a sum, written out, that are not measured in `expected`: the first of them.
+/// Checks that every term of an expanded sum has the dimension `expected`.
 ///
 /// # Errors
-/// [`UnitError`] names it.
+/// [`UnitError`] names the first term that has not.
 pub fn check(
     expression: &Expr,
     expected: &Dimension,
@@ -315,8 +317,8 @@ pub fn check(
 }
 
 impl Mechanism {
-    /// The units of parameters and coordinates with those that follow: of velocities, accelerations
-    /// and time.
+    /// Returns the given units of parameters and coordinates, together with those of velocities,
+    /// accelerations and time.
     pub fn all_units(&self, units: &BTreeMap<Symbol, Dimension>) -> BTreeMap<Symbol, Dimension> {
         let per_second = Dimension::from_exponents([0, 0, -1]);
         let mut all = units.clone();
@@ -335,7 +337,8 @@ impl Mechanism {
     /// Checks every term of the energies, the dissipation and the forces.
     ///
     /// # Errors
-    /// A name without a unit, or the first term that is measured in something else than its part.
+    /// [`UnitError`] for a name without a unit, or the first term with a dimension other than that
+    /// of its part.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -377,8 +380,8 @@ impl EquationsOfMotion {
     /// Checks every term of the printed equations against the others of its equation.
     ///
     /// # Errors
-    /// The first term that is measured in something else; with energies that passed, an error of
-    /// ours.
+    /// [`UnitError`] for the first term of another dimension; if the energies passed their check,
+    /// this is an error in the derivation.
     pub fn check_units(&self, all_units: &BTreeMap<Symbol, Dimension>) -> Result<(), UnitError> {
         for left in &self.left {
             let written_out = left.expand()?;

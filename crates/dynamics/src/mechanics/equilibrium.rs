@@ -1,9 +1,10 @@
 //! Equilibria of a mechanism: `dV/dq_i - Q_i = 0` with every velocity zero.
 //!
-//! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then
-//! enters linearly is solved for; of a single angle whose force is `sin(q)*(a + b*cos(q))` the
-//! places `cos(q) = -a/b` beside them. Terms in the time and contacts (those with `H`) are left
-//! out: the places are those of the undriven mechanism away from its barriers.
+//! The search is exact, in three steps, and not exhaustive: angles are tried at 0 and pi; the
+//! equations are then solved for the coordinates that enter linearly; a single angle whose force is
+//! `sin(q)*(a + b*cos(q))` has the equilibria `cos(q) = -a/b` besides. Terms in the time and
+//! contacts (those with `H`) are left out: the equilibria are those of the undriven mechanism away
+//! from its barriers.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,22 +17,22 @@ use crate::symbol::Symbol;
 pub enum RestPosition {
     /// The coordinate has this value.
     At(Expr),
-    /// Anywhere: nothing pulls on it.
+    /// The coordinate may have any value, since no force acts on it.
     Anywhere,
 }
 
-/// A state of rest.
+/// An equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// The place of each coordinate.
+    /// The position of each coordinate.
     pub places: Vec<RestPosition>,
-    /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is
-    /// none.
+    /// The expression in the parameters that must lie between -1 and 1 for the equilibrium to
+    /// exist; `None` if it always exists.
     pub condition: Option<Expr>,
 }
 
 impl Rest {
-    /// The coordinates with their places; one that may be anywhere is put at 0.
+    /// Returns the coordinates with their positions; a coordinate that may be anywhere is put at 0.
     pub fn values(&self, coordinates: &[Symbol]) -> BTreeMap<Symbol, Expr> {
         let place = |place: &RestPosition| match place {
             RestPosition::At(place) => place.clone(),
@@ -41,11 +42,11 @@ impl Rest {
     }
 }
 
-/// The states of rest that are found, an upright or folded pendulum among them; others are not
-/// ruled out.
+/// Returns the equilibria that are found, an upright or folded pendulum among them; there may be
+/// others.
 ///
 /// # Errors
-/// Forces too long to be written out.
+/// [`MechanicsError`] for forces that are too long to be expanded.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -119,7 +120,8 @@ pub enum DriveAtRest {
 }
 
 impl EquationsOfMotion {
-    /// Determines the effect of explicit time dependence at an equilibrium.
+    /// Determines the effect of explicit time dependence at an equilibrium of the undriven
+    /// mechanism.
     pub(super) fn drive_at(&self, rest: &Rest) -> Result<DriveAtRest, ExprError> {
         let at = |place: &RestPosition| match place {
             RestPosition::At(place) => Some(place.clone()),
@@ -162,7 +164,7 @@ impl EquationsOfMotion {
     }
 }
 
-/// The terms that neither contain the time nor belong to a contact.
+/// Returns the sum of the terms that neither contain the time nor belong to a contact.
 pub(super) fn undriven(expression: &Expr) -> Result<Expr, ExprError> {
     let written_out = expression.expand()?;
     let kept = written_out.terms().iter();
@@ -171,7 +173,7 @@ pub(super) fn undriven(expression: &Expr) -> Result<Expr, ExprError> {
     Ok(kept.cloned().sum())
 }
 
-/// Whether a coordinate occurs inside sines and cosines alone, and there.
+/// Whether a coordinate occurs in the forces, and only inside sines and cosines.
 fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
     let outside = |force: &Expr| {
         let without = force.fold(|expr, children: &[Expr]| match expr.node() {
@@ -183,8 +185,8 @@ fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
     forces.iter().any(|force| force.contains(name)) && !forces.iter().any(outside)
 }
 
-/// The places of all coordinates, with the angles where they were put; `None` if the others do not
-/// follow linearly, or a force is left over.
+/// Returns the positions of all coordinates for the chosen values of the angles; `None` if the
+/// others do not follow from linear equations, or a force does not vanish.
 fn linear_places(
     coordinates: &[Symbol],
     forces: &[Expr],
@@ -193,7 +195,7 @@ fn linear_places(
     let mut places: BTreeMap<Symbol, Expr> = chosen;
     let mut open: Vec<Expr> = Vec::new();
     for force in forces {
-        // A force without a value there: it is no place to rest.
+        // A force without a value there rules out an equilibrium.
         match force.substitute_all(&places) {
             Ok(force) => open.push(simplified(&force)?),
             Err(_) => return Ok(None),
@@ -237,7 +239,8 @@ fn linear_places(
     Ok(Some(coordinates.iter().map(place).collect()))
 }
 
-/// The cosine of the angle at which `sin(q)*(a + b*cos(q))` vanishes beside 0 and pi.
+/// Returns the cosine of the angle, other than 0 and pi, at which `sin(q)*(a + b*cos(q))` vanishes;
+/// `None` for any other form of the force.
 fn cosine_of_tilt(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
     let (sine, cosine) = (Expr::from(angle).sin()?, Expr::from(angle).cos()?);
     let mark = Symbol::new("_cosine");

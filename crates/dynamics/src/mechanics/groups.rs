@@ -1,17 +1,18 @@
-//! Dimensionless groups: on how many numbers a motion depends, and on which.
+//! Dimensionless groups: the numbers on which a motion depends.
 //!
 //! ```text
 //! n parameters of r independent dimensions leave n - r numbers       (Buckingham 1914)
 //! Pi_p = p / (b_1^e_1 ... b_r^e_r)     b: as many parameters as give the units, first of inertia, then of stiffness
 //! ```
 //!
-//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) Where no product of parameters has the unit of a
-//! coordinate, as of a mass on a linear spring, the size of the motion is a unit: any length
-//! serves, `x0` for the coordinate `x`. The equations in the units b are those with every b = 1;
-//! then a product of powers that always stands together is one group: an equation often depends on
-//! fewer numbers than the theorem allows. A group has the name of what it stands before: `zeta`
-//! (twice) a velocity, `alpha` its sign, `beta` an excitation, `eta` its frequency, `gamma` and
-//! `mu` a contact and its damping; any other is `Pi1`, `Pi2`, ...
+//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) If no product of parameters has the unit of a
+//! coordinate, as for a mass on a linear spring, the size of the motion is a unit: `x0` for the
+//! coordinate `x`, which may be any length. In the units b the equations are those with every
+//! b = 1. A product of powers that occurs only as a whole is then one group, so that an equation
+//! often depends on fewer numbers than the theorem allows. A group is named after the factor that
+//! it multiplies: `zeta` (times two) a velocity, `alpha` its sign, `beta` an excitation, `eta` the
+//! time in an excitation, `gamma` and `mu` a contact and its damping; any other is `Pi1`, `Pi2`,
+//! ...
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,33 +30,35 @@ pub struct Groups {
     pub parameters: usize,
     /// The rank of the matrix of their dimensions.
     pub rank: usize,
-    /// The parameters that give the units, one for each rank, and the sizes of the motion that do.
+    /// The parameters that serve as units, as many as the rank, and the sizes of the motion that
+    /// serve as units.
     pub units: Vec<Symbol>,
-    /// The coordinates of whose unit no product of parameters is, and the name of their size, which
-    /// is a unit in its place.
+    /// The coordinates whose unit is not a product of parameters, each with the name of the size
+    /// that serves as its unit.
     pub sizes: Vec<(Symbol, Symbol)>,
-    /// The sums of parameters that count as one, by the names that they have here.
+    /// The sums of parameters that count as one, under the names that they have in the groups.
     pub combinations: Vec<Combination>,
-    /// The unit of time in them.
+    /// The unit of time, as a product of powers of the units.
     pub time: Expr,
-    /// The unit of each coordinate in them; 1 for an angle.
+    /// The unit of each coordinate, as a product of powers of the units; 1 for an angle.
     pub lengths: Vec<Expr>,
-    /// The numbers on which the motion depends.
+    /// The dimensionless numbers on which the motion depends.
     pub groups: Vec<Group>,
-    /// The left sides in these units and groups; each equation is zero.
+    /// The left sides of the equations in these units and groups; the right sides are zero.
     pub left: Vec<Expr>,
 }
 
 /// A number on which a motion depends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Its name in the dimensionless equations.
+    /// The name in the dimensionless equations.
     pub name: Symbol,
-    /// Its definition in the parameters.
+    /// The definition in the parameters.
     pub definition: Expr,
-    /// Its meaning in words.
+    /// The meaning in words.
     pub meaning: String,
-    /// The dimension of the definition, counted from the units of the parameters; that of a number.
+    /// The dimension of the definition, computed from the units of the parameters; it must be that
+    /// of a pure number.
     pub dimension: Dimension,
 }
 
@@ -63,7 +66,8 @@ impl Groups {
     /// The dimensionless groups of a mechanism whose units have passed their check.
     ///
     /// # Errors
-    /// No quantity has the dimension of a time, or a step of algebra failed.
+    /// [`MechanicsError`] if no product of powers of the parameters is a time, or a step of algebra
+    /// failed.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -83,7 +87,8 @@ impl Groups {
         equations: &EquationsOfMotion,
         units: &BTreeMap<Symbol, Dimension>,
     ) -> Result<Self, MechanicsError> {
-        // In sums that enter as one, each with the unit of its terms.
+        // The equations are written with the sums that enter as one, each with the unit of its
+        // terms.
         let combined = |expressions: &[Expr]| -> Result<Vec<Expr>, ExprError> {
             expressions.iter().map(|expression| equations.combined(expression)).collect()
         };
@@ -142,7 +147,7 @@ impl Groups {
                     .expand()?,
             );
         }
-        // A parameter without a unit is a group already.
+        // A dimensionless parameter is a group already.
         let plain = |name: &&Symbol| dimension_of(**name).is_none();
         scaling.taken.extend(parameters.iter().filter(plain));
         for name in parameters.iter().filter(plain) {
@@ -183,8 +188,8 @@ fn names(parameters: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// The parameters in the order in which they are taken for units: those of inertia, of stiffness,
-/// all others.
+/// Returns the parameters in the order in which they are tried as units: those of inertia, those of
+/// stiffness, all others.
 fn unit_candidates(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
     let [inertia, stiffness] = [inertia, stiffness]
         .map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
@@ -198,8 +203,8 @@ fn unit_candidates(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) 
     ordered
 }
 
-/// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is
-/// common to the terms of a sum. What has a unit is positive.
+/// Takes parameters, which count as positive, out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also
+/// if `l` is common to the terms of a sum.
 fn positive_factors_out(
     expression: &Expr,
     equations: &EquationsOfMotion,
@@ -229,7 +234,7 @@ struct Basis {
 }
 
 impl Basis {
-    /// The first parameters that are independent.
+    /// Takes the first parameters whose dimensions are independent.
     fn independent_among(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
         let mut basis = Self { members: Vec::new() };
         for name in ordered {
@@ -241,11 +246,12 @@ impl Basis {
         basis
     }
 
-    /// The powers of the members whose product has this dimension; `None` if there is none.
+    /// Returns the exponents with which the product of the members has this dimension; `None` if
+    /// there are none.
     fn exponents(&self, dimension: &Dimension) -> Option<Vec<Rational>> {
         let width = self.members.len();
-        // A row for each base unit, a column for each member, and the right side: eliminated
-        // exactly.
+        // Exact elimination with a row for each base unit, and a column for each member and for the
+        // right side.
         let mut rows: Vec<Vec<Rational>> = (0..3)
             .map(|unit| {
                 let members = self.members.iter().map(|(_, own)| own.exponents()[unit].clone());
@@ -281,7 +287,7 @@ impl Basis {
         Some(exponents)
     }
 
-    /// The product of powers of the members with this dimension.
+    /// Returns the product of powers of the members with this dimension; `None` if there is none.
     fn express(&self, dimension: &Dimension) -> Result<Option<Expr>, ExprError> {
         let Some(exponents) = self.exponents(dimension) else {
             return Ok(None);
@@ -308,7 +314,7 @@ impl Basis {
                 values.insert(name, Expr::divide(&Expr::from(name), &unit)?);
             }
         }
-        // Roots of products are products of roots where everything is positive, as units are.
+        // Roots of products are products of roots, since units are positive.
         let (number, factors) = scaled.factors();
         let mut product = vec![Expr::number(number)];
         for factor in factors {
@@ -325,17 +331,17 @@ impl Basis {
     }
 }
 
-/// Equations in units of the basis, and the groups found in them so far.
+/// The equations in units of the basis, and the groups found in them so far.
 struct Scaling<'a> {
     basis: &'a Basis,
     left: Vec<Expr>,
-    /// Name, definition in scaled parameters, meaning.
+    /// Name, definition in scaled parameters and meaning of each group.
     groups: Vec<(Symbol, Expr, String)>,
     taken: Vec<Symbol>,
 }
 
 impl Scaling<'_> {
-    /// Names what stands before the terms, in the order in which they print: first the frequencies.
+    /// Names the coefficients of the terms in the order in which they print, the frequencies first.
     fn collect(&mut self, equations: &EquationsOfMotion) -> Result<(), ExprError> {
         let mut counted = 0;
         while let Some((product, role)) = self.next(equations) {
@@ -361,12 +367,12 @@ impl Scaling<'_> {
                 GroupRole::Other => Symbol::new(&format!("{wanted}{counted}")),
                 _ => Symbol::new(wanted),
             };
-            // Names of parameters that are used for units, or have been replaced, stay theirs:
+            // Names of parameters that serve as units, or have been replaced, are not free, because
             // definitions are written with them.
             let parameters = equations.parameters();
             let taken: Vec<Symbol> =
                 self.taken.iter().copied().chain(self.symbols()).chain(parameters).collect();
-            // A parameter that is replaced by the group leaves its name to it.
+            // A group that consists of a single parameter of the wanted name takes over that name.
             let name = match product.symbols().len() == 1 && product.as_symbol() == Some(own) {
                 true => own,
                 false => fresh(own.name(), &taken),
@@ -393,8 +399,8 @@ impl Scaling<'_> {
             && !self.basis.members.iter().any(|(own, _)| *own == name)
     }
 
-    /// The next product of parameters that stands before something, with its number, and what it
-    /// stands before.
+    /// Returns the next product of parameters that is a coefficient, with its number, and the role
+    /// that follows from the factor that it multiplies; `None` if there is none.
     fn next(&self, equations: &EquationsOfMotion) -> Option<(Expr, GroupRole)> {
         let open = |expression: &Expr| {
             expression.symbols().into_iter().any(|name| self.is_open(name, equations))
@@ -435,12 +441,13 @@ impl Scaling<'_> {
                 ));
             }
         }
-        // Parameters inside of other functions, such as the position of a barrier, one by one.
+        // Parameters inside other functions, such as the position of a barrier, are taken one by
+        // one.
         let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
         Some((Expr::from(name), GroupRole::Other))
     }
 
-    /// Replaces the definition of a group by its name, by way of one of the parameters in it.
+    /// Replaces the definition of a group by its name: eliminates one of the parameters in it.
     fn replace(&mut self, definition: &Expr, name: Symbol) -> Result<(), ExprError> {
         let (number, factors) = definition.factors();
         let parameter = |factor: &Expr| {
@@ -451,8 +458,8 @@ impl Scaling<'_> {
             ))
         };
         let parameters: Vec<(Symbol, Rational)> = factors.iter().filter_map(parameter).collect();
-        // One that occurs nowhere else is gone then, one that stands alone in its power is replaced
-        // without a root.
+        // A parameter that occurs nowhere else is preferred, since it then disappears; next one
+        // with the exponent 1 or -1, which is replaced without a root.
         let occurrences = |name: Symbol| {
             let terms = self.left.iter().flat_map(Expr::terms);
             terms.filter(|term| term.contains(name)).count()

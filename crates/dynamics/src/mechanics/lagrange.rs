@@ -24,26 +24,27 @@ pub struct EquationsOfMotion {
     pub coordinates: Vec<Symbol>,
     /// M, the mass matrix.
     pub mass: Vec<Vec<Expr>>,
-    /// h, what stands beside the accelerations on the left side.
+    /// h, the terms without accelerations on the left side.
     pub rest: Vec<Expr>,
-    /// The left sides in the usual form: the factor that all terms have in common is divided out;
-    /// `x'' + ...` where the inertia is a number or a product of parameters.
+    /// The left sides in the usual form, divided by the common factor of all terms; `x'' + ...` for
+    /// a single coordinate if its inertia is a number or a product of parameters.
     pub left: Vec<Expr>,
     /// The divisor of each equation; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
-    /// The sums of parameters that enter as one; here they are written out.
+    /// The sums of parameters that enter as one; the equations above have the sums, not their
+    /// names.
     pub combinations: Vec<Combination>,
 }
 
 impl fmt::Display for EquationsOfMotion {
-    /// A line each.
+    /// Writes each equation on a line.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<String> = self.left.iter().map(|left| format!("{left} = 0")).collect();
         formatter.write_str(&lines.join("\n"))
     }
 }
 
-/// The equations of a mechanism that has been checked.
+/// Derives the equations of a mechanism that has been checked.
 pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, MechanicsError> {
     let coordinates = &mechanism.coordinates;
     let mut mass = Vec::new();
@@ -69,7 +70,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, Mech
         rest.push(simplified(&Expr::sum(terms))?);
     }
     let singular = || MechanicsError::Singular(mechanism.kinetic.clone());
-    // Whether every acceleration follows.
+    // This fails if the mass matrix is singular, so that an acceleration would not follow.
     linear::solution(&mass, &rest, singular)?;
     let mut equations = EquationsOfMotion {
         coordinates: coordinates.clone(),
@@ -87,13 +88,13 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, Mech
     Ok(equations)
 }
 
-/// A step or a sign by which an energy jumps: one beside which no factor vanishes with its
-/// argument.
+/// Returns a step or a sign by which an energy jumps: one that is not multiplied by a factor that
+/// vanishes with its argument. `None` if there is none.
 pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
     let steps = |expr: &Expr| {
         expr.contains_function(Function::Step) || expr.contains_function(Function::Sign)
     };
-    // The expressions still to be examined, with the factors beside them.
+    // The expressions still to be examined, each with the factors that multiply it.
     let mut open: Vec<(Expr, Vec<Expr>)> = vec![(energy.clone(), vec![])];
     while let Some((expr, beside)) = open.pop() {
         match expr.node() {
@@ -126,8 +127,8 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
     None
 }
 
-/// Whether a factor is zero where u is: a positive power of u, of its sine, or of a multiple of
-/// them.
+/// Whether a factor vanishes with u: a positive power of a multiple of u, or of its sine or
+/// absolute value.
 fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
     let (base, exponent) = factor.base_and_exponent();
     let positive = exponent.as_number().is_some_and(|exponent| *exponent > Rational::zero());
@@ -153,7 +154,7 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
 }
 
 impl EquationsOfMotion {
-    /// The equations of a mechanism in these combinations, with what those are in their places.
+    /// Returns the equations with the sums in place of the names of these combinations.
     pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
         let entries = self.mass.iter_mut().flatten();
         let others = self.rest.iter_mut().chain(&mut self.left).chain(&mut self.divisors);
@@ -164,16 +165,16 @@ impl EquationsOfMotion {
         Ok(self)
     }
 
-    /// An expression in the combinations.
+    /// Returns an expression in terms of the combinations.
     pub(super) fn combined(&self, expression: &Expr) -> Result<Expr, ExprError> {
         put_into(expression, &self.combinations)
     }
 
-    /// The accelerations, solved for: quotients in coordinates, velocities, time and parameters,
-    /// not written out.
+    /// Solves the equations for the accelerations: quotients in coordinates, velocities, time and
+    /// parameters, not expanded.
     ///
     /// # Errors
-    /// A mass matrix that is singular.
+    /// [`MechanicsError`] if the mass matrix is singular.
     pub fn accelerations(&self) -> Result<Vec<Expr>, MechanicsError> {
         let right: Vec<Expr> = self.rest.iter().map(|rest| -rest).collect();
         linear::solution(&self.mass, &right, || {
@@ -192,7 +193,7 @@ impl EquationsOfMotion {
         !self.coordinates.contains(&name.coordinate()) && name.name() != "t"
     }
 
-    /// One equation in the usual form, and what it was divided by.
+    /// Returns one equation in the usual form, and its divisor.
     fn printed(&self, index: usize) -> Result<(Expr, Expr), ExprError> {
         let inertia = &self.mass[index];
         let accelerations =
@@ -223,7 +224,7 @@ impl EquationsOfMotion {
         expression.symbols().into_iter().all(|name| self.is_parameter(name))
     }
 
-    /// The product of powers of parameters that all terms have in common.
+    /// Returns the product of powers of parameters that is common to all terms.
     pub(super) fn common(&self, terms: &[&Expr]) -> Result<Expr, ExprError> {
         let powers: Vec<BTreeMap<Symbol, Rational>> =
             terms.iter().map(|term| self.powers(term)).collect();
@@ -236,7 +237,7 @@ impl EquationsOfMotion {
             };
             let least = powers.iter().map(of).min().unwrap_or_else(Rational::zero);
             let most = powers.iter().map(of).max().unwrap_or_else(Rational::zero);
-            // A power that all have, or that all have in the denominator.
+            // The common power is positive in all terms, or in the denominator of all.
             let shared = if most < Rational::zero() { most } else { least };
             if !shared.is_zero() {
                 factors.push(Expr::power(&Expr::from(name), &Expr::number(shared))?);
@@ -245,7 +246,7 @@ impl EquationsOfMotion {
         Ok(Expr::product(factors))
     }
 
-    /// The powers of the parameters among the factors of a term.
+    /// Returns the exponents of the parameters among the factors of a term.
     fn powers(&self, term: &Expr) -> BTreeMap<Symbol, Rational> {
         let (_, factors) = term.factors();
         let power = |factor: &Expr| {
@@ -256,7 +257,7 @@ impl EquationsOfMotion {
         factors.iter().filter_map(power).collect()
     }
 
-    /// A sum with the factor in front that its terms have in common.
+    /// Returns a sum with the common factor of its terms in front.
     fn factored(&self, sum: &Expr) -> Result<Expr, ExprError> {
         let terms: Vec<&Expr> = sum.terms().iter().collect();
         if terms.len() < 2 {

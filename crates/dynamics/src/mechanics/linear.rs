@@ -1,15 +1,15 @@
-//! Matrices of expressions: elimination with the first pivot that is not zero, which of a positive
-//! mass matrix is always the next.
+//! Linear equations with expressions as coefficients: Gaussian elimination with the first pivot
+//! that is not zero, which for a positive definite mass matrix is always the next one.
 
 use super::MechanicsError;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 
-/// x of `matrix x = right`, each entry a quotient in which common parts are shared: O(n^3) of them,
-/// none written out.
+/// Solves `matrix x = right`. The entries of x are quotients with O(n^3) shared parts, which are
+/// not expanded.
 ///
 /// # Errors
-/// A pivot that vanishes: the caller's error.
+/// The error of `singular` if a pivot vanishes.
 pub fn solution(
     matrix: &[Vec<Expr>],
     right: &[Expr],
@@ -50,11 +50,11 @@ pub fn solution(
     Ok(found)
 }
 
-/// Whether the expression has a value other than zero at a point, rounding accounted for. Costs one
-/// evaluation; to write out the quotients of an elimination takes far longer.
+/// Whether the expression is not zero at a test point, with rounding accounted for. It costs one
+/// evaluation; to expand the quotients of an elimination would take far longer.
 fn is_surely_not_zero(expression: &Expr) -> bool {
-    // A point that is the same on every run: fractional parts of multiples of the golden section,
-    // by the letters of the name.
+    // The test point is the same on every run: each coordinate is the fractional part of a multiple
+    // of the golden section that depends on the letters of the name.
     let place = |name: Symbol| {
         let number =
             name.name().bytes().fold(7_u32, |sum, byte| (31 * sum + u32::from(byte)) % 10_007);

@@ -8,8 +8,8 @@
 //!
 //! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord
 //! Rayleigh, *The Theory of Sound*, section 81, for D.) In: a [`Mechanism`], energies as
-//! expressions with `q'` for the velocity of `q`. Out: its [`EquationsOfMotion`], the places where
-//! it can rest and how it swings there, and, where its parameters have units, a check of every term
+//! expressions with `q'` for the velocity of `q`. Out: its [`EquationsOfMotion`], its equilibria
+//! with the small oscillations about them, and, if its parameters have units, a check of every term
 //! and the dimensionless [`Groups`] on which the motion depends.
 //!
 //! ```
@@ -48,13 +48,13 @@ pub use modes::{Mode, Modes};
 pub use rates::Rates;
 pub use study::{MechanismQuestion, MechanismStudy, RestStudy, study};
 
-/// The most coordinates that a mechanism may have: its matrices are written out as formulas.
+/// Largest number of coordinates of a mechanism, whose matrices are written as formulas.
 pub const MOST_COORDINATES: usize = 8;
 
-/// A mechanism: its coordinates, its energies, and what acts on it beside them.
+/// A mechanism: its coordinates, its energies, and the other forces that act on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// The generalised coordinates, in the order in which their equations come.
+    /// The generalised coordinates, in the order of their equations.
     pub coordinates: Vec<Symbol>,
     /// T, the kinetic energy, in coordinates, velocities and time.
     pub kinetic: Expr,
@@ -62,15 +62,15 @@ pub struct Mechanism {
     pub potential: Expr,
     /// D, Rayleigh's dissipation function: `c*x'^2/2` for a dashpot, `F*abs(x')` for dry friction.
     pub dissipation: Expr,
-    /// Q, the generalised force on each coordinate that has one; it stands on the right side.
+    /// Q, the generalised force on each coordinate that has one, on the right side of its equation.
     pub forces: BTreeMap<Symbol, Expr>,
 }
 
-/// Why there are no equations of motion, no groups, no study or no numbers.
+/// The reason why there are no equations of motion, no groups, no study or no numbers.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MechanicsError {
-    /// An energy or a force that cannot be read.
+    /// The text of an energy or a force has a syntax error.
     #[error("the {part}: {error}")]
     Parse {
         /// The part of the mechanism.
@@ -92,7 +92,7 @@ pub enum MechanicsError {
         "`{0}` cannot be a coordinate: take a name of letters and digits that is neither `t` nor `pi`"
     )]
     Name(String),
-    /// A velocity or an acceleration where none belongs.
+    /// A velocity or an acceleration occurs in a part that must not contain it.
     #[error("the {part} contains `{name}`: {why}")]
     Derivative {
         /// The part of the mechanism.
@@ -102,17 +102,17 @@ pub enum MechanicsError {
         /// The reason, and what to write instead.
         why: &'static str,
     },
-    /// A coordinate that nothing accelerates.
+    /// The kinetic energy does not contain the velocity of a coordinate.
     #[error(
         "the kinetic energy does not contain `{0}'`: without inertia `{0}` has no equation of motion"
     )]
     NoInertia(Symbol),
-    /// The accelerations do not follow.
+    /// The mass matrix is singular, so that the accelerations do not follow.
     #[error(
         "the kinetic energy `{0}` does not determine every acceleration: its mass matrix is singular"
     )]
     Singular(Expr),
-    /// An energy that jumps.
+    /// An energy jumps.
     #[error(
         "the {part} jumps with `{jump}`: the force of a jump is no function; let the term vanish where it begins, such as \
          k*(x - a)^2*H(x - a)"
@@ -123,37 +123,37 @@ pub enum MechanicsError {
         /// The step or sign.
         jump: Expr,
     },
-    /// A force on something that is no coordinate.
+    /// A force is given for a name that is not a coordinate.
     #[error("there is a force on `{0}`, which is no coordinate")]
     ForceOnNothing(Symbol),
-    /// A term of a wrong unit.
+    /// A unit is missing, or a term has a wrong one.
     #[error(transparent)]
     Unit(#[from] UnitError),
     /// No parameter and no size of the motion has the dimension of a time.
     #[error("no product of powers of {0} is a time: the motion has no time of its own")]
     NoTime(String),
-    /// A value for a name that does not occur.
+    /// A value is given for a name that does not occur.
     #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
     UnknownValue(Symbol),
-    /// Coefficients that change with the time.
+    /// The linear equations have coefficients that change with the time.
     #[error(
         "no small swings of a fixed frequency: the linear equations contain `{0}`, which changes with the time other than by sines and \
          cosines of it; follow the motion by `lindstedt simulate`"
     )]
     Changing(Expr),
-    /// A parameter without a value, or an expression that has none.
+    /// A parameter has no value, or an expression is undefined.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    /// A number that is not finite.
+    /// A mass or a stiffness is not finite.
     #[error("mass or stiffness has no finite value there")]
     NotFinite,
-    /// A mass matrix that is not positive.
+    /// The mass matrix is not positive definite.
     #[error("the mass matrix is not positive there")]
     Mass,
 }
 
 impl MechanicsError {
-    /// The way forward: what could be written instead; `None` if it is not known.
+    /// Returns advice on what to write instead; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Unit(error) => error.help(),
@@ -163,10 +163,11 @@ impl MechanicsError {
 }
 
 impl Mechanism {
-    /// A mechanism of these energies alone, as texts.
+    /// Reads a mechanism from the texts of its energies, without dissipation and other forces.
     ///
     /// # Errors
-    /// A part that cannot be parsed; [`Mechanism::equations`] judges the others.
+    /// [`MechanicsError::Parse`] for a part with a syntax error; [`Mechanism::equations`] makes all
+    /// other checks.
     pub fn parse(
         coordinates: &[&str],
         kinetic: &str,
@@ -187,7 +188,7 @@ impl Mechanism {
         })
     }
 
-    /// The equations of motion.
+    /// Derives the equations of motion.
     ///
     /// # Errors
     /// [`MechanicsError`] names the part and the symbol.
@@ -224,7 +225,7 @@ impl Mechanism {
         })
     }
 
-    /// Everything that is written down, with what it is called.
+    /// Returns all energies and forces with their names in messages.
     pub(crate) fn parts(&self) -> impl Iterator<Item = (String, &Expr)> {
         let energies = [
             ("kinetic energy", &self.kinetic),
@@ -245,7 +246,7 @@ impl Mechanism {
         names.into_iter().filter(|name| !own(name)).collect()
     }
 
-    /// Refuses what no equation follows from.
+    /// Checks that equations of motion follow from the mechanism.
     fn check(&self) -> Result<(), MechanicsError> {
         let count = self.coordinates.len();
         if count == 0 || count > MOST_COORDINATES {

@@ -5,10 +5,10 @@
 //! ```
 //!
 //! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 7.2 and 7.3.) M, C and K are exact;
-//! frequencies and shapes are numbers, by nalgebra, where every parameter has a value. Contacts,
-//! excitation and dry friction are left out: they are not linear. Excitation is what enters by
-//! sines and cosines of the time, in M, C and K alike; where they change with the time in another
-//! way, as those of a pendulum that lengthens do, there are no modes.
+//! frequencies and shapes are computed as numbers if every parameter has a value. Contacts,
+//! excitation and dry friction are left out, because they are not linear. Excitation means terms
+//! with sines and cosines of the time, in M, C and K as well. If the matrices change with the time
+//! in another way, as for a pendulum that lengthens, there are no modes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,41 +23,42 @@ use super::{
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// The linear equations near a place of rest.
+/// The linear equations about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// M there.
+    /// The mass matrix M.
     pub mass: Vec<Vec<Expr>>,
-    /// C there.
+    /// The damping matrix C.
     pub damping: Vec<Vec<Expr>>,
-    /// K there.
+    /// The stiffness matrix K.
     pub stiffness: Vec<Vec<Expr>>,
-    /// The coordinates that may be anywhere and on whose place the modes depend: they are taken
-    /// at 0.
+    /// The coordinates that may be anywhere but influence the modes: they are taken at 0.
     pub taken_at_zero: Vec<Symbol>,
-    /// An entry of these matrices that changes with the time other than by sines and cosines: then
-    /// they keep the time, and there are no modes.
+    /// A term of these matrices that changes with the time other than by sines and cosines: the
+    /// matrices then contain the time, and there are no modes. `None` if there is no such term.
     pub changing: Option<Expr>,
-    /// The sums of parameters that enter as one: they cancel as one.
+    /// The sums of parameters that enter as one, and cancel as one in [`Modes::square`].
     combinations: Vec<Combination>,
 }
 
-/// A way of swinging, or of leaving.
+/// A mode: an oscillation, or a motion that grows or decays without oscillating.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// Angular frequency, in radians per unit of time: |Im lambda|. Zero where it does not swing.
+    /// Angular frequency, in radians per unit of time: |Im lambda|. Zero if the mode does not
+    /// oscillate.
     pub frequency: f64,
-    /// Re lambda, per unit of time: positive where it grows.
+    /// The growth rate Re lambda, per unit of time: positive if the mode grows.
     pub growth: f64,
-    /// The coordinates in proportion, the largest 1; `None` if damping makes them move out of step.
+    /// The mode shape, scaled so that the largest entry is 1; `None` with damping, whose modes may
+    /// be out of phase.
     pub shape: Option<Vec<f64>>,
 }
 
 impl Modes {
-    /// The linear equations near a place of rest.
+    /// The linear equations about an equilibrium.
     ///
     /// # Errors
-    /// Derivatives too long to be written out, or without a value there.
+    /// [`MechanicsError`] for derivatives that are too long to be expanded, or undefined there.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -73,18 +74,18 @@ impl Modes {
         Jacobians::new(equations)?.modes_at(equations, rest)
     }
 
-    /// The names that still need a value.
+    /// Returns the parameters that still need a value.
     pub fn parameters(&self) -> BTreeSet<Symbol> {
         let matrices = [&self.mass, &self.damping, &self.stiffness];
         let names = matrices.into_iter().flatten().flatten().flat_map(Expr::symbols);
         names.filter(|name| name.name() != "t").collect()
     }
 
-    /// omega^2 of one coordinate, as a formula; `None` for several, and where the equation changes
-    /// with the time.
+    /// Returns omega^2 of a single coordinate as a formula; `None` for several coordinates, or if
+    /// the equation changes with the time.
     ///
     /// # Errors
-    /// A mass that vanishes there.
+    /// [`ExprError`] if the mass vanishes there.
     pub fn square(&self) -> Result<Option<Expr>, ExprError> {
         match (self.mass.as_slice(), self.stiffness.as_slice()) {
             _ if self.changing.is_some() => Ok(None),
@@ -98,7 +99,7 @@ impl Modes {
         }
     }
 
-    /// The modes in numbers, slowest first.
+    /// Computes the modes, the slowest first.
     ///
     /// # Errors
     /// [`MechanicsError`].
@@ -136,18 +137,18 @@ impl Modes {
     }
 }
 
-/// The derivatives of the equations with every velocity zero, by which they are linear: in the
-/// coordinates still, the same for all places of rest.
+/// The Jacobians of the equations with every velocity zero, as functions of the coordinates: the
+/// same for all equilibria.
 pub(super) struct Jacobians {
     /// Mass, damping and stiffness.
     matrices: [Vec<Vec<Expr>>; 3],
 }
 
 impl Jacobians {
-    /// The derivatives of these equations, without contacts and dry friction.
+    /// Differentiates the equations, without contacts and dry friction.
     ///
     /// # Errors
-    /// Derivatives too long to be written out, or without a value at rest.
+    /// [`MechanicsError`] for derivatives that are too long to be expanded, or undefined at rest.
     pub(super) fn new(equations: &EquationsOfMotion) -> Result<Self, MechanicsError> {
         let coordinates = &equations.coordinates;
         let velocities = || coordinates.iter().map(|name| name.derivative());
@@ -169,10 +170,10 @@ impl Jacobians {
         Ok(Self { matrices: [equations.mass.clone(), damping, stiffness] })
     }
 
-    /// The linear equations near a place of rest.
+    /// The linear equations about an equilibrium.
     ///
     /// # Errors
-    /// Entries too long to be written out, or without a value there.
+    /// [`MechanicsError`] for entries that are too long to be expanded, or undefined there.
     pub(super) fn modes_at(
         &self,
         equations: &EquationsOfMotion,
@@ -219,8 +220,8 @@ impl Jacobians {
     }
 }
 
-/// The first term of these entries that changes with the time other than by sines and cosines of
-/// it.
+/// Returns the first term of these entries that changes with the time other than by sines and
+/// cosines of it.
 fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>, ExprError> {
     let time = Symbol::new("t");
     let is_wave = |part: &Expr| match part.node() {
@@ -229,7 +230,8 @@ fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>,
             .all(|phase| phase.differentiate(time).is_ok_and(|rate| !rate.contains(time))),
         _ => false,
     };
-    // Products of waves and of their powers are sums of waves; roots and quotients are not.
+    // Products of sines and cosines, and of their whole powers, are sums of waves; roots and
+    // quotients are not.
     let is_wavy = |factor: &Expr| {
         let (base, exponent) = factor.base_and_exponent();
         let is_whole =
@@ -246,13 +248,13 @@ fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>,
     Ok(None)
 }
 
-/// A value that is rounding beside the largest is none.
+/// Size of a value over the largest one up to which it is rounding.
 const ROUNDING: f64 = 1e-13;
 
-/// Splitting of a double zero by rounding, over the largest value.
+/// Largest splitting of a double zero by rounding, over the largest value.
 const SPLIT: f64 = 1e-6;
 
-/// K u = omega^2 M u by M = L L^T: symmetric in w = L^T u.
+/// Solves K u = omega^2 M u as a symmetric problem in w = L^T u, where M = L L^T.
 fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Vec<Mode> {
     let lower = mass.l();
     let half = lower.solve_lower_triangular(stiffness).unwrap_or_else(|| stiffness.clone());
@@ -277,12 +279,13 @@ fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Ve
     (0..stiffness.nrows()).map(mode).collect()
 }
 
-/// A proportion without the noise of rounding.
+/// Returns a component of a mode shape, zero if it is rounding.
 fn without_rounding(proportion: f64) -> f64 {
     if proportion.abs() < ROUNDING { 0.0 } else { proportion }
 }
 
-/// lambda of the equations of first order, a pair of conjugates once.
+/// Returns the modes of the first-order equations, one for each pair of conjugate eigenvalues
+/// lambda.
 fn damped(
     mass: &Cholesky<f64, nalgebra::Dyn>,
     damping: &DMatrix<f64>,
@@ -295,8 +298,9 @@ fn damped(
     first_order.view_mut((size, size), (size, size)).copy_from(&-mass.solve(damping));
     let found = first_order.complex_eigenvalues();
     let largest = found.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    // A rigid motion is a double zero of the equations, which rounding splits into two of its root:
-    // as many of the smallest as the stiffness has such motions are zero.
+    // A rigid-body motion is a double zero eigenvalue, which rounding splits into two of the size
+    // of its square root. For each zero singular value of the stiffness up to two of the smallest
+    // eigenvalues therefore count as zero.
     let stiff = stiffness.clone().singular_values();
     let rigid = stiff.iter().filter(|value| **value <= ROUNDING * stiff.max()).count();
     let mut sizes: Vec<f64> = found.iter().map(|value| value.norm()).collect();

@@ -1,4 +1,4 @@
-//! The equations of motion as first-order equations, ready to be integrated.
+//! The equations of motion as first-order equations, for integration.
 
 use super::{EquationsOfMotion, MechanicsError};
 use crate::expr::Expr;
@@ -14,10 +14,10 @@ pub struct Rates {
 }
 
 impl EquationsOfMotion {
-    /// The equations of first order, for [`System`](crate::system::System).
+    /// Returns the equations as first-order equations, for [`System`](crate::system::System).
     ///
     /// # Errors
-    /// A mass matrix that is singular.
+    /// [`MechanicsError`] if the mass matrix is singular.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;

@@ -1,4 +1,5 @@
-//! One mechanism from its energies to its groups, in one go: what `lindstedt lagrange` reports.
+//! The complete study of a mechanism, from its energies to its groups, which `lindstedt lagrange`
+//! reports.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +15,10 @@ use crate::symbol::Symbol;
 pub struct MechanismQuestion {
     /// The mechanism.
     pub mechanism: Mechanism,
-    /// The unit of every coordinate and parameter; without them nothing is checked and there are no
-    /// groups.
+    /// The unit of every coordinate and parameter; if `None`, dimensions are not checked and there
+    /// are no groups.
     pub units: Option<BTreeMap<Symbol, Dimension>>,
-    /// Numbers for parameters: with all of them the modes have numbers.
+    /// The values of parameters; with the values of all, the modes are computed as numbers.
     pub values: BTreeMap<Symbol, f64>,
 }
 
@@ -28,13 +29,13 @@ pub struct MechanismStudy {
     pub question: MechanismQuestion,
     /// The equations of motion.
     pub equations: EquationsOfMotion,
-    /// Places of rest, and how it swings there.
+    /// The equilibria, with the small oscillations about them.
     pub rests: Vec<RestStudy>,
     /// The dimensionless form; `None` without units.
     pub groups: Option<Result<Groups, MechanicsError>>,
 }
 
-/// A place of rest.
+/// The study of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestStudy {
     /// The equilibrium.
@@ -43,15 +44,15 @@ pub struct RestStudy {
     pub drive: DriveAtRest,
     /// The linear equations there.
     pub modes: Modes,
-    /// Their numbers; nothing where not every parameter has a value, or the place does not exist
+    /// The modes as numbers; `None` if a parameter has no value, or the equilibrium does not exist
     /// for these values.
     pub numbers: Option<Result<Vec<Mode>, MechanicsError>>,
 }
 
-/// Derives, checks and linearises.
+/// Derives the equations, checks the units, finds the equilibria and linearises about them.
 ///
 /// # Errors
-/// [`MechanicsError`] names the term or the name.
+/// [`MechanicsError`] with the term or the name concerned.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -86,7 +87,7 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, MechanicsErr
     let mut rests = Vec::new();
     for rest in equilibria(&equations)? {
         let modes = jacobians.modes_at(&equations, &rest)?;
-        // A place that needs a cosine beyond 1 is none for these values.
+        // An equilibrium whose cosine lies beyond 1 does not exist for these values.
         let exists = rest.condition.as_ref().is_none_or(|cosine| {
             let value = cosine.evaluate(&question.values);
             value.is_ok_and(|value| value.abs() <= 1.0)

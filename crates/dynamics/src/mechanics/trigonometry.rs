@@ -4,8 +4,8 @@
 //! cos u cos v +- sin u sin v = cos(u -+ v)        sin u cos v +- cos u sin v = sin(u +- v)
 //! ```
 //!
-//! with `u = v` in the first giving 1 or `cos(2u)`: only the 1 is taken, for it is what a square of
-//! a speed leaves behind.
+//! with `u = v` in the first giving 1 or `cos(2u)`: only the 1 is used, since it is what the square
+//! of a speed yields.
 
 use std::collections::HashMap;
 
@@ -14,13 +14,13 @@ use num_traits::Signed;
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node};
 
-/// Sums of more terms than this are left as they are.
+/// Largest number of terms of a sum that is simplified.
 const MOST_TERMS: usize = 2000;
 
-/// The expression written out, with every pair of terms joined that an addition theorem joins.
+/// Expands an expression and joins every pair of terms to which an addition theorem applies.
 ///
 /// # Errors
-/// Written out it would be too long.
+/// [`ExprError`] if the expanded expression would be too long.
 pub(super) fn simplified(expression: &Expr) -> Result<Expr, ExprError> {
     let mut sum = without_inverses(expression)?.expand()?;
     while sum.terms().len() <= MOST_TERMS {
@@ -32,7 +32,8 @@ pub(super) fn simplified(expression: &Expr) -> Result<Expr, ExprError> {
     Ok(sum)
 }
 
-/// `cos(acos(u)) = u` and `sin(acos(u)) = sqrt(1 - u^2)`, which a place of rest leaves behind.
+/// Applies `cos(acos(u)) = u` and `sin(acos(u)) = sqrt(1 - u^2)`, which occur at an equilibrium
+/// given by a cosine.
 fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| {
         let inner = children.first().map(Expr::node);
@@ -48,7 +49,7 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
     })
 }
 
-/// The sum with one pair of its terms joined; `None` if there is no such pair.
+/// Returns the sum with one pair of its terms joined; `None` if there is no such pair.
 fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     let terms = sum.terms();
     let bare: Vec<(Rational, Expr)> = terms.iter().map(without_number).collect();
@@ -63,8 +64,8 @@ fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
             };
             let other = &bare[place].0;
             let opposite = other.is_negative() != number.is_negative();
-            // Of a square and its partner also a part: what is left over is one term less of that
-            // degree.
+            // A square and its partner are also joined in part, since this leaves one term of that
+            // degree less.
             let whole = other.abs() == number.abs();
             if place == index || !(whole || first.angle == second.angle) {
                 continue;
@@ -93,7 +94,7 @@ fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     Ok(None)
 }
 
-/// A term as its number and the rest.
+/// Splits a term into its number and the rest.
 fn without_number(term: &Expr) -> (Rational, Expr) {
     let (number, factors) = term.factors();
     (number, Expr::product(factors.iter().cloned()))
@@ -108,11 +109,11 @@ struct SineOrCosine {
 
 impl SineOrCosine {
     fn expression(&self) -> Expr {
-        // A wave was read from an expression, so it can be written as one.
+        // The sine or cosine comes from an expression, so the function cannot fail.
         Expr::function(self.function, vec![self.angle.clone()]).unwrap_or_else(|_| Expr::zero())
     }
 
-    /// Sine for cosine and the other way round.
+    /// Returns the cosine for a sine, and the sine for a cosine, of the same angle.
     fn cofunction(&self) -> Result<Expr, ExprError> {
         let function = match self.function {
             Function::Sin => Function::Cos,
@@ -121,8 +122,8 @@ impl SineOrCosine {
         Expr::function(function, vec![self.angle.clone()])
     }
 
-    /// `first*second + turned*turned`, or their difference, as one wave; `None` if that is no
-    /// shorter.
+    /// Returns `first*second` plus the product of their cofunctions, or minus it if `opposite`, as
+    /// one sine or cosine; `None` if that is no shorter.
     fn combine(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
         let (u, v) = (&first.angle, &second.angle);
         match (first.function, second.function, opposite) {
@@ -135,7 +136,8 @@ impl SineOrCosine {
     }
 }
 
-/// Every ordered pair of waves among the factors of a term; a square is a pair of itself.
+/// Returns every ordered pair of sines and cosines among the factors of a term; a square makes a
+/// pair with itself.
 fn pairs(term: &Expr) -> Vec<[SineOrCosine; 2]> {
     let (_, factors) = term.factors();
     let mut waves = Vec::new();

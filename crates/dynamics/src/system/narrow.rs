@@ -1,15 +1,15 @@
-//! Arguments that turn faster than the motion: a narrow well in place, a steep function of the
-//! velocity, a pulse that moves with the motion.
+//! Arguments of functions that change faster than the motion: a narrow well in space, a steep
+//! function of the velocity, a pulse that moves with the motion.
 //!
 //! ```text
 //! exp(u), tanh(u), 1/u, ...     u(t*) = 0 or u'(t*) = 0:   width  w = D/|u'|, sqrt(2 D/|u''|),   D: the change of u that matters
 //! a step ends at  t* - 2 w, 4 w, 8 w, ...
 //! ```
 //!
-//! An integrator looks at the right sides along its step only; far from a well there is nothing to
-//! be seen of it. Its argument u, though, moves with the states and is as smooth as they are, so
-//! that the places where it does something special are known ahead. `conservative::features` asks
-//! the same of a force at rest.
+//! An integrator evaluates the right sides only along its step, where a distant well does not show.
+//! Its argument u, however, is as smooth as the states, so that the narrow places of the function
+//! are known in advance from the zeros and extrema of u. `conservative::features` does the same for
+//! a force at rest.
 
 use std::collections::BTreeMap;
 
@@ -19,16 +19,16 @@ use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 use num_traits::Signed as _;
 
-use super::polynomial::{first_root, value};
+use super::polynomial::{roots, value};
 
-/// The argument of a function that may turn fast.
+/// The argument of a function that may change fast, with the behaviour of the function.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Argument {
     pub(super) expression: Expr,
     pub(super) kind: FunctionGrowth,
 }
 
-/// The behaviour of a function of large or small argument.
+/// The behaviour of a function for large and small arguments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FunctionGrowth {
     /// Growth without bound for large arguments, and decay to zero for small ones: `exp`.
@@ -43,19 +43,19 @@ pub(super) enum FunctionGrowth {
     Power(f64),
 }
 
-/// A step this many times as long as a place is wide would not see it.
+/// Ratio of a step to the width of a narrow place from which on the step might miss it.
 const TIMES: f64 = 16.0;
 
-/// Error of an argument over its largest value.
+/// Relative error of an argument, in units of its largest value.
 const ROUNDING: f64 = 1e-13;
 
-/// Number of widths beyond which a narrow place vanishes in double precision: from there on steps
+/// Number of widths beyond which a narrow place has no effect in double precision, so that steps
 /// may end farther apart.
 const FAR: f64 = 32.0;
 
-/// The arguments in the right sides that move with the states. Waves are to be seen everywhere,
-/// corners and the roots that begin at one of these guards end a step by themselves, and what
-/// depends on the time alone is known beforehand.
+/// Returns the arguments in the right sides that depend on the states. Periodic functions are left
+/// out because they show everywhere, corners and roots that begin at one of these guards because
+/// they end a step anyway, and functions of the time alone because their critical times are given.
 pub(super) fn arguments(
     right: &[Expr],
     states: &[Symbol],
@@ -81,7 +81,7 @@ pub(super) fn arguments(
     found
 }
 
-/// `u` of numbers times `u^2`.
+/// Returns `u` for an expression that is a number times `u^2`; `None` for any other.
 fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> Option<&'a Expr> {
     let is_number = |factor: &Expr| factor.symbols().iter().all(|name| values.contains_key(name));
     let (_, factors) = expression.factors();
@@ -95,7 +95,7 @@ fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> O
     }
 }
 
-/// The guards of the corners in some expressions.
+/// Returns the guards of the corners in some expressions.
 pub(super) fn guards_in(expressions: &[Expr], values: &BTreeMap<Symbol, f64>) -> Vec<Guard> {
     let nodes = expressions.iter().flat_map(Expr::unique_nodes);
     let argument = |node: &Expr| match node.node() {
@@ -114,7 +114,7 @@ pub(super) fn guards_in(expressions: &[Expr], values: &BTreeMap<Symbol, f64>) ->
 }
 
 fn argument(node: &Expr) -> Option<Argument> {
-    /// A power this high is a bump or a wall.
+    /// Exponent from which on a power is like a bump or a wall.
     const HIGH: f64 = 8.0;
     let (expression, kind) = match node.node() {
         Node::Power(base, exponent) => match exponent.as_number() {
@@ -144,8 +144,8 @@ fn argument(node: &Expr) -> Option<Argument> {
 }
 
 impl FunctionGrowth {
-    /// The change of the argument that matters where it is so large, give or take so much; `None`
-    /// if the function is as good as constant.
+    /// Returns the change of the argument over which the function changes, at this argument with
+    /// this error; `None` if the function is practically constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
         /// Argument beyond which an exponential is negligible, whatever its factor.
         const NOTHING: f64 = 150.0;
@@ -158,51 +158,40 @@ impl FunctionGrowth {
         }
     }
 
-    /// Whether the zero of an argument is such a place: that of a power is a pole, a root or flat.
+    /// Whether a zero of the argument is a narrow place; for a power it is a pole, a root or a flat
+    /// point instead.
     fn turns_at_zero(self) -> bool {
         !matches!(self, Self::Power(_))
     }
 }
 
-/// Length of a step that ends beside the next narrow place of a function; `None` if it need not be
-/// shortened. `series` is the argument along the step, by powers of the time since its start.
+/// Returns the length of a step that ends beside the next narrow place of a function; `None` if the
+/// step need not be shortened. `series` is the argument along the step, in powers of the time since
+/// its start.
 pub(super) fn end_of_step(kind: FunctionGrowth, series: &[f64], length: f64) -> Option<f64> {
     if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
         return None;
     }
     let slope = derivative(series);
     let curvature = derivative(&slope);
-    let roots = |series: &[f64]| {
-        let mut found = Vec::new();
-        let mut from = 0.0;
-        // No polynomial has more roots than its degree.
-        for _ in 0..series.len() {
-            let Some((place, _)) = first_root(series, from, length) else {
-                break;
-            };
-            found.push(place);
-            from = place;
-        }
-        found
-    };
-    let mut places = roots(&slope);
+    let mut places = roots(&slope, 0.0, length);
     if kind.turns_at_zero() {
-        places.extend(roots(series));
+        places.extend(roots(series, 0.0, length));
     }
     let largest =
         series.iter().rev().fold(0.0, |sum, coefficient| sum * length + coefficient.abs());
-    let ends = places.into_iter().filter_map(|place| {
+    let ends = places.into_iter().filter_map(|(place, _)| {
         let at = [series, &slope, &curvature].map(|series| value(series, place));
         end_before(place, width(kind, at, ROUNDING * largest)?, length)
     });
     ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
 }
 
-/// The fractions of a step at which an argument is looked at first.
+/// The fractions of a step at which an argument is evaluated first.
 pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// Returns the end of a step in parts of that step, from the values of the argument at [`COARSE`]
-/// and, if these differ much, anywhere.
+/// Returns the fraction of a step at which it should end, from the values of the argument at
+/// [`COARSE`] and, if these differ much, at further places; `None` if it need not be shortened.
 pub(super) fn end_by_values(
     kind: FunctionGrowth,
     coarse: [f64; 5],
@@ -211,7 +200,7 @@ pub(super) fn end_by_values(
     const CELLS: usize = 32;
     /// Relative accuracy of the search for an extremum.
     const CLOSELY: f64 = 1e-9;
-    /// Turns of an argument beyond which this many cells do not show them.
+    /// Number of extrema of an argument beyond which the cells are too wide to show them.
     const MOST_TURNS: usize = 8;
     let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
     let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
@@ -219,7 +208,8 @@ pub(super) fn end_by_values(
         FunctionGrowth::Power(exponent) => {
             let bent =
                 coarse.windows(3).map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
-            // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
+            // The argument is wide if the width sqrt(2 |u|/(e |u''|)), with u'' from differences,
+            // exceeds a quarter of the step, four times what is needed.
             least * most > 0.0
                 && 2.0 * least.abs().min(most.abs()) > exponent * bent.fold(0.0, f64::max)
         }
@@ -239,7 +229,8 @@ pub(super) fn end_by_values(
     for index in 1..CELLS {
         let [before, here, after] = [values[index - 1], values[index], values[index + 1]];
         let (slope, curvature) = (0.5 * (after - before), before - 2.0 * here + after);
-        // Cells from the middle one; those at the ends belong to their neighbours.
+        // Each point is responsible for half a cell on either side; the first and the last also for
+        // the ends.
         let from = if index == 1 { -1.0 } else { -0.5 };
         let to = if index + 1 == CELLS { 1.0 } else { 0.5 };
         let turn = Some(-slope / curvature).filter(|part| (from..to).contains(part));
@@ -266,8 +257,8 @@ pub(super) fn end_by_values(
     }
 }
 
-/// Returns the place near another one at which an argument turns, and its value there, by
-/// parabolas through closer and closer points.
+/// Returns the extremum of an argument near a place, and its value there, by parabolas through
+/// closer and closer points.
 fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
     const TIMES: usize = 4;
     let (mut place, mut apart) = (place.clamp(0.0, 1.0), cell / 8.0);
@@ -284,16 +275,16 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
     (place, value(place))
 }
 
-/// The time that a place takes, of the argument, give or take an error, its rate and the rate of
-/// that; `None` if the function is as good as constant.
+/// Returns the width of a narrow place in time, from the argument with its error and its first and
+/// second derivative there; `None` if the function is practically constant.
 fn width(kind: FunctionGrowth, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
     let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
     (width > 0.0).then_some(width)
 }
 
-/// Length of a step that ends before a narrow place at this distance; `None` if the place is wide,
-/// or so near that the step resolves it.
+/// Returns the length of a step that ends before a narrow place at this distance; `None` if the
+/// place is wide, or so near that the step resolves it.
 fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     let width = width.max(1e-13 * length);
     let near = 2.0 * width;
@@ -310,7 +301,8 @@ fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     }
 }
 
-/// Whether the argument changes so little along a step that nothing on it can be narrow.
+/// Whether the argument changes so little along a step that the function cannot have a narrow place
+/// on it.
 fn is_wide(kind: FunctionGrowth, series: &[f64], length: f64) -> bool {
     let (mut first, mut second) = (0.0, 0.0);
     let mut power = 1.0;

@@ -1,16 +1,16 @@
-//! Polynomials of a step: value, and the roots of the series of an event.
+//! Polynomials on a step: their values, and the roots of the series of an event.
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::numeric::ode::root::{BisectionStop, bisect};
+use crate::numeric::ode::root::find_root;
 
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
-/// The values at several places, each as [`value`] has it: this many sums at a time wait less on
-/// each other than one.
+/// Appends the values at several places, equal to those of [`value`]. Many sums are computed side
+/// by side, so that no addition waits for the one before it.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
     Arch::new().dispatch(EvaluatePolynomial { series, places, into });
 }
@@ -40,13 +40,13 @@ impl WithSimd for EvaluatePolynomial<'_> {
     }
 }
 
-/// `h^0, h^1, ...`, as many as there is room for, each with a multiplication.
+/// Fills `into` with `h^0, h^1, ...`, with one multiplication for each power.
 pub(super) fn powers(h: f64, into: &mut [f64]) {
     let Some(first) = into.first_mut() else {
         return;
     };
     *first = 1.0;
-    // h^2, h^4, h^8, ... and what stands before them.
+    // The powers from h^half on are the powers before it times h^half.
     let (mut half, mut square) = (1, h);
     while half < into.len() {
         for k in half..into.len().min(2 * half) {
@@ -56,90 +56,101 @@ pub(super) fn powers(h: f64, into: &mut [f64]) {
     }
 }
 
-/// Bounds of all that is added to the constant, and of the same of its slope beside the first term,
-/// times `size`, for |s| <= `size`.
-fn beyond(series: &[f64], size: f64) -> [f64; 2] {
-    let (mut change, mut bend) = (0.0, 0.0);
-    for (k, coefficient) in series.iter().enumerate().skip(1).rev() {
-        change = change * size + coefficient.abs();
-        if k > 1 {
-            bend = bend * size + k as f64 * coefficient.abs();
-        }
-    }
-    [change * size, bend * size * size]
-}
-
-/// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at
-/// `from` itself is not counted.
+/// Returns the roots after `from` up to `to` at which the polynomial changes its sign, in order, and
+/// whether it grows there; a root at `from` itself does not count.
 ///
-/// The first root, by bounds: if the constant outweighs all other terms there is no root, if the
-/// slope keeps its sign there is at most one, and every other interval is halved.
-pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
-    let [constant, slope, ..] = *series else {
-        return None;
-    };
-    // Most series have none, and the bounds about 0 say so.
-    let [change, bend] = beyond(series, to.abs().max(from.abs()));
-    if constant.abs() > change || change == 0.0 {
-        return None;
+/// Descartes' rule of signs for the Bernstein coefficients: a polynomial has no more roots in an
+/// interval than there are sign changes. With none or one the number of roots is certain, and every
+/// other interval is halved (G. E. Collins, A. G. Akritas, SYMSAC 1976, 272; J. M. Lane, R. F.
+/// Riesenfeld, BIT 21 (1981) 112).
+pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
+    const MOST_INTERVALS: usize = 4000;
+    let mut roots = Vec::new();
+    // Most series have no root, since the constant outweighs all other terms.
+    let Some((constant, others)) = series.split_first() else { return roots };
+    let size = to.abs().max(from.abs());
+    let change = size * others.iter().rev().fold(0.0, |sum, c| sum * size + c.abs());
+    if constant.abs() > change {
+        return roots;
     }
-    let first = from + apart(from, to);
-    let monotonic = slope.abs() * to.abs().max(from.abs()) > bend;
-    let (at_first, at_last) = (value(series, first), value(series, to));
-    if monotonic && at_first * at_last > 0.0 {
-        return None;
+    let mut open = vec![(from, to)];
+    for _ in 0..MOST_INTERVALS {
+        let Some((low, high)) = open.pop() else { break };
+        let changes = sign_changes(series, low, high);
+        if changes > 1 && high - low > 2e-13 * (to - from) {
+            let middle = 0.5 * (low + high);
+            open.extend([(middle, high), (low, middle)]);
+        } else if changes > 0 {
+            // Beside a zero at either end of an interval the sign is that a little further on.
+            let beside = |place: f64| match place == from || value(series, place) == 0.0 {
+                true if place < to => place + apart(from, to),
+                _ => place,
+            };
+            let (low, end) = (beside(low), beside(high));
+            let (at_low, at_end) = (value(series, low), value(series, end));
+            let crosses = match at_end == 0.0 {
+                true => at_low != 0.0 && high == to,
+                false => at_low != 0.0 && at_low.signum() != at_end.signum(),
+            };
+            if crosses && low < high {
+                let root = find_root(|s| value(series, s), low, high);
+                roots.extend(root.map(|root| (root, at_low < 0.0)));
+            }
+        }
     }
-    let mut open = vec![(first, to)];
-    let mut looked_at = 0;
-    while let Some((low, high)) = open.pop() {
-        const MOST: usize = 4000;
-        looked_at += 1;
-        if low >= high || looked_at > MOST {
-            continue;
-        }
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let shifted = about(series, middle);
-        let [change, bend] = beyond(&shifted, half);
-        if shifted[0].abs() > change {
-            continue;
-        }
-        let slope = shifted.get(1).map_or(0.0, |slope| slope.abs() * half);
-        let monotonic = slope > bend;
-        if !monotonic && half > 1e-13 * (to - from) {
-            open.push((middle, high));
-            open.push((low, middle));
-            continue;
-        }
-        let (at_low, at_high) = (value(series, low), value(series, high));
-        if at_low == 0.0 || (at_high != 0.0 && at_low.signum() == at_high.signum()) {
-            continue;
-        }
-        let before = |at: f64| value(series, at).signum() == at_low.signum();
-        let [_, root] = bisect(before, low, high, BisectionStop::Width(f64::EPSILON * high.abs()));
-        return Some((root, at_low < 0.0));
-    }
-    None
+    roots
 }
 
-/// Distance from the last root within which the sign is rounding.
+/// Returns the number of sign changes of the Bernstein coefficients on an interval: with
+/// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
+fn sign_changes(series: &[f64], low: f64, high: f64) -> usize {
+    let mut coefficients = if low == 0.0 { series.to_vec() } else { about(series, low) };
+    let degree = coefficients.len() - 1;
+    let mut factor = 1.0;
+    for (k, coefficient) in coefficients.iter_mut().enumerate().skip(1) {
+        factor *= (high - low) * (k as f64 / (degree + 1 - k) as f64);
+        *coefficient *= factor;
+    }
+    // Pascal's triangle, column by column.
+    for first in 1..=degree {
+        let mut before = coefficients[first - 1];
+        for coefficient in &mut coefficients[first..] {
+            let own = *coefficient;
+            *coefficient += before;
+            before = own;
+        }
+    }
+    // The last is the value at the end, where a root counts.
+    let mut changes = usize::from(coefficients[degree] == 0.0);
+    let mut before = 0.0;
+    for coefficient in coefficients {
+        if coefficient != 0.0 {
+            changes += usize::from(before * coefficient.signum() < 0.0);
+            before = coefficient.signum();
+        }
+    }
+    changes
+}
+
+/// Distance from the last root within which the sign is due to rounding.
 fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }
 
-/// The sign with which the search for roots begins on a step of this length; 0 for nothing but
-/// zeros.
+/// Returns the sign with which the search for roots begins on a step of this length; 0 if all
+/// coefficients are zero.
 pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
     let here = value(series, apart(0.0, length));
     let leading = series.iter().find(|value| **value != 0.0);
     match (here, leading) {
         (0.0, None) => 0.0,
-        // Underflow, or no step at all.
+        // The value underflows, or the step has the length zero.
         (0.0, Some(leading)) => leading.signum(),
         _ => here.signum(),
     }
 }
 
-/// The polynomial about another centre, by Horner's scheme.
+/// Expands the polynomial about another centre, by Horner's scheme.
 fn about(series: &[f64], centre: f64) -> Vec<f64> {
     let mut shifted = series.to_vec();
     for start in 0..shifted.len() {
@@ -173,28 +184,46 @@ mod tests {
     fn every_root_is_found_in_its_turn() {
         // (s - 1/10)(s - 1/5)(s - 9/10), and a double root that does not cross.
         let cubic = [-0.018, 0.29, -1.2, 1.0];
-        let (mut from, mut found) = (0.0, vec![]);
-        while let Some((place, rising)) = first_root(&cubic, from, 1.0) {
-            found.push((place, rising));
-            from = place;
-        }
+        let found = roots(&cubic, 0.0, 1.0);
         for ((place, rising), expected) in
             found.iter().zip([(0.1, true), (0.2, false), (0.9, true)])
         {
             assert!((place - expected.0).abs() < 1e-14 && *rising == expected.1, "{found:?}");
         }
         assert_eq!(found.len(), 3);
-        assert_eq!(first_root(&[0.25, -1.0, 1.0], 0.0, 1.0), None);
+        assert_eq!(roots(&cubic, 0.1, 1.0).len(), 2);
+        assert_eq!(roots(&[0.25, -1.0, 1.0], 0.0, 1.0), []);
         // Two roots a millionth apart.
-        let near = first_root(&[0.25 - 2.5e-13, -1.0, 1.0], 0.0, 1.0).expect("a root");
-        assert!((near.0 - (0.5 - 5e-7)).abs() < 1e-9 && !near.1);
-        assert_eq!(first_root(&[0.0, 1.0], 0.0, 1.0), None);
+        let near = roots(&[0.25 - 2.5e-13, -1.0, 1.0], 0.0, 1.0);
+        assert_eq!(near.iter().map(|root| root.1).collect::<Vec<_>>(), [false, true]);
+        assert!((near[0].0 - (0.5 - 5e-7)).abs() < 1e-9);
+        assert!((near[1].0 - (0.5 + 5e-7)).abs() < 1e-9);
+        assert_eq!(roots(&[0.0, 1.0], 0.0, 1.0), []);
         // One at the very end, where the value is exactly zero.
-        assert_eq!(first_root(&[-1.0, 1.0], 0.0, 1.0), Some((1.0, true)));
-        assert_eq!(first_root(&[1.0, -1.0], 0.0, 1.0), Some((1.0, false)));
+        assert_eq!(roots(&[-1.0, 1.0], 0.0, 1.0), [(1.0, true)]);
+        assert_eq!(roots(&[1.0, -1.0], 0.0, 1.0), [(1.0, false)]);
+        // One in the middle of the interval, where it is halved: (s - 1/2)(s - 3/4).
+        let [(half, false), (other, true)] = roots(&[0.375, -1.25, 1.0], 0.0, 1.0)[..] else {
+            panic!("two roots, the first of them falling");
+        };
+        assert!(half == 0.5 && (other - 0.75).abs() < 1e-15, "{half} {other}");
         // Cases that the bounds about 0 decide by themselves.
-        assert_eq!(first_root(&[2.0, -1.0, 0.5], 0.0, 1.0), None);
-        assert_eq!(first_root(&[1e-3, 1.0, 0.1], 0.0, 1.0), None);
-        assert_eq!(first_root(&[3.0], 0.0, 1.0), None);
+        assert_eq!(roots(&[2.0, -1.0, 0.5], 0.0, 1.0), []);
+        assert_eq!(roots(&[1e-3, 1.0, 0.1], 0.0, 1.0), []);
+        assert_eq!(roots(&[3.0], 0.0, 1.0), []);
+        assert_eq!(roots(&[], 0.0, 1.0), []);
+    }
+
+    /// Chebyshev's polynomial of degree 9 has its roots at `cos((2 k + 1) pi/18)`.
+    #[test]
+    fn as_many_roots_as_the_degree_are_found() {
+        let chebyshev = [0.0, 9.0, 0.0, -120.0, 0.0, 432.0, 0.0, -576.0, 0.0, 256.0];
+        let found = roots(&chebyshev, -1.0, 1.0);
+        assert_eq!(found.len(), 9);
+        for (k, (place, rising)) in found.iter().rev().enumerate() {
+            let expected = ((2 * k + 1) as f64 * std::f64::consts::PI / 18.0).cos();
+            assert!((place - expected).abs() < 1e-14, "{place} {expected}");
+            assert_eq!(*rising, k % 2 == 0);
+        }
     }
 }

@@ -1,15 +1,15 @@
-//! Integration by Runge-Kutta: the right sides are evaluated, never expanded, so that it is a check
-//! of the series.
+//! Integration by a Runge-Kutta method: the right sides are evaluated, never expanded into series,
+//! so that it is a check of the series.
 //!
 //! ```text
 //! abs(u) -> s u,   sgn(u) -> sgn(s),   H(u) -> H(s),   max(u, w) -> H(s) u + H(-s) w      s = 1 or -1: the side of a corner
 //! ```
 //!
-//! A side is a value of the run beside the states, with rate zero: the right sides are smooth in
-//! every step, and where `s u` falls through zero the run starts anew with the other side. What
-//! rounding has left of u there is kept beside it and taken off, so that the motion stands on its
-//! corner and is seen to leave it on either side. States are counted in their own sizes and time
-//! from the start in the length of the first step, so that one tolerance and one guess of a step
+//! A side is a further value of the run, with rate zero: the right sides are smooth in every step,
+//! and where `s u` falls through zero the run restarts with the other side. The rest of u that
+//! rounding leaves there is kept as one more value and subtracted, so that the motion starts
+//! exactly on its corner and can leave it on either side. States are scaled by their own sizes, and
+//! time from the start by the length of the first step, so that one tolerance and one initial step
 //! suit all.
 
 use std::cell::RefCell;
@@ -26,17 +26,17 @@ use crate::numeric::ode::{
 use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
 
-/// Least tolerance of a step: an estimate of its error is rounding below that.
+/// Least tolerance of a step: below it the error estimate is rounding.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
 
-/// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is
-/// measured by its own size.
+/// Least relative change of a state during the run with which its rate is scaled by its own size.
 const SMALLEST_MOVE: f64 = 1e-10;
 
-/// Crossings in the same direction that lie closer together, in first steps, are one.
+/// Distance, in units of the first step, within which two crossings in the same direction count as
+/// one.
 const SAME_PLACE: f64 = 1e-10;
 
-/// A trajectory in the units of the run.
+/// A trajectory in scaled units, with these units.
 #[derive(Clone, Debug)]
 pub(super) struct ScaledTrajectory {
     trajectory: Trajectory<Point<Vec<f64>>>,
@@ -55,21 +55,21 @@ impl ScaledTrajectory {
         self.trajectory.step_count()
     }
 
-    /// The states of a point of the run.
+    /// Returns the unscaled states at a point of the run.
     fn states<'a>(&'a self, point: &'a Point<Vec<f64>>) -> impl Iterator<Item = f64> + 'a {
-        // Sides and what goes with them stand behind the states.
+        // The sides and the rests of the corners follow after the states.
         point.y.iter().zip(&self.units.sizes).map(|(value, size)| value * size)
     }
 
-    /// The last step.
+    /// Returns the start and the end of the last step, in scaled time.
     fn last_step(&self) -> [f64; 2] {
         let end = self.trajectory.end().t;
         let starts = self.trajectory.knots().map(|knot| knot.t);
         [starts.filter(|time| *time < end).last().unwrap_or(end), end]
     }
 
-    /// The time up to which all states are within the range of numbers, where they leave it, and
-    /// why it ends there.
+    /// Returns the time up to which all states are within range, and the reason why the path ends
+    /// there; `None` if they never leave it.
     fn end_of_range(&self) -> Option<(f64, PathEnd)> {
         let mut before = self.trajectory.start().t;
         for knot in self.trajectory.knots() {
@@ -94,8 +94,8 @@ impl ScaledTrajectory {
 /// The units of states and time of a run.
 #[derive(Clone, Debug)]
 struct RunScales {
-    /// The size of every state: what it reaches on the first step of its series. One that stays
-    /// zero there is taken to be as large as the smallest of the others.
+    /// The size of every state: its largest absolute value on the first step of its series. A state
+    /// that stays zero there gets the smallest size of the others.
     sizes: Vec<f64>,
     start: f64,
     time: f64,
@@ -103,12 +103,12 @@ struct RunScales {
 
 impl RunScales {
     fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
-        // Without a series there, the values themselves must do.
+        // If there is no series, the initial values are used.
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
-        // A rate that moves a state by next to nothing in all the time, as the rounding of a touch
-        // does, is no scale.
+        // A rate that hardly moves a state during the whole run, as one due to rounding at a
+        // contact, is not a scale.
         for (right, moved) in system.right.iter().zip(sizes.clone()) {
             let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
             if let Some(size) = rate.map(|rate| &mut sizes[rate])
@@ -127,18 +127,18 @@ impl RunScales {
         Self { sizes, start, time }
     }
 
-    /// A time in the units of the run.
+    /// Converts a time to scaled time.
     fn count(&self, time: f64) -> f64 {
         (time - self.start) / self.time
     }
 
-    /// A time of the run as it is.
+    /// Converts a scaled time to time.
     fn time(&self, counted: f64) -> f64 {
         self.start + counted * self.time
     }
 }
 
-/// The path between two times from these values.
+/// Integrates the system between two times from these values.
 pub(super) fn follow(
     system: &System,
     [start, end]: [f64; 2],
@@ -146,7 +146,7 @@ pub(super) fn follow(
     events: &[Event],
     options: &SystemOptions,
 ) -> Result<Path, SystemError> {
-    // Equations that cannot be expanded are refused by either integrator.
+    // Both integrators refuse equations that cannot be expanded into series.
     taylor::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
     let units = RunScales::new(system, [start, end], values, events);
@@ -160,8 +160,8 @@ pub(super) fn follow(
     let watched = scaled.watched(events);
     let settings = ode::IntegrationOptions {
         maximum_steps: options.step_limit,
-        // An event function may vary faster than the motion: the step is no longer than a series of
-        // it would allow.
+        // An event function may vary faster than the motion: with events or corners a step is no
+        // longer than the first step by series.
         maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
         interrupt: options.interrupt,
         ..ode::IntegrationOptions::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
@@ -199,7 +199,7 @@ pub(super) fn follow(
     Ok(Path { end, reason, occurrences, motion: super::PathRepresentation::RungeKutta(motion) })
 }
 
-/// Crossings of the user's events, each of them once.
+/// Returns the crossings of the user's events, each of them once.
 fn occurrences(
     all: &[ode::EventOccurrence<Point<Vec<f64>>>],
     units: &RunScales,
@@ -208,7 +208,8 @@ fn occurrences(
     let mut occurrences: Vec<EventCrossing> = Vec::new();
     for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
-        // If a corner lies at the same place, rounding may show the crossing before and behind it.
+        // If a corner lies at the same place, rounding may report the crossing both before and
+        // after it.
         let same = |met: &&EventCrossing| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
@@ -218,13 +219,13 @@ fn occurrences(
     occurrences
 }
 
-/// The functions of a system in the units of a run: of the states over their sizes, then the sides
-/// of the corners, then what is left over of each corner where it was crossed last.
+/// The functions of a system in scaled units. Their values are the scaled states, then the sides of
+/// the corners, then the rest that the argument of each corner had when it was crossed last.
 struct ScaledSystem<'a> {
     states: usize,
     smooth: &'a Smooth,
     units: &'a RunScales,
-    /// The arguments of every function: states, sides, time, numbers.
+    /// Scratch memory for the arguments of every function: states, sides, time, numbers.
     scratch: RefCell<Vec<f64>>,
 }
 
@@ -264,8 +265,8 @@ impl ScaledSystem<'_> {
         });
     }
 
-    /// The part of a step, a function of its fraction, that ends beside the first place that is
-    /// narrow for it, where there is one.
+    /// Returns the fraction of a step that ends beside the first narrow place; `None` if there is
+    /// none. `state` is the step as a function of its fraction.
     fn short_of_narrow(&self, state: &dyn Fn(f64) -> Point<Vec<f64>>) -> Option<f64> {
         let coarse = COARSE.map(state);
         let ends = self.smooth.narrow.iter().filter_map(|(kind, function)| {
@@ -275,24 +276,26 @@ impl ScaledSystem<'_> {
         ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
     }
 
-    /// The initial state of the run in its units.
+    /// Returns the initial values of the run in scaled units.
     ///
     /// # Errors
-    /// A right side or an event without a value there.
+    /// [`SystemError`] for a right side or an event without a value there.
     fn start(&self, system: &System, values: &[f64]) -> Result<Vec<f64>, SystemError> {
         let (states, corners) = (self.states, self.corners());
         let mut first: Vec<f64> =
             values.iter().zip(&self.units.sizes).map(|(value, size)| value / size).collect();
         first.resize(states + corners, 1.0);
         first.resize(states + 2 * corners, 0.0);
-        // The argument of a corner contains the sides of earlier ones alone. One that begins at
-        // zero is left on its own side, or at once.
+        // The argument of a corner contains only the sides of earlier corners, so the sides can be
+        // set in order. At an argument of zero the positive side is assumed; if it is wrong, the
+        // corner is crossed at once.
         for (corner, argument) in self.smooth.corners.iter().enumerate() {
             if self.value_of(0.0, &first, argument) < 0.0 {
                 first[states + corner] = -1.0;
             }
         }
-        // As typed, a sign without a value is none, whatever side it might have.
+        // The typed right sides are tested because the smooth ones may have a value although a
+        // corner's argument has none.
         for (state, rate) in self.smooth.typed.iter().enumerate() {
             if !self.value_of(0.0, &first, rate).is_finite() {
                 return Err(SystemError::Start(system.state[state]));
@@ -306,8 +309,9 @@ impl ScaledSystem<'_> {
         Ok(first)
     }
 
-    /// Takes the other side of every corner that rounding has put behind this point: it is met at
-    /// the same time as the one that has just been crossed, and no step would find it any more.
+    /// Takes the other side of every corner that rounding has put behind this point. Such a corner
+    /// is met at the same time as the one that has just been crossed, and no step would find it any
+    /// more.
     fn cross_with(&self, point: &mut Point<Vec<f64>>) {
         for (corner, argument) in self.smooth.corners.iter().enumerate() {
             let side = self.states + corner;
@@ -320,7 +324,7 @@ impl ScaledSystem<'_> {
         }
     }
 
-    /// The events of the user, and behind them the corners, where the motion changes sides.
+    /// Returns the events of the user, followed by the corners, at which the motion changes sides.
     fn watched(&self, events: &[Event]) -> Vec<ode::Event<'_, Point<Vec<f64>>>> {
         let mut watched = Vec::with_capacity(self.smooth.events.len() + self.corners());
         for (event, function) in events.iter().zip(&self.smooth.events) {
@@ -365,15 +369,15 @@ fn reason(stopped: StopReason) -> PathEnd {
     }
 }
 
-/// Right sides, events and the arguments of the corners, as functions of states, sides, time and
-/// numbers.
+/// The right sides, events and arguments of the corners, compiled as functions of states, sides,
+/// time and numbers.
 struct Smooth {
-    /// The right sides with their corners.
+    /// The right sides as typed, with their corners.
     typed: Vec<CompiledFunction>,
     rates: Vec<CompiledFunction>,
     events: Vec<CompiledFunction>,
     corners: Vec<CompiledFunction>,
-    /// Arguments of functions that may vary faster than the motion.
+    /// The arguments of functions that may vary faster than the motion.
     narrow: Vec<(FunctionGrowth, CompiledFunction)>,
 }
 
@@ -420,7 +424,7 @@ impl Smooth {
         })
     }
 
-    /// Room for the arguments, with the numbers in their places.
+    /// Returns scratch memory for the arguments, with the numbers in their places.
     fn arguments(&self, system: &System) -> Vec<f64> {
         let before = self.rates.len() + self.corners.len() + 1;
         let numbers = system.numbers.values().copied();
@@ -428,8 +432,8 @@ impl Smooth {
     }
 }
 
-/// The corners met so far: the arguments whose signs choose, which may contain the sides of earlier
-/// ones.
+/// The corners found so far: the arguments whose signs choose between formulas. They may contain
+/// the sides of earlier corners.
 struct Corners {
     stem: String,
     arguments: Vec<Expr>,
@@ -441,7 +445,7 @@ impl Corners {
         Symbol::new(&format!("{}{index}", self.stem))
     }
 
-    /// The sign of this argument, by the side of its corner.
+    /// Returns the sign of an argument, expressed by the side of its corner.
     fn sign(&mut self, argument: &Expr) -> Expr {
         let guard = self.guards.find_or_add(argument);
         if guard.is_new {
@@ -454,7 +458,7 @@ impl Corners {
         }
     }
 
-    /// The expression with the sides in place of the signs.
+    /// Returns the expression with the sides in place of the signs.
     fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
             (Node::Function(Function::Absolute, _), [u]) => {

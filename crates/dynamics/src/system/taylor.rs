@@ -1,5 +1,5 @@
-//! The states by their Taylor series: coefficients, how far they reach, and the corners and events
-//! on the way.
+//! Integration by Taylor series of the states: coefficients, step sizes, and the corners and events
+//! on a step.
 //!
 //! References: A. Jorba, M. Zou, *Experimental Mathematics* 14 (2005) 99 (order and step from the
 //! series); R. E. Moore, *Methods and Applications of Interval Analysis*, SIAM 1979, section 3.4
@@ -11,12 +11,13 @@
 //! event: g(t, y) = 0, found on the series of g itself, so that two crossings in one step are two
 //! ```
 //!
-//! Time is counted from the start, so that a late start costs no digits.
+//! Time is measured from the start, so that a late start costs no digits.
 
 use std::collections::BTreeMap;
 
 use super::narrow::{FunctionGrowth, end_of_step};
-use super::polynomial::{first_root, powers, sign_at_start, value, values};
+use super::polynomial::{powers, roots, sign_at_start, value};
+use super::steps::TaylorSteps;
 use super::{
     Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
     end_of_range, is_vanishing, within_range, without_value,
@@ -25,72 +26,23 @@ use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
 use crate::symbol::Symbol;
 
-/// One step: the Taylor polynomials of all states about its beginning.
-#[derive(Clone, Debug)]
-pub(super) struct TaylorStep {
-    /// Since the start of the path.
-    start: f64,
-    order: usize,
-    /// State by state, the coefficients of `s^0, s^1, ...`.
-    coefficients: Vec<f64>,
-}
-
-/// All states at a time since the start, before the end of the last step; `None` before the first.
-pub(super) fn states_at(steps: &[TaylorStep], time: f64) -> Option<Vec<f64>> {
-    let after = steps.partition_point(|step| step.start <= time);
-    let step = steps.get(after.checked_sub(1)?)?;
-    let polynomials = step.coefficients.chunks(step.order + 1);
-    Some(polynomials.map(|series| value(series, time - step.start)).collect())
-}
-
-/// One state at such a time.
-pub(super) fn state_at(steps: &[TaylorStep], time: f64, state: usize) -> Option<f64> {
-    let after = steps.partition_point(|step| step.start <= time);
-    let step = steps.get(after.checked_sub(1)?)?;
-    let series = step.coefficients.chunks(step.order + 1).nth(state)?;
-    Some(value(series, time - step.start))
-}
-
-/// The first states, a column each, at such times in increasing order.
-pub(super) fn sample(steps: &[TaylorStep], mut times: &[f64], columns: &mut [Vec<f64>]) {
-    let mut places = Vec::new();
-    let mut following = steps.iter().skip(1).peekable();
-    let Some(mut step) = steps.first() else {
-        return;
-    };
-    while let Some(first) = times.first() {
-        while let Some(next) = following.next_if(|next| next.start <= *first) {
-            step = next;
-        }
-        let until = following.peek().map(|next| next.start);
-        let count = until.map_or(times.len(), |until| times.partition_point(|time| *time < until));
-        let (own, others) = times.split_at(count);
-        places.clear();
-        places.extend(own.iter().map(|time| time - step.start));
-        for (series, column) in step.coefficients.chunks(step.order + 1).zip(&mut *columns) {
-            values(series, &places, column);
-        }
-        times = others;
-    }
-}
-
-/// Whether there are recurrences for the right sides of a system and these events.
+/// Checks that there are recurrences for the right sides of a system and these events.
 ///
 /// # Errors
-/// A function without a recurrence.
+/// [`RecurrenceError`] for a function without a recurrence.
 pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceError> {
     const ANY: f64 = 0.1;
     expansion(system, events, ANY).map(drop)
 }
 
-/// The right sides of a system and these events, to be expanded so far that steps within this
-/// tolerance are cheapest.
+/// Derives the recurrences for the right sides of a system and these events, to the order with
+/// which steps within this tolerance are cheapest.
 pub(super) fn expansion(
     system: &System,
     events: &[Event],
     tolerance: f64,
 ) -> Result<SystemSeries, RecurrenceError> {
-    /// An argument need be known to this part of itself only.
+    /// Tolerance of the arguments of narrow functions, which need not be known to rounding.
     const CLOSELY: f64 = 1e-9;
     let order = order(tolerance);
     let states = system.state.iter().map(|state| (*state, None));
@@ -113,13 +65,13 @@ pub(super) fn expansion(
     })
 }
 
-/// Jorba and Zou: the order that reaches the tolerance with the fewest operations.
+/// Returns the order that reaches the tolerance with the fewest operations (Jorba and Zou).
 fn order(tolerance: f64) -> usize {
     (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
 }
 
-/// The reach of the first series, and the size of every state on the way, within this time; `None`
-/// if there is no series.
+/// Returns the length of the first step by series, and the largest absolute value of every state on
+/// it, up to the end of the run or the next corner; `None` if there is no series.
 pub(super) fn first_step(
     system: &System,
     [start, end]: [f64; 2],
@@ -132,7 +84,7 @@ pub(super) fn first_step(
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
     let reach = expansion.step();
-    // The series of a free flight has no end, the flight itself has one at the next corner.
+    // The series of a free flight reaches to infinity, but the flight ends at the next corner.
     let longest = reach.min(end - start);
     let corner = expansion.first_corner(longest).filter(|(_, place)| *place > 0.0);
     let looked_at = corner.map_or(longest, |(_, place)| place);
@@ -144,10 +96,10 @@ pub(super) fn first_step(
     Some((reach, (0..values.len()).map(size).collect()))
 }
 
-/// Motions side by side: a register of 512 bits, or two or four smaller ones.
+/// Number of motions side by side: they fill a register of 512 bits, or two or four smaller ones.
 pub const LANES: usize = 8;
 
-/// The path of a run.
+/// Follows a run to its end.
 pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     loop {
         if let Some(reason) = run.before_step() {
@@ -160,8 +112,8 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     }
 }
 
-/// The paths of several runs of the same recurrences, in their order: eight of them side by side,
-/// each bit for bit what it is alone.
+/// Follows several runs of the same recurrences, [`LANES`] of them side by side, and returns their
+/// paths in order; each is bit for bit the same as alone.
 pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
     let Some(first) = runs.first() else { return vec![] };
     let mut tape: Tape<LANES> = first.expansion.tape.side_by_side();
@@ -192,7 +144,7 @@ pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, Syst
     runs.into_iter().zip(ends.into_iter().flatten()).map(finished).collect()
 }
 
-/// A run on its way.
+/// A run in progress.
 pub(super) struct TaylorRun<'a> {
     system: &'a System,
     events: &'a [Event],
@@ -201,20 +153,21 @@ pub(super) struct TaylorRun<'a> {
     start: f64,
     end: f64,
     duration: f64,
-    /// Since the start.
+    /// The time since the start.
     time: f64,
     values: Vec<f64>,
-    /// The signs of the events behind the last step.
+    /// The signs of the event functions after the last step.
     signs: Vec<f64>,
-    steps: Vec<TaylorStep>,
+    steps: TaylorSteps,
     occurrences: Vec<EventCrossing>,
-    /// Number of consecutive steps that were back on a corner at once.
+    /// Number of consecutive steps that returned to a corner at once.
     stuck: usize,
-    /// The corner that the last step ended on, and how fast its argument changed there.
+    /// The corner at which the last step ended, and the speed of its argument there.
     met: Option<(usize, f64)>,
-    /// The last step, where it ended by itself and may be taken back.
+    /// The data to take back the last step; `None` if it ended at a corner or an event, and cannot
+    /// be taken back.
     last: Option<StepUndo>,
-    /// Number of consecutive halvings of the step from here.
+    /// Number of halvings of the step from the present point.
     halvings: i32,
 }
 
@@ -230,7 +183,7 @@ struct StepUndo {
 }
 
 impl<'a> TaylorRun<'a> {
-    /// A run between two times from these values, with the expansion of these events.
+    /// Prepares a run between two times from these values, with the recurrences of these events.
     pub(super) fn new(
         system: &'a System,
         [start, end]: [f64; 2],
@@ -240,6 +193,7 @@ impl<'a> TaylorRun<'a> {
         mut expansion: SystemSeries,
     ) -> Self {
         expansion.begin(start, values);
+        let order = expansion.order;
         Self {
             system,
             events,
@@ -251,7 +205,7 @@ impl<'a> TaylorRun<'a> {
             time: 0.0,
             values: values.to_vec(),
             signs: vec![0.0; events.len()],
-            steps: vec![],
+            steps: TaylorSteps::new(values.len(), order),
             occurrences: vec![],
             stuck: 0,
             met: None,
@@ -260,16 +214,17 @@ impl<'a> TaylorRun<'a> {
         }
     }
 
-    /// Whether it may go side by side with an expansion.
+    /// Whether the run has the recurrences of an expansion, so that both may be computed side by
+    /// side.
     pub(super) fn is_like(&self, expansion: &SystemSeries) -> bool {
         self.expansion.tape.is_like(&expansion.tape)
     }
 
-    /// The path of a run that has ended.
+    /// Returns the path of a run that has ended.
     fn finish(mut self, reason: PathEnd) -> Path {
-        if self.steps.is_empty() {
-            // Nowhere to go: where it starts it is all the same.
-            self.steps.push(TaylorStep { start: 0.0, order: 0, coefficients: self.values });
+        if self.steps.count() == 0 {
+            // A run that ended at its start gets one step of length zero.
+            self.steps = TaylorSteps::at_rest(self.values);
         }
         Path {
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
@@ -282,7 +237,7 @@ impl<'a> TaylorRun<'a> {
     /// Sets the expansion at the start of the next step; returns the reason if the run ends there.
     fn before_step(&mut self) -> Option<PathEnd> {
         let over = self.time >= self.duration;
-        if !over && self.steps.len() >= self.options.step_limit {
+        if !over && self.steps.count() >= self.options.step_limit {
             return Some(PathEnd::StepLimit);
         }
         if !over && self.options.interrupt.is_requested() {
@@ -292,11 +247,11 @@ impl<'a> TaylorRun<'a> {
         None
     }
 
-    /// A step on along the series that were computed, or one back; answers why the run ends, if it
-    /// does.
+    /// Takes a step along the computed series, or takes the last step back. Returns the reason why
+    /// the run ends, `None` if it goes on.
     ///
     /// # Errors
-    /// A state or an event without a value where the run begins.
+    /// [`SystemError`] for a state or an event without a value at the start of the run.
     fn step(&mut self) -> Result<Option<PathEnd>, SystemError> {
         let over = self.time >= self.duration;
         let now = self.start + self.time;
@@ -313,7 +268,7 @@ impl<'a> TaylorRun<'a> {
         }
         match defined {
             Err(_) if over => return Ok(Some(PathEnd::Reached)),
-            Err(error) if self.steps.is_empty() => return Err(error),
+            Err(error) if self.steps.count() == 0 => return Err(error),
             Err(_) => return Ok(Some(self.without_value())),
             Ok(()) => {}
         }
@@ -332,10 +287,10 @@ impl<'a> TaylorRun<'a> {
         Ok(self.advance(reach))
     }
 
-    /// Whether everything has a series here.
+    /// Checks that all states and events have a series here.
     ///
     /// # Errors
-    /// The first state or event without one.
+    /// [`SystemError`] with the first state or event without one.
     fn defined(&mut self) -> Result<(), SystemError> {
         let settled = self.expansion.switch_corners();
         settled.map_err(|state| SystemError::Start(self.system.state[state]))?;
@@ -347,14 +302,14 @@ impl<'a> TaylorRun<'a> {
         }
     }
 
-    /// The reason why it ends here, where there is no series.
+    /// Returns the reason why the run ends here if there is no series.
     fn without_value(&self) -> PathEnd {
-        let before = self.steps.last().map_or(self.time, |step| step.start);
+        let before = self.steps.last_start().unwrap_or(self.time);
         without_value(self.values.iter().copied(), [before, self.time])
     }
 
-    /// The length of the next step: the reach of the series here, shortened so that no critical
-    /// time and no narrow place is stepped over.
+    /// Returns the length of the next step: the largest within the tolerance, shortened so that it
+    /// crosses no critical time and no narrow place.
     fn step_length(&mut self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
@@ -363,7 +318,7 @@ impl<'a> TaylorRun<'a> {
         reach * 0.5_f64.powi(self.halvings)
     }
 
-    /// Advances by this time, or to the first corner or event that stops; returns the reason if the
+    /// Advances by this time, or to the first corner or stopping event. Returns the reason if the
     /// run ends there.
     fn advance(&mut self, reach: f64) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
@@ -396,15 +351,11 @@ impl<'a> TaylorRun<'a> {
             time: start + (time + place),
             rising,
         }));
-        let order = self.expansion.order;
-        let mut coefficients = Vec::with_capacity(self.values.len() * (order + 1));
-        for state in 0..self.values.len() {
-            coefficients.extend_from_slice(self.expansion.state(state));
-        }
+        let series = (0..self.values.len()).map(|state| self.expansion.state(state));
+        self.steps.push(time, series);
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);
         }
-        self.steps.push(TaylorStep { start: time, order, coefficients });
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
         let at_end = time + length >= self.duration && whole;
@@ -422,24 +373,21 @@ impl<'a> TaylorRun<'a> {
         self.halvings = 0;
         self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
         self.expansion.cross(corner);
-        // Leaving a corner and being back at once, over and over, is to stay on it.
+        // A motion that leaves a corner and returns at once, over and over, sticks to it.
         const OFTEN: usize = 20;
         let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * self.time;
         self.stuck = if at_once { self.stuck + 1 } else { 0 };
         (self.stuck > OFTEN).then_some(PathEnd::Sticks)
     }
 
-    /// Whether the rates where a step has come to are others than its series says: a wall, say,
-    /// that could not be seen from its beginning.
+    /// Whether the rates at the end of a step differ from those of its series, for instance because
+    /// of a wall that did not show at its beginning.
     fn has_missed_something(&mut self, last: &StepUndo, now: f64) -> bool {
         /// Largest error of a rate times the step, over the size of the state on it.
         const ASTRAY: f64 = 1e-8;
-        // The terms that are left out are within the tolerance, their slopes within as many times
-        // it as the next order says.
+        // The truncated terms are within the tolerance, and their derivatives within the tolerance
+        // times the next order.
         let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
-        let Some(step) = self.steps.last() else {
-            return false;
-        };
         let apart = |(state, series): (usize, &[f64])| {
             let rate = self.expansion.rate(state);
             let (mut power, mut size, mut change) = (1.0, series[0].abs(), 0.0);
@@ -451,16 +399,16 @@ impl<'a> TaylorRun<'a> {
             let apart = (change - rate * last.length).abs();
             (apart > astray * size).then_some((state, apart / last.length))
         };
-        let states = step.coefficients.chunks(step.order + 1).enumerate();
-        let missed: Vec<(usize, f64)> = states.filter_map(apart).collect();
+        let missed: Vec<(usize, f64)> = self.steps.last().enumerate().filter_map(apart).collect();
         !missed.is_empty() && !self.is_rounding(&missed, now)
     }
 
-    /// Whether these rates, each by the number of its state, are off by no more than the last
-    /// digits of the states make: two bodies that touch to rounding push each other by what their
-    /// places are rounded by, which on a step from rest is all that there is.
+    /// Whether the errors of these rates, each given with the index of its state, are no larger
+    /// than the last digits of the states can cause. Two bodies that touch to within rounding push
+    /// each other by the rounding of their positions, which may be the only force on a step from
+    /// rest.
     fn is_rounding(&mut self, missed: &[(usize, f64)], now: f64) -> bool {
-        /// Last digits that the sums in a rate lose.
+        /// Number of units in the last place of a state that count as rounding.
         const DIGITS: f64 = 4.0;
         let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
         let mut by_rounding = vec![0.0; missed.len()];
@@ -476,16 +424,15 @@ impl<'a> TaylorRun<'a> {
             }
             values[state] = self.values[state];
         }
-        // It was expanded here before, and is again.
+        // The expansion at the unchanged state is restored.
         let again = self.expansion.expand_once(now, &self.values);
         again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
     }
 
-    /// Back to where the last step began, from where half of it is to be gone.
+    /// Returns to the start of the last step, from which half of it will be taken.
     fn take_back(&mut self, last: StepUndo) {
-        let Some(step) = self.steps.pop() else { return };
-        self.time = step.start;
-        self.values = step.coefficients.chunks(step.order + 1).map(|series| series[0]).collect();
+        let Some((time, values)) = self.steps.pop() else { return };
+        (self.time, self.values) = (time, values);
         self.signs = last.signs;
         self.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
@@ -493,21 +440,21 @@ impl<'a> TaylorRun<'a> {
     }
 }
 
-/// The next of these times, farther away than rounding.
+/// Returns the next of these times that is farther away than rounding; `None` if there is none.
 fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
     let beyond = now + 4.0 * f64::EPSILON * now.abs();
     critical.get(critical.partition_point(|time| *time <= beyond)).copied()
 }
 
-/// Right sides and events, with their series.
+/// The recurrences of right sides and events, with their series.
 #[derive(Clone, Debug)]
 pub(super) struct SystemSeries {
-    /// Its variables are the states, then time.
+    /// The tape, whose variables are the states, then time.
     tape: Tape,
     states: usize,
     events: usize,
     order: usize,
-    /// The places of the rates, then of the events, then of what may turn faster than the motion.
+    /// The places of the rates, then of the events, then of the arguments of narrow functions.
     outputs: Vec<usize>,
     narrow: Vec<FunctionGrowth>,
     powers: PowerTable,
@@ -518,20 +465,21 @@ pub(super) struct SystemSeries {
 }
 
 impl SystemSeries {
-    /// This expansion with other numbers for the parameters; `None` if other numbers make other
-    /// recurrences.
+    /// Returns this expansion with other values of the parameters; `None` if these may lead to
+    /// other recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
     }
 
-    /// Takes the side of every corner on which this point lies, or to which it is going.
+    /// Takes the side of every corner on which this point lies, or to which it moves.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
         self.expand_about(time, values);
         let corners = self.tape.corners().count();
-        // The argument of one corner may depend on the side of another.
+        // The expansion is repeated because the argument of one corner may depend on the side of
+        // another.
         for _ in 0..if corners > 0 { corners + 1 } else { 0 } {
-            // Parts without a value on a side not taken yet do not matter here.
+            // Undefined series do not matter here, since the sides may still be wrong.
             self.compute();
             if !self.tape.take_sides() {
                 break;
@@ -539,7 +487,7 @@ impl SystemSeries {
         }
     }
 
-    /// The coefficients of everything about a point.
+    /// Computes all coefficients about a point.
     ///
     /// # Errors
     /// As [`Self::switch_corners`].
@@ -549,15 +497,15 @@ impl SystemSeries {
         self.switch_corners()
     }
 
-    /// The coefficients of everything about a point, on these sides of the corners; whether there
-    /// are any.
+    /// Computes all coefficients about a point on the present sides of the corners; returns whether
+    /// they are finite.
     fn expand_once(&mut self, time: f64, values: &[f64]) -> bool {
         self.expand_about(time, values);
         self.compute();
         self.check().is_ok()
     }
 
-    /// Sets the variables about which everything is expanded.
+    /// Sets the variables to the point of the expansion.
     fn expand_about(&mut self, time: f64, values: &[f64]) {
         for (variable, value) in values.iter().chain([&time]).enumerate() {
             self.tape.set(variable, 0, *value);
@@ -567,12 +515,12 @@ impl SystemSeries {
         }
     }
 
-    /// Computes the coefficients of everything.
+    /// Computes all coefficients about the present point.
     fn compute(&mut self) {
         self.tape.expand(&self.outputs[..self.states]);
     }
 
-    /// Takes what was computed for it in a lane.
+    /// Takes the series that were computed in a lane.
     fn take_from(&mut self, tape: &Tape<LANES>, lane: usize) {
         let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
         tape.copy_lane_to(lane, places, &mut self.tape);
@@ -587,8 +535,8 @@ impl SystemSeries {
     /// is beyond them and moving away.
     ///
     /// # Errors
-    /// The first state whose series has no finite value, or the first of all where a corner has
-    /// none.
+    /// The index of the first state whose series is not finite; 0 if the argument of a corner has a
+    /// value but no series.
     fn switch_corners(&mut self) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
             let left = self.tape.corners().position(|(series, side)| {
@@ -602,14 +550,15 @@ impl SystemSeries {
         self.check()
     }
 
-    /// Whether states and corners have series.
+    /// Checks that states and corners have series; the errors are those of
+    /// [`Self::switch_corners`].
     fn check(&self) -> Result<(), usize> {
         let is_defined = |series: &[f64]| series.iter().all(|value| value.is_finite());
         if let Some(state) = (0..self.states).find(|&state| !is_defined(self.state(state))) {
             return Err(state);
         }
-        // A corner with a value and no series, as that of a root that begins here, would not be
-        // seen to change its side.
+        // A corner whose argument has a value but no series, such as a root that begins here, could
+        // change its side unnoticed.
         let mut corners = self.tape.corners();
         match corners.any(|(series, _)| series[0].is_finite() && !is_defined(series)) {
             true => Err(0),
@@ -622,7 +571,7 @@ impl SystemSeries {
         self.tape.series(state)
     }
 
-    /// The rate of a state.
+    /// Returns the rate of a state, the coefficient of order 1.
     fn rate(&self, state: usize) -> f64 {
         self.state(state).get(1).copied().unwrap_or(0.0)
     }
@@ -645,7 +594,7 @@ impl SystemSeries {
         })
     }
 
-    /// The step, no longer than this, that ends beside the first place that is narrow for it, where
+    /// Returns the length, at most `longest`, of a step that ends beside the first narrow place, if
     /// there is one.
     fn short_of_narrow(&mut self, longest: f64) -> f64 {
         let arguments = self.outputs.iter().skip(self.states + self.events);
@@ -655,7 +604,7 @@ impl SystemSeries {
             if end_of_step(*kind, series, length).is_none() {
                 continue;
             }
-            // Beyond its own reach the series of the argument says nothing.
+            // The series of the argument is valid only within its own step length.
             length = self.of_arguments.longest_step(series, length, &mut self.powers);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
@@ -664,12 +613,13 @@ impl SystemSeries {
         length
     }
 
-    /// Every crossing of every event on the step, in their order: which, where, and whether it
-    /// rises there. `signs` are those behind the last step: a crossing that rounding has put
-    /// between two steps is one at the beginning of the second.
+    /// Returns the crossings of all events on the step in order: the index of the event, the time
+    /// since the start of the step, and whether its function rises there. `signs` are the signs
+    /// after the last step: a crossing that rounding has put between two steps counts at the
+    /// beginning of the second.
     fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
         let mut met = Vec::new();
-        // In a step of length zero the sign would be rounding.
+        // On a step of length zero the sign would be due to rounding.
         if length == 0.0 {
             return met;
         }
@@ -683,23 +633,18 @@ impl SystemSeries {
                 met.push((event, 0.0, sign > 0.0));
             }
             *before = sign;
-            let mut from = 0.0;
-            // No polynomial has more roots than its degree.
-            for _ in 0..self.order {
-                let Some((place, rising)) = first_root(series, from, length) else {
-                    break;
-                };
+            for (place, rising) in roots(series, 0.0, length) {
                 met.push((event, place, rising));
                 *before = if rising { 1.0 } else { -1.0 };
-                from = place;
             }
         }
         met.sort_by(|one, other| one.1.total_cmp(&other.1));
         met
     }
 
-    /// The first corner met within a step, and where; at 0 where the motion turns back to the
-    /// corner that it stands on, or leaves it on the other side.
+    /// Returns the first corner met within a step, and the time since its start: 0 if the motion
+    /// turns back to the corner on which it starts, or leaves it on the other side. `None` if no
+    /// corner is met.
     pub(super) fn first_corner(&self, length: f64) -> Option<(usize, f64)> {
         let met = |(index, (series, side)): (usize, (&[f64], f64))| {
             let (here, slope) = (side * series[0], side * series.get(1).copied().unwrap_or(0.0));
@@ -709,15 +654,9 @@ impl SystemSeries {
             if leaves || here <= rounding && slope < 0.0 {
                 return Some((index, 0.0));
             }
-            let mut from = 0.0;
-            for _ in 0..self.order {
-                let (place, rising) = first_root(series, from, length)?;
-                if rising != (side > 0.0) {
-                    return Some((index, place));
-                }
-                from = place;
-            }
-            None
+            let mut crossed = roots(series, 0.0, length).into_iter();
+            let left = crossed.find(|(_, rising)| *rising != (side > 0.0));
+            left.map(|(place, _)| (index, place))
         };
         // A corner whose argument has no value is left out.
         let corners = self.tape.corners().enumerate();
@@ -725,7 +664,7 @@ impl SystemSeries {
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// Speed at which the argument of a corner changes after this time.
+    /// Returns the speed of the argument of a corner at a time since the start of the step.
     fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
         let (series, _) = self.tape.corners().nth(corner)?;
         let terms = series.iter().enumerate().skip(1).rev();
@@ -734,11 +673,11 @@ impl SystemSeries {
         Some(slope.abs())
     }
 
-    /// Whether nothing but rounding leads away from a corner within a step, on which its argument
-    /// has changed by so much before. One that is zero altogether is no corner to stay on: the
-    /// motion goes on.
+    /// Whether only rounding leads away from a corner within a step: its argument stays far below
+    /// the `change` that it would have had at its speed before. If the argument is zero throughout,
+    /// the motion does not stick, but goes on.
     fn stays_on(&self, corner: usize, change: f64, length: f64) -> bool {
-        /// Ratio to the change on the other side below which a value is rounding.
+        /// Ratio to `change` below which a value is rounding.
         const ROUNDING: f64 = 1e-12;
         let Some((series, _)) = self.tape.corners().nth(corner) else {
             return false;
@@ -773,7 +712,7 @@ const LAST: usize = 8;
 /// The factor by which a step that is too long for the tolerance is shortened.
 const SHORTER: f64 = 0.9;
 
-/// Bounds of the last terms of a series, in parts of its size on the step.
+/// Bounds of the last terms of a series, relative to its size on the step.
 #[derive(Clone, Debug)]
 struct Allowance {
     order: usize,
@@ -782,7 +721,7 @@ struct Allowance {
 }
 
 impl Allowance {
-    /// `tolerance` of the size for the last order, roots of it for those before.
+    /// The bounds `tolerance^(k/order)` for the last orders k.
     fn new(tolerance: f64, order: usize) -> Self {
         let mut parts = [0.0; LAST];
         let first = Self::first(order);
@@ -792,29 +731,41 @@ impl Allowance {
         Self { order, parts }
     }
 
-    /// The lowest of the last orders, above those that tell the size.
+    /// Returns the lowest of the last orders, which lies above the orders that determine the size.
     fn first(order: usize) -> usize {
         order.saturating_sub(LAST - 1).max(order / 2 + 1)
     }
 
-    /// The longest step, no longer than this, on which the last terms of a series of this order are
-    /// within the tolerance.
+    /// Returns the longest step, at most `longest`, on which the last terms of a series are within
+    /// their bounds.
     fn longest_step(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {
             return longest;
         };
-        // The root test; from there shorter until the last terms are small enough.
+        // The root test gives a first step, which is shortened until the last terms are small
+        // enough.
         let mut h = longest;
         let of_longest = powers.powers(longest);
-        for k in Self::first(order).max(lead + 1)..=order {
+        let first = Self::first(order).max(lead + 1);
+        // A root is computed only if it may be the shortest.
+        let (mut ratios, mut least) = ([f64::NAN; LAST], [f64::INFINITY; LAST]);
+        let mut shortest = f64::INFINITY;
+        for (slot, k) in (first..=order).enumerate() {
             let (size, power) = (series[k].abs(), of_longest[k - lead]);
-            // A root is drawn only where it may come out shorter.
             let clearly_longer =
                 power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
             if size != 0.0 && !clearly_longer {
-                h = h.min((series[lead].abs() / size).powf(1.0 / (k - lead) as f64));
+                ratios[slot] = series[lead].abs() / size;
+                let [low, high] = coarse_logarithm(ratios[slot]);
+                least[slot] = low / (k - lead) as f64;
+                shortest = shortest.min(high / (k - lead) as f64);
+            }
+        }
+        for (slot, k) in (first..=order).enumerate() {
+            if least[slot] <= shortest {
+                h = h.min(ratios[slot].powf(1.0 / (k - lead) as f64));
             }
         }
         let in_vain = match h.is_finite() {
@@ -822,7 +773,7 @@ impl Allowance {
             false => 0,
         };
         let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
-        // If powers underflow, the trials give another result.
+        // If powers underflow, the trials cannot be skipped: they would give another result.
         let is_known = powers.powers(first_trial)[order] >= f64::MIN_POSITIVE;
         let (mut h, trials) =
             if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
@@ -835,28 +786,42 @@ impl Allowance {
         h
     }
 
-    /// Number of trials, from the point with these powers on, that are certain to fail: the size of
-    /// a series falls with the step, so that the last terms have to fall to their bounds of the
-    /// size here.
+    /// Returns the number of trials, from the step with these powers on, that are certain to fail:
+    /// the size of a series falls with the step, so that the last terms must at least fall to their
+    /// bounds relative to the present size.
     fn trials_in_vain(&self, series: &[f64], lead: usize, powers: &[f64]) -> usize {
         let size = self.size(series, lead, powers);
         let first = Self::first(self.order);
-        let trials = (first..self.order + 1).zip(self.parts).map(|(k, part)| {
-            let (term, allowed) = (series[k].abs() * powers[k], part * size);
-            let is_told = k > lead && term.is_finite() && allowed > 1e-280;
-            if is_told { (term / allowed).ln() / (-(k as f64) * SHORTER.ln()) } else { 0.0 }
-        });
+        // A logarithm is computed only if it may be the largest.
+        let (mut ratios, mut greatest) = ([f64::NAN; LAST], [f64::NEG_INFINITY; LAST]);
+        let mut largest = 0.0_f64;
+        for (slot, k) in (first..=self.order).enumerate() {
+            let (term, allowed) = (series[k].abs() * powers[k], self.parts[slot] * size);
+            if k > lead && term.is_finite() && allowed > 1e-280 {
+                ratios[slot] = term / allowed;
+                let [low, high] = coarse_logarithm(ratios[slot]);
+                greatest[slot] = high / k as f64;
+                largest = largest.max(low / k as f64);
+            }
+        }
+        let trials =
+            (first..=self.order).enumerate().map(|(slot, k)| match greatest[slot] >= largest {
+                true => ratios[slot].ln() / (-(k as f64) * SHORTER.ln()),
+                false => 0.0,
+            });
         (trials.fold(0.0, f64::max) - 1e-6) as usize
     }
 
-    /// Size of the leading terms of a series at the point with these powers.
+    /// Returns the size of a series on the step with these powers: its largest leading term.
     fn size(&self, series: &[f64], lead: usize, powers: &[f64]) -> f64 {
         let leading = lead..lead.max(self.order / 2) + 1;
-        leading.fold(0.0, |size, k| size.max(series[k].abs() * powers[k]))
+        let terms = series[leading.clone()].iter().zip(&powers[leading]);
+        let sizes = terms.map(|(coefficient, power)| coefficient.abs() * power);
+        sizes.fold(0.0, |largest, size| if size > largest { size } else { largest })
     }
 
-    /// Whether the last terms of a series that begins with the order `lead`, at the place with
-    /// these powers, are within the tolerance.
+    /// Whether the last terms of a series that begins with the order `lead` are within their bounds
+    /// on the step with these powers.
     fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
         let size = self.size(series, lead, powers);
@@ -871,8 +836,19 @@ impl Allowance {
     }
 }
 
-/// The powers of one number after the other: most of the series of a step are looked at in the same
-/// place.
+/// Returns bounds of the binary logarithm of a number that is not negative, from its bits: the
+/// exponent, and a straight line for the mantissa, which is at most 0.0861 too low.
+fn coarse_logarithm(number: f64) -> [f64; 2] {
+    const TOO_LOW: f64 = 0.0861;
+    if !number.is_normal() {
+        return [f64::NEG_INFINITY, f64::INFINITY];
+    }
+    let low = number.to_bits() as f64 / (1_u64 << 52) as f64 - 1023.0;
+    [low, low + TOO_LOW]
+}
+
+/// A table of the powers of one number, kept from call to call, since most series of a step are
+/// evaluated at the same place.
 #[derive(Clone, Debug)]
 struct PowerTable {
     base: f64,
@@ -880,12 +856,12 @@ struct PowerTable {
 }
 
 impl PowerTable {
-    /// Room for this order and those below it.
+    /// A table for this order and those below it.
     fn new(order: usize) -> Self {
         Self { base: f64::NAN, table: vec![0.0; order + 1] }
     }
 
-    /// `h^0, h^1, ...`
+    /// Returns `h^0, h^1, ...`
     fn powers(&mut self, h: f64) -> &[f64] {
         if h != self.base {
             powers(h, &mut self.table);

@@ -1,13 +1,14 @@
 //! Balls: numbers known up to a radius, in fixed point.
 //!
 //! A ball is all real numbers within `radius` of `middle * 2^-bits`. In: fractions, and other
-//! balls. Out: balls that contain the sum, product, quotient or root of any numbers of those that
-//! came in; a product costs one of integers of `bits` digits and some operations on doubles.
-//! Rounding goes into the radius, so that what is proved of a ball is true of the number.
+//! balls. Out: balls that contain the sum, product, quotient or root of any numbers in the given
+//! balls. A product costs one product of integers of `bits` digits and some operations on doubles.
+//! Rounding errors are added to the radius, so that a statement proved for a ball is true of the
+//! number.
 //!
 //! Source: F. Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic,
-//! IEEE Transactions on Computers 66 (2017), 1281-1292; in fixed point here, for the sums of a
-//! Fourier series have one scale.
+//! IEEE Transactions on Computers 66 (2017), 1281-1292; in fixed point here, because the sums of a
+//! Fourier series have a single scale.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -16,32 +17,32 @@ use super::bound::Bound;
 use super::integer::Integer;
 use super::rational::Rational;
 
-/// A number known up to a radius. What its middle counts is said by the [`Balls`] that it belongs
+/// A number known up to a radius. The unit of its middle is that of the [`Balls`] that it belongs
 /// to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ball {
-    /// In units of `2^-bits`.
+    /// The middle, in units of `2^-bits`.
     pub middle: Integer,
-    /// The radius, in the unit of the number.
+    /// The radius, in the unit of the number itself, not of the middle.
     pub radius: Bound,
 }
 
 impl Ball {
-    /// Zero and nothing else.
+    /// The exact zero, with radius zero.
     pub fn zero() -> Self {
         Self { middle: Integer::zero(), radius: Bound::ZERO }
     }
 
-    /// Whether it is zero and nothing else.
+    /// Whether the ball is the exact zero.
     pub fn is_zero(&self) -> bool {
         self.middle.is_zero() && self.radius == Bound::ZERO
     }
 }
 
-/// The balls with so many binary digits behind the point.
+/// The balls with a given number of binary digits after the point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Balls {
-    /// The digits; below a thousand, so that a unit is a normal double.
+    /// The number of digits; below a thousand, so that the unit is a normal double.
     pub bits: usize,
 }
 
@@ -51,7 +52,7 @@ impl Balls {
         Bound::power_of_two(i32::try_from(self.bits).map_or(i32::MIN, |bits| -bits))
     }
 
-    /// The size of a number of units.
+    /// Returns a bound of the absolute value of a number of units.
     fn size(self, units: &Integer) -> Bound {
         match units.is_zero() {
             true => Bound::ZERO,
@@ -61,12 +62,13 @@ impl Balls {
         }
     }
 
-    /// A number of units of `2^-2 bits` in units of `2^-bits`, with the radius that it has besides.
+    /// Rounds a number of units of `2^(-2 bits)`, such as a product of two middles, to units of
+    /// `2^-bits`; `radius` is added to the rounding error.
     pub fn rounded(self, units: &Integer, radius: Bound) -> Ball {
         self.shifted(units, self.bits, radius)
     }
 
-    /// `units * 2^-places`, rounded down.
+    /// Rounds `units * 2^-places` down; `radius` is added to the rounding error.
     fn shifted(self, units: &Integer, places: usize, radius: Bound) -> Ball {
         let exact = units.halvings().is_none_or(|halvings| halvings >= places);
         Ball {
@@ -94,7 +96,7 @@ impl Balls {
         Ball { middle, radius: if rest.is_zero() { Bound::ZERO } else { self.unit() } }
     }
 
-    /// A ball of other balls in these.
+    /// Converts a ball from another number of digits.
     pub fn converted(self, ball: &Ball, from: Self) -> Ball {
         let mut converted = self.dyadic(&ball.middle, from.bits);
         converted.radius += ball.radius;
@@ -106,18 +108,18 @@ impl Balls {
         Rational::new(ball.middle.clone(), Integer::from(1) << self.bits)
     }
 
-    /// The middle as a double, for what is not proved.
+    /// The middle as a double, for use outside of proofs.
     pub fn nearest(self, ball: &Ball) -> f64 {
         super::rational::to_f64(&self.middle(ball))
     }
 
-    /// An upper bound of the size of all numbers of the ball.
+    /// Returns an upper bound of the absolute values of all numbers in the ball.
     pub fn magnitude(self, ball: &Ball) -> Bound {
         self.size(&ball.middle) + ball.radius
     }
 
-    /// Every number of the ball is at least so far from zero; not positive where zero may be among
-    /// them.
+    /// Returns a lower bound of the absolute values of all numbers in the ball; not positive if
+    /// zero may be among them.
     pub fn distance_from_zero(self, ball: &Ball) -> f64 {
         let size = ball.middle.to_f64().map_or(0.0, f64::abs).next_down() * self.unit().value();
         match ball.radius == Bound::ZERO {
@@ -136,7 +138,7 @@ impl Balls {
         Ball { middle: &left.middle - &right.middle, radius: left.radius + right.radius }
     }
 
-    /// The radius of a product, rounding left out.
+    /// The radius of a product, before its middle is rounded.
     pub fn radius_of_product(self, left: &Ball, right: &Ball) -> Bound {
         let own = |ball: &Ball, other: &Ball| match ball.radius == Bound::ZERO {
             true => Bound::ZERO,
@@ -184,7 +186,8 @@ impl Balls {
         })
     }
 
-    /// The positive `degree`-th root; `None` if not all numbers are positive.
+    /// The positive `degree`-th root; `None` if a number in the ball may not be positive, or if
+    /// `degree` is zero.
     pub fn root(self, ball: &Ball, degree: u32) -> Option<Ball> {
         let distance = self.distance_from_zero(ball);
         if ball.middle.is_negative() || distance <= 0.0 || degree == 0 {
@@ -192,8 +195,8 @@ impl Balls {
         }
         let places = self.bits.checked_mul(degree as usize - 1)?;
         let middle = (&ball.middle << places).nth_root(degree);
-        // The derivative of the root r is r/(n x), and the root of the whole ball is at most that
-        // of its end.
+        // The derivative of the root r by x is r/(n x); both factors are bounded over the whole
+        // ball, r by the root of its upper end.
         let highest =
             (self.size(&middle) + self.unit()) * (Bound::exactly(1.0) + ball.radius.over(distance));
         let slope = highest.over(distance) / degree;
@@ -207,7 +210,7 @@ impl Balls {
             let mut power = self.divided(&self.integer(1), x);
             let mut sum = Ball::zero();
             let mut denominator = 1;
-            // The series alternates: what is left out is smaller than its first term.
+            // The series alternates: the remainder is smaller than the first term left out.
             while self.magnitude(&power) > self.unit() + self.unit() {
                 let term = self.divided(&power, denominator);
                 sum = match denominator % 4 {

@@ -1,4 +1,4 @@
-//! Floating-point numbers with as many binary digits as are asked for.
+//! Floating-point numbers of any chosen precision.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -8,12 +8,13 @@ use dashu_float::round::mode::HalfEven;
 
 use super::{Integer, Rational};
 
-/// A number of a chosen precision, which results keep. The exponent has no bounds that matter.
+/// A binary floating-point number of a chosen precision, which results keep. The range of its
+/// exponent is practically unbounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BigFloat(FBig<HalfEven, 2>);
 
 impl BigFloat {
-    /// The nearest number with so many binary digits.
+    /// The nearest number to a fraction, with `bits` binary digits.
     pub fn of_fraction(value: &Rational, bits: usize) -> Self {
         let of = |integer: &Integer| Self::of_integer(integer, bits);
         match value.is_integer() {
@@ -22,12 +23,12 @@ impl BigFloat {
         }
     }
 
-    /// The nearest number to a whole one.
+    /// The nearest number to an integer, with `bits` binary digits.
     pub fn of_integer(value: &Integer, bits: usize) -> Self {
         Self(FBig::from_parts(value.as_inner().clone(), 0).with_precision(bits).value())
     }
 
-    /// A double as it is; zero for what is not finite.
+    /// A double, exactly if `bits` suffices; zero if it is not finite.
     pub fn of_f64(value: f64, bits: usize) -> Self {
         let number = FBig::<HalfEven, 2>::try_from(value).unwrap_or(FBig::ZERO);
         Self(number.with_precision(bits).value())
@@ -63,8 +64,8 @@ impl BigFloat {
         self.0.repr().significand().is_zero()
     }
 
-    /// The binary exponent: the size is below `2^exponent` and at least half of that; `None` for
-    /// zero.
+    /// The binary exponent: the absolute value is below `2^exponent` and at least half of that;
+    /// `None` for zero.
     pub fn exponent(&self) -> Option<i64> {
         let repr = self.0.repr();
         (!self.is_zero()).then(|| repr.exponent() as i64 + repr.digits() as i64)
@@ -76,7 +77,7 @@ impl BigFloat {
         Self(self.0.clone() << exponent as isize)
     }
 
-    /// The size.
+    /// The absolute value.
     #[must_use]
     pub fn abs(&self) -> Self {
         match self < &Self::zero(self.bits()) {
@@ -85,7 +86,7 @@ impl BigFloat {
         }
     }
 
-    /// The quotient; zero over zero, and over zero anything, is zero.
+    /// The quotient; anything over zero is zero.
     fn over(&self, divisor: &Self) -> Self {
         match divisor.is_zero() {
             true => Self::zero(self.bits().max(divisor.bits())),
@@ -93,7 +94,7 @@ impl BigFloat {
         }
     }
 
-    /// The square root of a number that is not negative.
+    /// The square root; `None` for a negative number.
     pub fn sqrt(&self) -> Option<Self> {
         (self >= &Self::zero(self.bits())).then(|| Self(self.0.sqrt()))
     }

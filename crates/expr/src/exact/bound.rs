@@ -1,16 +1,16 @@
-//! Upper bounds of sizes, as doubles that are rounded up.
+//! Upper bounds of absolute values, as doubles that are rounded up.
 //!
-//! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products
-//! and quotients. An operation of IEEE 754 is within half a unit in the last place, so that the
-//! next double above what it gives is a bound; NaN bounds nothing and becomes infinity, which no
-//! comparison with a finite number takes for small.
+//! In: numbers, none negative. Out: doubles that are certainly no smaller than their sums, products
+//! and quotients. The error of an IEEE 754 operation is at most half a unit in the last place, so
+//! that the next double above its result is a bound. NaN becomes infinity, the bound of an unknown
+//! number.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul};
 
 use super::rational::{Rational, from_f64, to_f64};
 
-/// An upper bound of something that is not negative; infinity where nothing is known.
+/// An upper bound of a number that is not negative; infinity if nothing is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Bound(f64);
 
@@ -20,7 +20,7 @@ impl Bound {
     /// The bound of an unknown size.
     pub const UNKNOWN: Self = Self(f64::INFINITY);
 
-    /// A double that is a bound as it is: exact, or rounded up already.
+    /// The bound equal to a double that is exact, or rounded up already.
     pub const fn exactly(value: f64) -> Self {
         match value >= 0.0 {
             true => Self(value),
@@ -28,7 +28,7 @@ impl Bound {
         }
     }
 
-    /// A bound of a number of which this is the nearest double.
+    /// A bound of the number whose nearest double is given.
     pub const fn of_nearest(value: f64) -> Self {
         match value >= 0.0 {
             true => Self(value.next_up()),
@@ -36,7 +36,7 @@ impl Bound {
         }
     }
 
-    /// `2^exponent`, for exponents of normal doubles.
+    /// The bound `2^exponent`; unknown beyond the exponents of normal doubles.
     pub fn power_of_two(exponent: i32) -> Self {
         match (f64::MIN_EXP..f64::MAX_EXP).contains(&exponent) {
             true => Self::exactly(2.0_f64.powi(exponent)),
@@ -44,7 +44,7 @@ impl Bound {
         }
     }
 
-    /// A bound of the size of a fraction.
+    /// A bound of the absolute value of a fraction.
     pub fn of_fraction(value: &Rational) -> Self {
         let nearest = to_f64(value).abs();
         match from_f64(nearest) {
@@ -73,12 +73,12 @@ impl Bound {
         }
     }
 
-    /// A double that is certainly no larger than `1 - bound`; negative where that may be.
+    /// Returns a double that is certainly no larger than `1 - bound`; it may be negative.
     pub const fn below_complement(self) -> f64 {
         (1.0 - self.0).next_down()
     }
 
-    /// The quotient by a lower bound of the divisor; nothing is known where that is not positive.
+    /// The quotient by a lower bound of the divisor; unknown if that is not positive.
     #[must_use]
     pub fn over(self, divisor: f64) -> Self {
         match (self == Self::ZERO, divisor > 0.0) {

@@ -1,4 +1,4 @@
-//! Integers of any length; those of up to two machine words need no memory of their own.
+//! Integers of any length; those of up to two machine words need no memory on the heap.
 
 use std::fmt;
 use std::iter::{Product, Sum};
@@ -13,13 +13,13 @@ use num_traits::{Num, One, Pow, Signed, ToPrimitive, Zero};
 
 /// An integer of any length.
 ///
-/// A type of its own about that of `dashu-int`, whose `num_integer::Integer` rounds quotients
-/// between -1 and 0 up: fractions over it would not be in order.
+/// The type wraps that of `dashu-int`, whose `num_integer::Integer` rounds quotients between -1 and
+/// 0 up: fractions over it would be ordered wrongly.
 #[derive(Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Integer(IBig);
 
 impl Integer {
-    /// As the numbers of that crate have it.
+    /// The integer of the underlying crate.
     pub(super) fn as_inner(&self) -> &IBig {
         &self.0
     }
@@ -29,12 +29,12 @@ impl Integer {
         Self(value)
     }
 
-    /// The number of binary digits of the absolute value, none for zero.
+    /// The number of binary digits of the absolute value; 0 for zero.
     pub fn bits(&self) -> u64 {
         self.0.bit_len() as u64
     }
 
-    /// Whether the integer has no half.
+    /// Whether the integer is odd.
     pub fn is_odd(&self) -> bool {
         self.0.bit(0)
     }
@@ -49,6 +49,12 @@ impl Integer {
         self.0.trailing_zeros()
     }
 
+    /// Whether the absolute value is a power of two, as most denominators are: what it has in common
+    /// with another integer is then read off both.
+    fn is_power_of_two(&self) -> bool {
+        self.halvings().is_some_and(|halvings| halvings as u64 + 1 == self.bits())
+    }
+
     /// The absolute value in words, the lowest first.
     pub(crate) fn to_words(&self) -> Vec<u64> {
         let (_, magnitude) = self.0.clone().into_parts();
@@ -58,7 +64,7 @@ impl Integer {
         bytes.chunks(8).map(word).collect()
     }
 
-    /// The positive number of these words, the lowest first.
+    /// The number, not negative, with these words, the lowest first.
     pub(crate) fn from_words(words: &[u64]) -> Self {
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         Self(dashu_int::UBig::from_le_bytes(&bytes).into())
@@ -67,7 +73,7 @@ impl Integer {
     /// The `degree`-th root, rounded towards zero.
     ///
     /// # Panics
-    /// An even root of a negative number, or `degree` zero.
+    /// If an even root is taken of a negative number, or `degree` is zero.
     pub fn nth_root(&self, degree: u32) -> Self {
         Self(self.0.nth_root(degree as usize))
     }
@@ -79,19 +85,19 @@ impl fmt::Display for Integer {
     }
 }
 
-/// All digits: the inner type would leave out those in the middle.
+/// Prints all digits; the inner type would leave out those in the middle.
 impl fmt::Debug for Integer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-/// The text is not an integer.
+/// The error of a text that is not an integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no integer")]
 pub struct ParseIntegerError;
 
-/// Decimal digits after at most one sign.
+/// Reads decimal digits after at most one sign.
 impl FromStr for Integer {
     type Err = ParseIntegerError;
 
@@ -198,7 +204,7 @@ impl Shl<usize> for &Integer {
     }
 }
 
-/// Rounded down.
+/// Shifts and rounds down.
 impl Shr<usize> for Integer {
     type Output = Self;
 
@@ -244,7 +250,7 @@ impl Num for Integer {
 
     fn from_str_radix(text: &str, radix: u32) -> Result<Self, ParseIntegerError> {
         let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
-        // Underscores between the digits would do as well.
+        // The inner type also accepts underscores between the digits.
         let only_digits =
             (2..=36).contains(&radix) && digits.chars().all(|digit| digit.is_digit(radix));
         if digits.is_empty() || !only_digits {
@@ -309,7 +315,7 @@ impl ToPrimitive for Integer {
         u128::try_from(&self.0).ok()
     }
 
-    /// The nearest double, infinite beyond their range.
+    /// The nearest double; infinite beyond the range of doubles.
     fn to_f64(&self) -> Option<f64> {
         Some(self.0.to_f64().value())
     }
@@ -334,9 +340,13 @@ impl num_integer::Integer for Integer {
     }
 
     fn gcd(&self, other: &Self) -> Self {
-        // The inner type refuses two zeros.
+        // The inner type panics if both are zero.
         if self.is_zero() {
             return other.abs();
+        }
+        if self.is_power_of_two() || other.is_power_of_two() {
+            let shared = [self, other].into_iter().filter_map(Self::halvings).min();
+            return Self::one() << shared.unwrap_or(0);
         }
         Self((&self.0).gcd(&other.0).into())
     }

@@ -6,13 +6,14 @@
 //!
 //! [`Rational`] is the coefficient that is printed; [`Polynomial`] carries the symbols; [`Ring`] is
 //! what a derivation asks of its coefficients, so that one derivation serves exact numbers,
-//! symbols, floating point, and rings that are chosen at run time. Where rounding cannot be left
-//! out, `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that
-//! rounding leaves possible; their sizes are `Bound`s, rounded up.
+//! symbols, floating point, and rings that are chosen at run time. Where rounding cannot be
+//! avoided, `BigFloat` rounds at any chosen precision, and a `Ball` contains every number that
+//! rounding leaves possible; upper bounds of absolute values are `Bound`s, rounded up.
 
 pub mod ball;
 pub mod big_float;
 pub mod bound;
+mod dense_product;
 pub(crate) mod integer;
 pub mod polynomial;
 pub mod rational;

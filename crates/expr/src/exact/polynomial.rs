@@ -1,8 +1,8 @@
 //! Sparse polynomials in named symbols, with exponents of either sign.
 //!
-//! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is one of these: terms in a fixed order,
-//! no zero among them, so that equal polynomials are equal values. Products cost (number of
-//! terms)^2 coefficient products.
+//! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is such a polynomial: its terms have a
+//! fixed order, and none is zero, so that equal polynomials are equal values. Products cost (number
+//! of terms)^2 coefficient products, of whole numbers where the exponents fill a box.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -11,6 +11,7 @@ use std::ops::Add;
 
 use num_traits::Zero;
 
+use super::dense_product::dense_product;
 use super::rational::{Integer, Rational, to_f64};
 use super::ring::{NotInvertible, Number, Rationals, Ring};
 use super::scaled::Scaled;
@@ -48,7 +49,7 @@ impl Monomial {
         self.0.iter().map(|factor| i64::from(factor.1)).sum()
     }
 
-    /// The product, exponents added.
+    /// The product: exponents are added.
     pub fn product(&self, other: &Self) -> Self {
         let mut factors = Vec::with_capacity(self.0.len() + other.0.len());
         let (mut left, mut right) = (self.0.iter().peekable(), other.0.iter().peekable());
@@ -86,7 +87,7 @@ impl Monomial {
         Self(self.0.iter().map(|&(symbol, power)| (symbol, power * exponent)).collect())
     }
 
-    /// This monomial with `symbol` taken out.
+    /// The monomial without the power of `symbol`.
     pub fn without(&self, symbol: Symbol) -> Self {
         Self(self.0.iter().copied().filter(|factor| factor.0 != symbol).collect())
     }
@@ -125,10 +126,10 @@ impl PartialOrd for Monomial {
     }
 }
 
-/// A sum of monomials with coefficients `K`; [`Rational`] unless said otherwise.
+/// A sum of monomials with coefficients of type `K`, by default [`Rational`].
 ///
-/// The arithmetic is that of the ring [`Polynomials`]. Where the coefficients are [`Number`]s,
-/// whose ring needs no naming, it stands here as well.
+/// The arithmetic is that of the ring [`Polynomials`]. For coefficients that are [`Number`]s, whose
+/// ring follows from their type, this type has it as methods of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial<K = Rational> {
     terms: BTreeMap<Monomial, K>,
@@ -154,7 +155,7 @@ impl<K> Polynomial<K> {
         self.terms.iter()
     }
 
-    /// The only term, where there is exactly one.
+    /// The only term; `None` if there is not exactly one.
     pub fn single_term(&self) -> Option<(&Monomial, &K)> {
         let mut terms = self.terms.iter();
         terms.next().filter(|_| self.terms.len() == 1)
@@ -241,8 +242,8 @@ impl<K: Number> Polynomial<K> {
         ring_of::<K>().product(self, other)
     }
 
-    /// `unit` and `integer` with `self * unit = integer`, where this is a single term that has
-    /// them: see [`Ring::inverse`].
+    /// The pair `unit` and `integer` with `self * unit = integer`; `None` unless this is a single
+    /// term that has such a pair: see [`Ring::inverse`].
     pub fn inverse(&self) -> Option<(Self, Integer)> {
         ring_of::<K>().inverse(self)
     }
@@ -276,8 +277,8 @@ impl<K: Number> Polynomial<K> {
         result
     }
 
-    /// `symbol` replaced by `value`, whose negative powers exist only where it is a single
-    /// invertible term.
+    /// The polynomial with `symbol` replaced by `value`, whose negative powers exist only if it is
+    /// a single invertible term.
     ///
     /// `None` if a negative power would be needed and does not exist.
     pub fn substitute(&self, symbol: Symbol, value: &Self) -> Option<Self> {
@@ -359,8 +360,8 @@ impl<R: Ring> Polynomials<R> {
 }
 
 impl Polynomial<Rational> {
-    /// The exact square root, where it is a single term: `4*k^2` gives `2*k`. Symbols count as
-    /// positive.
+    /// The exact square root of a single term: `4*k^2` gives `2*k`; `None` if there is none.
+    /// Symbols count as positive.
     pub fn single_term_root(&self) -> Option<Self> {
         let (monomial, coefficient) = self.single_term()?;
         let half = super::rational::power(coefficient, &super::rational::ratio(1, 2))?;
@@ -378,7 +379,7 @@ impl Polynomial<Rational> {
         self.evaluate_with_size(value_of).map(|(sum, _)| sum)
     }
 
-    /// The value, and the sum of the sizes of its terms: what they cancel to, beside what they are.
+    /// The value, and the sum of the absolute values of its terms, which shows how far they cancel.
     ///
     /// # Errors
     /// The first symbol without a number.
@@ -401,7 +402,8 @@ impl Polynomial<Rational> {
         if in_range {
             return Ok((sum, size));
         }
-        // A factor or a product on the way is beyond the range of doubles, or zero.
+        // A factor or an intermediate product is beyond the range of normal doubles, or zero:
+        // numbers with an exponent of their own keep all digits.
         let term = |(monomial, coefficient): (&Monomial, &Rational)| {
             let mut factors = monomial.0.iter().map(|&(symbol, exponent)| {
                 let value = value_of(symbol).ok_or(symbol)?;
@@ -420,7 +422,7 @@ impl Polynomial<Rational> {
         Ok((sum, Scaled::sum(&terms)))
     }
 
-    /// The number, where no symbol occurs.
+    /// The number; `None` if a symbol occurs.
     pub fn as_number(&self) -> Option<Rational> {
         match self.terms.len() {
             0 => Some(Rational::zero()),
@@ -498,6 +500,9 @@ impl<R: Ring> Ring for Polynomials<R> {
         element.terms.values_mut().for_each(|coefficient| self.0.negate(coefficient));
     }
     fn product(&self, left: &Self::Element, right: &Self::Element) -> Self::Element {
+        if let Some(product) = dense_product(self, left, right) {
+            return product;
+        }
         let mut result = self.zero();
         for (m, a) in &left.terms {
             for (n, b) in &right.terms {
@@ -542,7 +547,7 @@ impl<R: Ring> Ring for Polynomials<R> {
 }
 
 impl<R: Ring> Polynomials<R> {
-    /// Removes terms whose coefficient a factor made zero: zero itself, or a multiple of a prime.
+    /// Removes terms whose coefficient is certainly zero after a multiplication.
     fn prune(&self, element: &mut Polynomial<R::Element>) {
         element.terms.retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
     }

@@ -16,8 +16,8 @@ pub fn ratio(numerator: i64, denominator: i64) -> Rational {
     Rational::new(numerator.into(), denominator.into())
 }
 
-/// `left right`, where what one has in common with the other is looked for and nothing else: most
-/// often one of them is short.
+/// Returns `left * right`. Common factors are searched only between the numerator of one and the
+/// denominator of the other; most often one of them is short.
 ///
 /// Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998,
 /// section 4.5.1, for this and the sum.
@@ -33,8 +33,8 @@ pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
     )
 }
 
-/// `left + right`: what the numerator has in common with the denominator is in what the
-/// denominators have in common.
+/// Returns `left + right`. A common factor of the numerator and the denominator of the sum divides
+/// the greatest common divisor of the two denominators.
 pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     if left.is_zero() || right.is_zero() {
         return if left.is_zero() { right.clone() } else { left.clone() };
@@ -47,12 +47,12 @@ pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     Rational::new_raw(quotient(&numerator, &shared), denominator)
 }
 
-/// An exact quotient.
+/// Returns a quotient that is known to be exact.
 fn quotient(number: &Integer, divisor: &Integer) -> Integer {
     if divisor.is_one() { number.clone() } else { number / divisor }
 }
 
-/// The nearest `f64`; infinite when it is out of range.
+/// Returns the nearest `f64`; infinite beyond its range.
 pub fn to_f64(value: &Rational) -> f64 {
     /// Integers up to this size are doubles, and the quotient of two of them is rounded once.
     const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
@@ -80,14 +80,15 @@ fn nearest(value: &Rational) -> f64 {
     if size < LOWEST - 1 {
         return sign * 0.0;
     }
-    // Two digits more than a mantissa has, or three, or fewer where the double itself has fewer.
+    // The quotient gets two or three digits more than a mantissa has, or fewer for a subnormal
+    // double.
     let last = (size - i64::from(f64::MANTISSA_DIGITS) - 2).max(LOWEST - 2);
     let (numerator, denominator) = match usize::try_from(last) {
         Ok(up) => (value.numer().abs(), value.denom() << up),
         Err(_) => (value.numer().abs() << last.unsigned_abs() as usize, value.denom().clone()),
     };
     let (quotient, remainder) = numerator.div_rem(&denominator);
-    // At most 56 digits, and whether anything is below them.
+    // The quotient has at most 56 digits; its last bit also records whether a remainder is left.
     let quotient = quotient.to_u64().unwrap_or(u64::MAX) | u64::from(!remainder.is_zero());
     // Rounded to the digits that the double has there, then scaled without a further rounding.
     let dropped = (i64::from(u64::BITS - quotient.leading_zeros())
@@ -98,18 +99,18 @@ fn nearest(value: &Rational) -> f64 {
     let up = rest > unit / 2 || (rest == unit / 2 && kept % 2 == 1);
     let mantissa = (kept + u64::from(up)) as f64;
     let exponent = (last + dropped) as i32;
-    // In two steps: the first power alone may be out of range where the product is not.
+    // The power is split in two: it may be out of range by itself while the product is not.
     sign * mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
 }
 
-/// The fraction that a finite double is; `None` for the others.
+/// Returns the exact value of a finite double; `None` for infinities and NaN.
 pub fn from_f64(value: f64) -> Option<Rational> {
     if !value.is_finite() {
         return None;
     }
     let bits = value.to_bits();
     let (biased, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
-    // Subnormal numbers have no leading one, and the exponent of the smallest normal ones.
+    // Subnormal numbers have no leading one, and the exponent of the smallest normal numbers.
     let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
     let exponent = biased.max(1) as i32 - 1075;
     let mantissa = Integer::from(mantissa);
@@ -120,8 +121,8 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     Some(if value < 0.0 { -size } else { size })
 }
 
-/// The first convergent of the continued fraction of a value that is as near to it as this, which
-/// is mostly a short one.
+/// Returns the first convergent of the continued fraction of `value` that is within `tolerance` of
+/// it: mostly a short fraction.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -146,7 +147,7 @@ pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
     }
 }
 
-/// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.
+/// Returns the exact `p/q`-th power if it is a fraction: `(4/9)^(1/2) = 2/3`.
 ///
 /// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None` if
 /// the result is irrational, not real, a division by zero, or longer than a million bits.
@@ -183,9 +184,9 @@ fn exact_root(value: &Rational, degree: u32) -> Option<Rational> {
     Some(Rational::new_raw(root(value.numer())?, root(value.denom())?))
 }
 
-/// Whether a number leaves the remainder of a power when divided by a prime `p = k degree + 1`: one
-/// in `degree` of all others does (Euler's criterion), and no root of a long number has to be taken
-/// to see that it has none.
+/// Whether a number may be a `degree`-th power, by its remainder modulo a prime `p = k degree + 1`
+/// (Euler's criterion). Only one in `degree` of all other numbers passes, so for most of them no
+/// long root has to be computed to see that there is none.
 fn may_be_power(value: &Integer, degree: u32) -> bool {
     const LARGEST: u32 = 64;
     if !(2..=LARGEST).contains(&degree) {

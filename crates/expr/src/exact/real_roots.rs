@@ -3,10 +3,10 @@
 //! Reference: D. E. Knuth, *The Art of Computer Programming* 2, 3rd ed., section 4.6.1 (greatest
 //! common divisors) and exercise 4.6.1-22 (Sturm's theorem).
 //!
-//! Roots that occur once are told from others by `gcd(p, p')`, fractions are found as quotients of
-//! divisors, and what is left is isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`,
-//! `V` the number of sign changes of the chain. A polynomial is the list of its coefficients,
-//! lowest first.
+//! `gcd(p, p')` separates simple from multiple roots, rational roots are found as quotients of
+//! divisors, and the others are isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`,
+//! where `V` is the number of sign changes of the chain. A polynomial is the list of its
+//! coefficients, lowest first.
 
 use std::cmp::Ordering;
 
@@ -21,12 +21,12 @@ use super::{Integer, Rational};
 pub struct RealRoot {
     /// The root, rounded.
     pub value: f64,
-    /// The root, where it was found to be a fraction.
+    /// The root as a fraction; `None` if it was not found to be one.
     pub exact: Option<Rational>,
-    /// A polynomial without multiple roots that has this root, and no fraction unless the root is
-    /// one.
+    /// A polynomial without multiple roots that has this root, and no rational root unless this one
+    /// is rational.
     pub factor: Vec<Rational>,
-    /// Whether the polynomial asked for has it once, so that its slope there is not zero.
+    /// Whether it is a simple root of the given polynomial, whose slope there is then not zero.
     pub simple: bool,
 }
 
@@ -169,7 +169,8 @@ fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
     polynomial
 }
 
-/// Whole numbers without common divisor in the ratio of the coefficients, with their signs.
+/// Returns the primitive polynomial: whole numbers without common divisor in the ratio of the
+/// coefficients, with the same signs.
 fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
     let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
     without_content(polynomial.iter().map(|c| (c * &common).to_integer()).collect())
@@ -183,8 +184,8 @@ fn without_content(mut whole: Vec<Integer>) -> Vec<Integer> {
     whole.iter().map(|c| c / &content).collect()
 }
 
-/// The sign of a polynomial at a fraction: of its value times a power of the denominator, so that
-/// no fraction is reduced.
+/// Returns the sign of a polynomial at a fraction, computed from its value times a power of the
+/// denominator, so that no fraction has to be reduced.
 fn sign_at(whole: &[Integer], x: &Rational) -> Ordering {
     let mut power = Integer::one();
     let mut sum = Integer::zero();
@@ -195,8 +196,8 @@ fn sign_at(whole: &[Integer], x: &Rational) -> Ordering {
     sum.cmp(&Integer::zero())
 }
 
-/// The positive fractions among the roots of a polynomial without multiple roots, as far as
-/// divisors are found by trial.
+/// Returns the positive rational roots of a polynomial without multiple roots, as far as divisors
+/// are found by trial division.
 fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     let whole = primitive(polynomial);
     let (Some(lowest), Some(highest)) = (whole.iter().find(|c| !c.is_zero()), whole.last()) else {
@@ -208,7 +209,7 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     for q in divisors(highest) {
         let inverse = power_modulo_prime(q, PRIME - 2);
         for &p in numerators.iter().filter(|p| p.gcd(&q).is_one()) {
-            // A root is a root modulo a prime as well, and that is quickly tested.
+            // A root is a root modulo a prime as well, which is tested first because it is cheap.
             let x = times_modulo_prime(p, inverse);
             let vanishes =
                 residues.iter().rev().fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);
@@ -221,7 +222,8 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     roots
 }
 
-/// Above all divisors that are tried, and small enough that two residues add up in 64 bits.
+/// A prime above all divisors that are tried, and small enough that the sum of two residues fits 64
+/// bits.
 const PRIME: u64 = (1 << 61) - 1;
 
 fn modulo_prime(number: &Integer) -> u64 {
@@ -245,7 +247,8 @@ fn power_modulo_prime(base: u64, mut exponent: u64) -> u64 {
     power
 }
 
-/// All positive divisors of a number small enough for trial division; of any other, one alone.
+/// Returns all positive divisors of a number small enough for trial division; for any other number
+/// only 1.
 fn divisors(number: &Integer) -> Vec<u64> {
     let Some(number) = number.abs().to_u64().filter(|number| *number < 1 << 40) else {
         return vec![1];
@@ -279,7 +282,7 @@ fn pseudo_remainder(dividend: &[Integer], divisor: &[Integer]) -> Vec<Integer> {
     without_content(rest)
 }
 
-/// The positive roots of a polynomial without multiple roots, rounded.
+/// Returns the positive roots of a polynomial without multiple roots, rounded, by Sturm's chain.
 fn irrational(polynomial: &[Rational]) -> Vec<f64> {
     let Some((leading, rest)) = polynomial.split_last().filter(|(_, rest)| !rest.is_empty()) else {
         return vec![];
@@ -318,8 +321,8 @@ fn irrational(polynomial: &[Rational]) -> Vec<f64> {
     roots
 }
 
-/// The only root in `(low, high]`, where the polynomial changes its sign, between neighbouring
-/// doubles.
+/// Returns the only root in `(low, high]`, at which the polynomial changes its sign, by bisection
+/// down to neighbouring doubles.
 fn only_root(whole: &[Integer], mut low: Rational, mut high: Rational) -> f64 {
     let beyond = sign_at(whole, &high);
     if beyond.is_eq() {

@@ -1,9 +1,9 @@
 //! The arithmetic that a derivation needs of its coefficients.
 //!
-//! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, and
-//! its elements know nothing of it: what the arithmetic needs to know beside them, a prime or a
-//! working precision chosen at run time, is a field of the ring, kept once for a whole series. The
-//! exact numbers need nothing of the kind, and their rings are empty structs.
+//! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, to
+//! which its elements do not refer: any parameter of the arithmetic, such as a prime or a working
+//! precision chosen at run time, is a field of the ring, kept once for a whole series. The exact
+//! numbers have no such parameter, and their rings are empty structs.
 //!
 //! | ring | its elements | divides by integers |
 //! | --- | --- | --- |
@@ -19,13 +19,12 @@
 //!
 //! A field may still be unable to divide by some integers, as residues are by multiples of their
 //! prime. Such a divisor stays in the denominator of the series too, so that no operation on series
-//! fails or gives a wrong value; `FourierSeries::divided` tells of it, and the elimination of
-//! secular terms, which asks after every order, ends with that as its error.
+//! fails or gives a wrong value; `FourierSeries::divided` reports it, and the elimination of
+//! secular terms, which asks after every order, ends with it as its error.
 //!
-//! Nothing is left out of a series but what is [certainly zero](Ring::is_certainly_zero). An
-//! interval that contains zero stays, and so does a residue that came out as zero: it may be that
-//! of a multiple of the prime, and left out before a division by the prime it would be lost without
-//! a word.
+//! A term is left out of a series only if it is [certainly zero](Ring::is_certainly_zero). An
+//! interval that contains zero stays, and so does a residue of zero: it may be that of a multiple
+//! of the prime, which would be lost silently if it were left out before a division by the prime.
 
 use std::fmt::Debug;
 
@@ -44,14 +43,14 @@ pub struct NotInvertible {
     pub ring: String,
 }
 
-/// A commutative ring with one, seen as the coefficients of a series. The laws of a ring hold as
-/// far as its elements are exact.
+/// A commutative ring with one, whose elements are the coefficients of a series. The laws of a ring
+/// hold as far as its elements are exact.
 pub trait Ring: Clone + Debug + PartialEq {
     /// A coefficient.
     type Element: Clone + Debug + PartialEq + 'static;
 
-    /// Whether [`Ring::divide`] is how elements are divided by integers; otherwise the series keeps
-    /// a denominator and [`Ring::reduce`] finds what it has in common with the elements.
+    /// Whether [`Ring::divide`] divides elements by integers; otherwise the series keeps a
+    /// denominator, and [`Ring::reduce`] cancels its common factors with the elements.
     const FIELD: bool;
 
     /// Zero.
@@ -59,8 +58,8 @@ pub trait Ring: Clone + Debug + PartialEq {
     /// The image of an integer.
     fn integer(&self, value: i64) -> Self::Element;
     /// Whether the number that the element stands for can only be zero, so that it need not be
-    /// kept. [`Ring::zero`] is so, and its products are; an interval that contains other numbers
-    /// and a residue of some multiple of the prime are not.
+    /// kept. This is true of [`Ring::zero`] and its products, and false of an interval that
+    /// contains other numbers and of the residue of a multiple of the prime.
     fn is_certainly_zero(&self, element: &Self::Element) -> bool;
     /// Whether nothing shows that the number is not zero: the same as [`Ring::is_certainly_zero`]
     /// where elements are exact.
@@ -69,7 +68,7 @@ pub trait Ring: Clone + Debug + PartialEq {
     }
     /// `sum += term`, in place.
     fn accumulate(&self, sum: &mut Self::Element, term: &Self::Element);
-    /// As [`Ring::accumulate`] with a term that is not needed any more.
+    /// `sum += term` as by [`Ring::accumulate`], for a term that is not needed any more.
     fn add(&self, sum: &mut Self::Element, term: Self::Element) {
         self.accumulate(sum, &term);
     }
@@ -79,7 +78,7 @@ pub trait Ring: Clone + Debug + PartialEq {
     fn product(&self, left: &Self::Element, right: &Self::Element) -> Self::Element;
     /// `element *= factor`.
     fn scale(&self, element: &mut Self::Element, factor: i64);
-    /// `element *= factor` where the factor may be of any length: the ratio of two denominators.
+    /// `element *= factor` with a factor of any length, such as the ratio of two denominators.
     fn scale_by(&self, element: &mut Self::Element, factor: &Integer);
     /// Divides all of `elements` by `divisor`, which is not zero.
     ///
@@ -90,8 +89,8 @@ pub trait Ring: Clone + Debug + PartialEq {
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
     ) -> Result<(), NotInvertible>;
-    /// Divides `elements` and their `denominator`, which is positive, by what they have in common.
-    /// A field has nothing to do.
+    /// Divides `elements` and their `denominator`, which is positive, by their greatest common
+    /// divisor. A field does nothing.
     fn reduce<'a>(
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
@@ -99,12 +98,27 @@ pub trait Ring: Clone + Debug + PartialEq {
     ) {
         let _ = (elements.into_iter(), denominator);
     }
-    /// `unit` and `integer` with `element * unit = integer`, where the element has such a pair: the
-    /// step from a linear equation `element * x = b` to `x = b * unit / integer`.
+    /// The pair `unit` and `integer` with `element * unit = integer`; `None` if the element has no
+    /// such pair: the step from a linear equation `element * x = b` to `x = b * unit / integer`.
     fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)>;
+    /// The numerators of elements over one positive common denominator; `None` if elements are
+    /// neither whole numbers nor fractions.
+    fn numerators<'a>(
+        &self,
+        elements: impl Iterator<Item = &'a Self::Element>,
+    ) -> Option<(Vec<Integer>, Integer)> {
+        let _ = elements;
+        None
+    }
+    /// The element with this numerator over a product of denominators of [`Ring::numerators`];
+    /// `None` if the ring has none.
+    fn fraction(&self, numerator: Integer, denominator: &Integer) -> Option<Self::Element> {
+        let _ = (numerator, denominator);
+        None
+    }
 }
 
-/// An element whose ring has nothing to choose, so that it need not be named.
+/// An element whose ring has no parameters, so that its type determines the ring.
 pub trait Number: Clone + Debug + PartialEq + 'static {
     /// The ring of such elements.
     type Ring: Ring<Element = Self> + Default;
@@ -199,6 +213,15 @@ impl Ring for Integers {
     fn inverse(&self, element: &Integer) -> Option<(Integer, Integer)> {
         (!element.is_zero()).then(|| (Integer::one(), element.clone()))
     }
+    fn numerators<'a>(
+        &self,
+        elements: impl Iterator<Item = &'a Integer>,
+    ) -> Option<(Vec<Integer>, Integer)> {
+        Some((elements.cloned().collect(), Integer::one()))
+    }
+    fn fraction(&self, numerator: Integer, denominator: &Integer) -> Option<Integer> {
+        denominator.is_one().then_some(numerator)
+    }
 }
 
 impl Ring for Rationals {
@@ -240,6 +263,22 @@ impl Ring for Rationals {
     }
     fn inverse(&self, element: &Rational) -> Option<(Rational, Integer)> {
         (!element.is_zero()).then(|| (element.recip(), Integer::one()))
+    }
+    fn numerators<'a>(
+        &self,
+        elements: impl Iterator<Item = &'a Rational>,
+    ) -> Option<(Vec<Integer>, Integer)> {
+        let elements: Vec<&Rational> = elements.collect();
+        let denominator =
+            elements.iter().fold(Integer::one(), |common, element| match element.denom() {
+                denominator if denominator.is_one() || *denominator == common => common,
+                denominator => common.lcm(denominator),
+            });
+        let numerator = |element: &&Rational| element.numer() * (&denominator / element.denom());
+        Some((elements.iter().map(numerator).collect(), denominator))
+    }
+    fn fraction(&self, numerator: Integer, denominator: &Integer) -> Option<Rational> {
+        Some(Rational::new(numerator, denominator.clone()))
     }
 }
 

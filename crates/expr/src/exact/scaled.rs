@@ -15,7 +15,7 @@ pub struct Scaled {
 }
 
 impl Scaled {
-    /// The number as it is.
+    /// Returns the number equal to a double.
     pub fn new(value: f64) -> Self {
         // Subnormal numbers have no exponent of their own.
         let (value, shift) = if value.abs() < f64::MIN_POSITIVE {
@@ -47,7 +47,7 @@ impl Scaled {
         }
     }
 
-    /// The sum, infinite or zero where it is beyond the range of doubles.
+    /// Returns the sum as a double, infinite or zero if it is beyond their range.
     pub fn sum(terms: &[Self]) -> f64 {
         let used = terms.iter().filter(|term| term.mantissa != 0.0);
         let unit = used.map(|term| term.exponent).max().unwrap_or(0);
@@ -81,17 +81,17 @@ impl Scaled {
         Self { exponent: inverse.exponent - self.exponent, ..inverse }
     }
 
-    /// The number in units of `2^unit`.
+    /// Returns the number in units of `2^unit`, as a double.
     pub fn in_units(self, unit: i64) -> f64 {
         if self.mantissa == 0.0 {
             return 0.0;
         }
         let exponent = (self.exponent - unit).clamp(-2200, 2200) as i32;
-        // In two steps: the first power alone may underflow where the product does not.
+        // The power is split in two: it may underflow by itself while the product does not.
         self.mantissa * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
     }
 
-    /// The natural logarithm of its size.
+    /// The natural logarithm of the absolute value.
     pub fn logarithm(self) -> f64 {
         self.mantissa.abs().ln() + self.exponent as f64 * std::f64::consts::LN_2
     }

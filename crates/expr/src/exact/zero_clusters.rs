@@ -1,5 +1,5 @@
-//! Zeros of a long real polynomial on the positive axis and closely beside it, each counted for
-//! certain.
+//! Zeros of a long real polynomial on the positive axis and close to it, with a proof of their
+//! number.
 //!
 //! Reference: M. Marden, *Geometry of Polynomials*, 2nd ed., AMS 1966, section 28 (Pellet's
 //! theorem).
@@ -8,19 +8,19 @@
 //! p(a + t) = d_0 + d_1 t + ... + d_n t^n,    |d_k| r^k > sum_(i != k) |d_i| r^i :   k zeros within r of a
 //! ```
 //!
-//! The axis is walked along from zero: by steps within which nothing vanishes (k = 0), and across
-//! discs that hold one zero, which is real then, or two, which are real or conjugate.
+//! The search walks along the axis from zero: by steps within discs without zeros (k = 0), and
+//! across discs that hold one zero, which is then real, or two, which are both real or conjugate.
 
 use super::big_float::BigFloat;
 
-/// One or two zeros in a disc about a place on the axis, and no other there.
+/// One or two zeros in a disc about a point of the axis that contains no other zero.
 #[derive(Clone, Debug)]
 pub struct Cluster {
-    /// The zero, or the middle of two: where the slope vanishes between them.
+    /// The zero, or the middle of two zeros: the point between them at which the slope vanishes.
     pub place: BigFloat,
     /// One or two.
     pub count: usize,
-    /// Distance of two zeros from their middle, over the size of that; positive if they are
+    /// Distance of two zeros from their middle, divided by the middle; positive if they are
     /// conjugate, negative if they are real.
     pub distance: f64,
 }
@@ -32,8 +32,8 @@ pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     /// Largest number of steps, far more than any search needs: some ten for each zero, wherever it
     /// is.
     const MOST_STEPS: usize = 20_000;
-    /// A step of a smaller share of the place looks for what is in the way; one of less than the
-    /// second is none.
+    /// Logarithms to base two of a step over its place: below the first the search looks for a
+    /// cluster ahead, below the second it has failed.
     const SHORT: f64 = -4.0;
     const NONE: f64 = -200.0;
     let walk = ClusterSearch::new(polynomial)?;
@@ -49,11 +49,11 @@ pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
         if share < NONE {
             return None;
         }
-        // Within the disc, for its radius is rounded.
+        // The next point lies well within the disc, because its radius is rounded.
         let next = &at + &power_of_two(step - 0.1, walk.bits);
         let cluster = (share < SHORT).then(|| walk.cluster(&at, &near)).flatten();
         at = match cluster {
-            // Nothing lies between what is known to be empty and the disc about what was found.
+            // The disc of the cluster overlaps the empty disc, so that no zero lies between them.
             Some((cluster, radius)) if &cluster.place - &radius <= next => {
                 let beyond = &cluster.place + &radius;
                 found.push(cluster);
@@ -65,14 +65,14 @@ pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     None
 }
 
-/// The logarithm to base two of the size; minus infinity of zero.
+/// Returns the logarithm to base two of the absolute value; minus infinity for zero.
 fn logarithm(value: &BigFloat) -> f64 {
     value.exponent().map_or(f64::NEG_INFINITY, |exponent| {
         exponent as f64 + value.shifted(-exponent).to_f64().abs().log2()
     })
 }
 
-/// Two to a power that is not a whole number, to the digits of a double.
+/// Returns two to a power that need not be a whole number, to the accuracy of a double.
 fn power_of_two(exponent: f64, bits: usize) -> BigFloat {
     let whole = exponent.floor();
     BigFloat::of_f64((exponent - whole).exp2(), bits).shifted(whole as i64)
@@ -81,17 +81,18 @@ fn power_of_two(exponent: f64, bits: usize) -> BigFloat {
 struct ClusterSearch<'a> {
     polynomial: &'a [BigFloat],
     bits: usize,
-    /// Logarithms of the sizes of the coefficients.
+    /// Logarithms to base two of the absolute values of the coefficients.
     sizes: Vec<f64>,
 }
 
-/// The polynomial about a place.
+/// The Taylor expansion of the polynomial about a point.
 struct About {
     coefficients: Vec<BigFloat>,
     sizes: Vec<f64>,
-    /// Bound of the rounding error of all terms together, within the largest disc that is needed.
+    /// Logarithm of a bound of the total rounding error of all terms, within the largest disc that
+    /// is needed.
     noise: f64,
-    /// The logarithm of the place, beyond which no disc reaches.
+    /// The logarithm of the expansion point, which is the largest radius that is needed.
     largest: f64,
 }
 
@@ -112,7 +113,7 @@ impl<'a> ClusterSearch<'a> {
         dominates(&self.sizes, self.sizes.len() - 1, logarithm(at), f64::NEG_INFINITY)
     }
 
-    /// Taylor's coefficients.
+    /// Returns the Taylor expansion about a point, by repeated synthetic division.
     fn about(&self, at: &BigFloat) -> About {
         let mut coefficients = self.polynomial.to_vec();
         let degree = coefficients.len() - 1;
@@ -128,7 +129,7 @@ impl<'a> ClusterSearch<'a> {
         let terms = terms.map(|(size, k)| size + f64::from(k) * (largest + 1.0));
         let noise = match at.is_zero() {
             true => f64::NEG_INFINITY,
-            // Every term takes part in this many sums.
+            // The rounding errors grow with the number of sums in which every term takes part.
             false => {
                 terms.fold(f64::NEG_INFINITY, f64::max) + 3.0 * (degree as f64 + 2.0).log2()
                     - self.bits as f64
@@ -142,9 +143,10 @@ impl<'a> ClusterSearch<'a> {
         }
     }
 
-    /// The zero or the two ahead of a place, and the radius of a disc that holds nothing else.
+    /// Returns the zero, or the two zeros, ahead of a point, and the radius of a disc that holds no
+    /// other.
     fn cluster(&self, at: &BigFloat, near: &About) -> Option<(Cluster, BigFloat)> {
-        // Two first: of a close pair either may be reached alone.
+        // Two zeros are tried first: Newton's method may reach either zero of a close pair alone.
         [2, 1].into_iter().find_map(|count| {
             let place = self.centre(at, near, count)?;
             let about = self.about(&place);
@@ -164,9 +166,9 @@ impl<'a> ClusterSearch<'a> {
     /// The zero near a point by Newton's method, or the middle of two zeros.
     fn centre(&self, at: &BigFloat, near: &About, count: usize) -> Option<BigFloat> {
         const STEPS: usize = 12;
-        /// The last step over the place.
+        /// Logarithm of the last step over the starting point.
         const EXACT: f64 = -100.0;
-        /// The farthest that is ahead, likewise.
+        /// Logarithm of the largest distance ahead over the starting point.
         const FAR: f64 = -2.0;
         let step = |about: &About| {
             let slope = about.coefficients.get(count).filter(|slope| !slope.is_zero())?;
@@ -196,7 +198,8 @@ impl About {
         const HALVINGS: usize = 6;
         let first = self.sizes[0];
         let terms = self.sizes.iter().zip(0..).skip(1);
-        // Each term by itself reaches the first there; at half of that all together do not.
+        // At this radius the first of the other terms reaches the constant term; at half of it
+        // their sum does not.
         let bound =
             terms.map(|(size, k)| (first - size) / f64::from(k)).fold(f64::INFINITY, f64::min);
         let (mut inside, mut outside) = (bound.min(self.largest) - 1.0, bound.min(self.largest));
@@ -213,12 +216,13 @@ impl About {
         Some(inside)
     }
 
-    /// The logarithm of the radius of the largest disc with this many zeros, not far beyond the
-    /// place.
+    /// The logarithm of the radius of the largest disc with this many zeros, small compared with
+    /// the expansion point; `None` if there is none.
     fn radius_of(&self, count: usize) -> Option<f64> {
-        /// Least logarithm of a distance over that of the point.
+        /// Logarithm of the smallest radius over the expansion point.
         const LEAST: f64 = -100.0;
-        /// Two that are farther apart are found one by one.
+        /// Logarithms of the largest radius over the expansion point, for one zero and for two; two
+        /// zeros farther apart are found one by one.
         const WIDEST: [f64; 2] = [-3.0, -5.0];
         const STEP: f64 = 0.25;
         self.sizes.get(count)?;
@@ -233,11 +237,12 @@ impl About {
     }
 }
 
-/// Whether one term is larger than all others and the noise together; everything by its logarithm.
+/// Whether one term is larger than the sum of all others and the noise, all given by their
+/// logarithms: Pellet's criterion.
 fn dominates(sizes: &[f64], term: usize, radius: f64, noise: f64) -> bool {
-    /// Logarithms are rounded.
+    /// The margin for rounded logarithms.
     const SURELY: f64 = 0.99;
-    // Zero, of which nothing is known with the radius of infinity.
+    // The constant term is treated apart, since 0 times an infinite radius would be NaN.
     let at = |k: usize| match k {
         0 => sizes[0],
         _ => sizes[k] + k as f64 * radius,

@@ -1,7 +1,7 @@
 //! Derivatives, substitution, and writing out products of sums.
 //!
-//! In comes an expression, out goes one in the same normal form, or the reason why not. The rules
-//! are the usual ones:
+//! In comes an expression, out goes one in the same normal form, or an error. The rules are the
+//! usual ones:
 //!
 //! ```text
 //! (u*v)' = u'*v + u*v'        f(u, v)' = f_u*u' + f_v*v'
@@ -24,7 +24,7 @@ const DERIVATIVE_LIMIT: usize = 300_000;
 
 impl Expr {
     /// The partial derivative by the symbol. Jumps and kinks are left out: `sgn` and `H` have the
-    /// derivative 0, `abs` has `sgn`, `max(u, v)` has `H(u - v)` by u.
+    /// derivative 0, `abs(u)` has `sgn(u)`, and `max(u, v)` has `H(u - v)` with respect to u.
     ///
     /// # Errors
     /// A factor of the derivative has no value, as in that of `(-2)^x`; or the product rule would
@@ -93,8 +93,11 @@ impl Expr {
         self.substitute_all(&BTreeMap::from([(symbol, value.clone())]))
     }
 
-    /// The expression with all these values put in at once: `x` and `y` can change places. Errors
-    /// as for [`Expr::substitute`].
+    /// The expression with all these values substituted at once, so that `x` and `y` can be
+    /// exchanged.
+    ///
+    /// # Errors
+    /// As for [`Expr::substitute`].
     pub fn substitute_all(&self, values: &BTreeMap<Symbol, Self>) -> Result<Self, ExprError> {
         self.fold(|expr, children: &[Self]| {
             if let Some(value) = expr.as_symbol().and_then(|symbol| values.get(&symbol)) {
@@ -107,27 +110,27 @@ impl Expr {
         })
     }
 
-    /// Products and whole powers of sums written out, everywhere in the tree; at most
+    /// Expands products and whole powers of sums everywhere in the tree, with at most
     /// [`EXPANSION_LIMIT`] products.
     ///
     /// # Errors
-    /// [`ExprError::TooManyTerms`] where that is not enough.
+    /// [`ExprError::TooManyTerms`] if that is not enough.
     pub fn expand(&self) -> Result<Self, ExprError> {
         self.expand_within(EXPANSION_LIMIT)
     }
 
-    /// As [`Expr::expand`], giving up after this many products of two terms.
+    /// Expands as [`Expr::expand`], with at most `limit` products of two terms.
     ///
     /// # Errors
-    /// [`ExprError::TooManyTerms`] where that is not enough.
+    /// [`ExprError::TooManyTerms`] if that is not enough.
     pub fn expand_within(&self, limit: usize) -> Result<Self, ExprError> {
         let mut budget = NodeBudget { left: limit, limit };
         let mut current = self.clone();
         loop {
             let next =
                 current.fold(|expr, children: &[Self]| expand_node(expr, children, &mut budget))?;
-            // Factors such as sqrt(1 + x)*sqrt(1 + x) make a new sum: once more, until nothing
-            // changes.
+            // Factors such as sqrt(1 + x)*sqrt(1 + x) make a new sum, so expansion is repeated
+            // until nothing changes.
             if next == current {
                 return Ok(next);
             }
@@ -167,7 +170,7 @@ impl NodeBudget {
         Ok(())
     }
 
-    /// Refuses what is known to be too much before it is begun.
+    /// Fails if an operation that has not begun yet would exceed the budget.
     fn allow(&self, amount: usize) -> Result<(), ExprError> {
         match amount <= self.left {
             true => Ok(()),
@@ -176,9 +179,9 @@ impl NodeBudget {
     }
 }
 
-/// Number of products of two terms in the power of a sum by repeated multiplication, if it is known
-/// beforehand: if every term but one has a symbol of its own, no two products of `m` of the terms
-/// are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero if some may be alike; the
+/// Predicts the number of products of two terms in the power of a sum by repeated multiplication.
+/// If every term but one has a symbol of its own, no two products of `m` of the `n` terms are
+/// alike, and there are `C(m + n - 1, m)` of them. Returns zero if some products may be alike; the
 /// count stops beyond `enough`.
 fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     let mut shared = 0;

@@ -1,7 +1,7 @@
-//! Numbers out of expressions.
+//! Numerical evaluation of expressions.
 //!
 //! In comes an expression and values of its symbols, out goes an `f64`. [`Expr::evaluate`] is for a
-//! single value and refuses what is not finite; [`CompiledFunction`] is for integrators, which call
+//! single value, and fails if it is not finite; [`CompiledFunction`] is for integrators, which call
 //! one expression millions of times.
 //!
 //! A product in which a factor built from `H` and `sgn` alone is zero is zero, whatever the other
@@ -21,7 +21,7 @@ use crate::symbol::Symbol;
 /// The reason why an expression has no number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluationError {
-    /// A symbol without a value.
+    /// A symbol has no value.
     #[error("`{0}` has no value here")]
     MissingSymbol(Symbol),
     /// The expression has no real or no finite value at this point.
@@ -36,19 +36,29 @@ pub enum EvaluationError {
 
 impl Expr {
     /// The value at this point, rounded at each operation. Values of symbols that do not occur are
-    /// ignored.
+    /// ignored. The first evaluation compiles the expression; every further one costs as much as
+    /// [`CompiledFunction::call`].
     ///
     /// # Errors
     /// A symbol has no value, or the result is not a finite number.
     pub fn evaluate(&self, values: &BTreeMap<Symbol, f64>) -> Result<f64, EvaluationError> {
-        let symbols: Vec<Symbol> = self.symbols().into_iter().collect();
+        // Laws are evaluated at hundreds of amplitudes, one after the other.
+        let (symbols, function) = self
+            .0
+            .compiled
+            .get_or_init(|| {
+                let symbols: Vec<Symbol> = self.symbols().into_iter().collect();
+                let function = CompiledFunction::new(self, &symbols);
+                Box::new((symbols, function))
+            })
+            .as_ref();
         let arguments = symbols
             .iter()
             .map(|symbol| {
                 values.get(symbol).copied().ok_or(EvaluationError::MissingSymbol(*symbol))
             })
             .collect::<Result<Vec<f64>, _>>()?;
-        let value = CompiledFunction::new(self, &symbols)?.call(&arguments);
+        let value = function.as_ref().map_err(EvaluationError::clone)?.call(&arguments);
         if value.is_finite() {
             return Ok(value);
         }
@@ -64,7 +74,7 @@ impl Expr {
     }
 }
 
-/// An expression as a straight list of floating-point operations, each equal subexpression computed
+/// An expression as a list of floating-point operations, in which equal subexpressions are computed
 /// once.
 ///
 /// A call costs one operation per distinct node; small whole powers are multiplications and
@@ -94,11 +104,11 @@ enum Instruction {
     Subtract(usize, usize),
     Multiply(usize, usize),
     Divide(usize, usize),
-    /// Zero where the first is zero, otherwise the product.
+    /// Zero if the first is zero, otherwise the product.
     Gate(usize, usize),
     IntegerPower(usize, u32),
     SquareRoot(usize),
-    /// The real root: base, exponent, and whether a minus of the base survives.
+    /// The real root: base, exponent, and whether the result takes the sign of the base.
     OddRoot(usize, usize, bool),
     Power(usize, usize),
     Unary(fn(f64) -> f64, usize),
@@ -126,7 +136,7 @@ impl CompiledFunction {
     /// pole, and NaN if the number of arguments is not that of the symbols given to
     /// [`CompiledFunction::new`].
     pub fn call(&self, arguments: &[f64]) -> f64 {
-        // Most forces are short: clearing more places than they need is a fifth of a call.
+        // Most forces are short: clearing more places than they need would take a fifth of a call.
         const SHORT: usize = 16;
         const LONG: usize = 64;
         let size = self.argument_count + self.constants.len() + self.instructions.len();
@@ -253,8 +263,8 @@ impl Compiler<'_> {
         Ok(slot)
     }
 
-    /// Number of bits that the numbers in an expression add to its size, those of the sums in it
-    /// included.
+    /// Returns the number of bits that the numbers in an expression contribute to its value,
+    /// including the numbers in its sums.
     fn size(&self, expr: &Expr) -> i64 {
         let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
         match expr.node() {
@@ -272,12 +282,12 @@ impl Compiler<'_> {
         }
     }
 
-    /// The shift of a sum whose numbers are so large that a few of them in a product, or what makes
-    /// up for them before it, are beyond double precision; none for other bases and exponents.
+    /// Returns the shift of a sum whose numbers are so large that a product of a few of them, or
+    /// the coefficient that compensates them, overflows; `None` for other bases and exponents.
     fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
         const LONG: u64 = 200;
-        /// The longest number: no equation has larger ones, and they are beyond double precision
-        /// whatever their factor.
+        /// The longest number, in bits: no equation has larger ones, and they overflow whatever
+        /// their factor.
         const LONGEST: u64 = 100_000;
         let size = match base.node() {
             Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
@@ -288,7 +298,8 @@ impl Compiler<'_> {
         if !(LONG..=LONGEST).contains(&size) {
             return None;
         }
-        // The root of the divisor is to be a power of two as well.
+        // The number of bits is a multiple of the denominator, so that the root of the divisor is a
+        // power of two as well.
         let root_bits = size.div_ceil(u64::from(denominator));
         Some(Shift {
             bits: root_bits * u64::from(denominator),
@@ -303,7 +314,7 @@ impl Compiler<'_> {
                 None => *slot,
                 Some(total) => match term.node() {
                     Node::Product(coefficient, factors) if (-coefficient).is_one() => {
-                        // The product without its minus is compiled afresh; what it shares is known
+                        // The product without its minus is compiled anew; its factors are known
                         // already.
                         let positive = self.positive_product(factors);
                         self.emit(Operation::Pair(Instruction::Subtract, total, positive))
@@ -332,8 +343,8 @@ impl Compiler<'_> {
             Option<ValueLocation>,
             Option<ValueLocation>,
         ) = (None, None, None);
-        // Sums whose numbers are beyond double precision enter divided by a power of two, which is
-        // made up for at once.
+        // Sums whose numbers would overflow enter divided by a power of two, for which the
+        // coefficient compensates.
         let mut coefficient = coefficient.clone();
         let mut places: Vec<(ValueLocation, Option<ValueLocation>)> =
             Vec::with_capacity(slots.len());
@@ -387,7 +398,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// A sum over `2^bits`.
+    /// Compiles a sum divided by `2^bits`.
     fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> ValueLocation {
         let unit = Rational::new(Integer::one(), Integer::one() << bits as usize);
         let mut total: Option<ValueLocation> = None;
@@ -411,7 +422,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// A positive exact exponent.
+    /// Compiles a power with a positive rational exponent.
     fn power(&mut self, base: ValueLocation, exponent: &Rational) -> ValueLocation {
         // Beyond this a chain of multiplications is no better than the library's power.
         const LARGEST_CHAIN: u32 = 64;
@@ -465,8 +476,8 @@ impl Compiler<'_> {
         ValueLocation::Result(self.code.len() - 1)
     }
 
-    /// Leaves out what nothing uses, such as the reciprocals that became divisions, and numbers the
-    /// rest.
+    /// Removes unused constants and operations, such as reciprocals that became divisions, and
+    /// numbers the others.
     fn finish(self, result: ValueLocation) -> CompiledFunction {
         let mut constant_used = vec![false; self.constants.len()];
         let mut result_used = vec![false; self.code.len()];
@@ -502,7 +513,8 @@ impl Compiler<'_> {
     }
 }
 
-/// The bits of a number before the point, of a small one those before its first digit, negative.
+/// Returns the binary exponent of a number: the number of bits before the point, negative for a
+/// small number.
 fn bits(number: &Rational) -> i64 {
     number.numer().bits() as i64 - number.denom().bits() as i64 + 1
 }
@@ -511,7 +523,7 @@ fn bits(number: &Rational) -> i64 {
 struct Shift {
     /// The divisor is `2^bits`.
     bits: u64,
-    /// `2^(bits*exponent)`, a fraction.
+    /// The compensation `2^(bits*exponent)`.
     made_up: Rational,
 }
 
@@ -521,7 +533,7 @@ fn is_gate(factor: &Expr) -> bool {
         && (factor.contains_function(Function::Step) || factor.contains_function(Function::Sign))
 }
 
-/// Consecutive places from `start` for what is used, and the first place after them.
+/// Returns consecutive places from `start` for the used entries, and the first place after them.
 fn number(used: &[bool], start: usize) -> (Vec<usize>, usize) {
     let mut next = start;
     let places = used

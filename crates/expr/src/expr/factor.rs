@@ -10,8 +10,8 @@ use super::Expr;
 use crate::exact::Rational;
 
 impl Expr {
-    /// The sum with the powers that stand in every term in front of it; as it is where there are
-    /// none, or it would be longer to read.
+    /// The sum with the powers common to all terms taken out in front; unchanged if there are none,
+    /// or if the text would become longer.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -49,8 +49,8 @@ fn common_factor(sum: &Expr) -> Option<Expr> {
         let least = exponents.iter().min()?;
         let most = exponents.iter().max()?;
         let is_sum = base.terms().len() > 1;
-        // Below the line a sum is taken with its highest power: the others are written out above
-        // it.
+        // In denominators a sum is taken out with its highest power; the lower ones are expanded in
+        // the numerator.
         let shared = match (least.is_positive(), most.is_negative()) {
             (true, _) => least,
             (_, true) if is_sum && (least - most).is_integer() => least,

@@ -1,12 +1,12 @@
-//! The functions an expression may use: one table, one entry each.
+//! The functions that an expression may use: a table with one entry for each.
 //!
 //! To add a function, add a variant to [`Function`] and an entry to [`TABLE`]: its name, how many
 //! arguments it takes, its parity, its value as a floating-point number, its exact values, and its
 //! partial derivatives. Parsing, printing, simplification, calculus and evaluation read the table;
 //! Taylor coefficients are with the series.
 //!
-//! The last entries are special functions that occur in answers alone: an equation of motion may
-//! use their names for parameters (`K*x`, `J0*x''`), and writes none of them.
+//! The last entries are special functions that occur only in answers: an equation of motion cannot
+//! call them, but may use their names for parameters (`K*x`, `J0*x''`).
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -17,7 +17,7 @@ use super::jacobi::jacobi;
 use super::{Expr, ExprError, Node, normal, number, order, print};
 use crate::exact::rational::{Rational, ratio};
 
-/// A function of the table. The square root is no function here but the power 1/2.
+/// A function of the table. The square root is not among them, being the power 1/2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Function {
     /// `sin`
@@ -57,7 +57,7 @@ pub enum Function {
     Step,
     /// `J0`, the Bessel function of the first kind
     BesselJ0,
-    /// `J1`, likewise; those of higher order are written with these two
+    /// `J1`, likewise; Bessel functions of higher order are written with these two
     BesselJ1,
     /// `I0`, the modified Bessel function of the first kind
     BesselI0,
@@ -92,7 +92,7 @@ impl Function {
         TABLE.iter().find(|entry| entry.name == name).map(|entry| entry.function)
     }
 
-    /// Whether it occurs in answers alone.
+    /// Whether the function occurs only in answers.
     pub fn is_special(self) -> bool {
         self as usize > Self::Step as usize
     }
@@ -180,8 +180,8 @@ struct FunctionDefinition {
     name: &'static str,
     parity: Parity,
     value: Value,
-    /// The exact value at these arguments where there is one: `None` to keep the function,
-    /// [`NoValue`] to refuse. A function of one argument gets it twice.
+    /// The exact value at these arguments: `None` if the function is kept, [`NoValue`] if it has no
+    /// real value. A function of one argument gets it twice.
     exact: fn(&Expr, &Expr) -> Result<Option<Expr>, NoValue>,
     /// The partial derivative by the argument of the index. A function of one argument gets it
     /// twice.
@@ -196,7 +196,7 @@ pub(super) enum Value {
 
 #[derive(PartialEq)]
 enum Parity {
-    /// f(-u) = f(u), whatever else there is
+    /// f(-u) = f(u), also with a second argument
     Even,
     /// f(-u) = -f(u), likewise
     Odd,
@@ -490,12 +490,14 @@ fn elliptic(function: Function, u: &Expr, m: &Expr) -> Result<Expr, ExprError> {
     function.apply(vec![u.clone(), m.clone()])
 }
 
-/// The slope of an elliptic function by its parameter is none of the table.
+/// The error for the derivative of an elliptic function by its parameter, which the table does not
+/// have.
 fn no_slope(function: Function, u: &Expr, m: &Expr) -> ExprError {
     ExprError::Undefined(print::call_in_message(function, &[u.clone(), m.clone()]))
 }
 
-/// An elliptic function at zero, or of the parameter zero, where it is circular.
+/// Returns the value of an elliptic function at zero, or with the parameter zero, for which it is a
+/// circular function; `None` elsewhere.
 fn limit_of_jacobi(
     u: &Expr,
     m: &Expr,
@@ -552,12 +554,12 @@ fn value_if_equal(argument: &Expr, point: i64, value: impl FnOnce() -> Expr) -> 
     (number.is_integer() && *number.numer() == point.into()).then(value)
 }
 
-/// `numerator/denominator` of pi.
+/// Returns `numerator/denominator * pi`.
 fn turn(numerator: i64, denominator: i64) -> Expr {
     normal::scaled_product(ratio(numerator, denominator), &[Expr::pi()])
 }
 
-/// The argument in quarter turns of pi/2, modulo 4, if it is a whole number of them.
+/// Returns the argument in units of pi/2, modulo 4; `None` if it is not a whole number of them.
 fn quarter_turns(argument: &Expr) -> Option<usize> {
     let multiple = match (argument.as_number(), argument.factors()) {
         (Some(number), _) if number.is_zero() => Rational::zero(),

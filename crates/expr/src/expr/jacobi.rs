@@ -15,8 +15,8 @@
 /// numbers.
 const STEPS: usize = 8;
 
-/// `sn(u, m)`, `cn(u, m)` and `dn(u, m)`; NaN for `m > 1`. Close to `m = 1` all phases are served,
-/// where `ellpj` of the Cephes library holds below a quarter period alone.
+/// `sn(u, m)`, `cn(u, m)` and `dn(u, m)`; NaN for `m > 1`. Close to `m = 1` they hold for all `u`,
+/// where `ellpj` of the Cephes library holds only below a quarter period.
 pub(super) fn jacobi(u: f64, m: f64) -> [f64; 3] {
     if m < 0.0 {
         let scale = (1.0 - m).sqrt();

@@ -1,4 +1,4 @@
-//! Expressions: what an equation of motion and a printed formula are made of.
+//! Expressions, of which equations of motion and printed formulas consist.
 //!
 //! In come numbers, symbols and text; out goes an [`Expr`], an immutable tree that is cheap to
 //! clone and always in *one normal form*, so that two expressions built in different ways compare
@@ -8,8 +8,8 @@
 //!   `2*x + 3*x = 5*x`, `x*x = x^2`;
 //! - numbers are exact fractions and are folded wherever the result is one: `4^(1/2) = 2`,
 //!   `sqrt(8) = 2*sqrt(2)`;
-//! - `(a*b)^n = a^n*b^n` and `(u^a)^n = u^(a*n)` for whole `n` alone: `(x^2)^(1/2)` is |x| and
-//!   stays as it is;
+//! - `(a*b)^n = a^n*b^n` and `(u^a)^n = u^(a*n)` only for whole `n`: `(x^2)^(1/2)` is |x| and stays
+//!   as it is;
 //! - a number times a sum is distributed, and a sum that is a factor or a base has whole
 //!   coefficients without common divisor, the first one positive: `z*(2 - 4*x) = 2*z*(1 - 2*x)`;
 //!   products of sums wait for [`Expr::expand`];
@@ -56,7 +56,7 @@ use std::collections::hash_map::DefaultHasher;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fmt;
 use std::hash::{Hash, Hasher};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, OnceLock};
 
 use num_traits::{One, Signed, Zero};
 
@@ -65,7 +65,7 @@ use crate::symbol::Symbol;
 
 pub use evaluate::{CompiledFunction, EvaluationError};
 pub use function::Function;
-// Problem files point at their mistakes in the same way.
+// Problem files show the place of an error in the same way.
 pub use parse::excerpt;
 pub use parse::{
     Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar, expression_in_grammar,
@@ -90,8 +90,8 @@ pub const EXPANSION_LIMIT: usize = 100_000;
 #[derive(Clone)]
 pub struct Expr(Arc<ExprData>);
 
-/// One node of the tree. Match on [`Expr::node`] to read; build through [`Expr`] alone, which keeps
-/// the promises written on the variants.
+/// One node of the tree. To read an expression, match on [`Expr::node`]; to build one, use [`Expr`]
+/// only, which keeps the invariants stated on the variants.
 #[derive(Clone)]
 pub enum Node {
     /// An exact fraction.
@@ -197,7 +197,10 @@ impl Expr {
         }
     }
 
-    /// `base^exponent` for a whole exponent. Errors as for [`Expr::power`].
+    /// `base^exponent` for a whole exponent.
+    ///
+    /// # Errors
+    /// As for [`Expr::power`].
     pub fn integer_power(&self, exponent: i64) -> Result<Self, ExprError> {
         Self::power(self, &Self::from(exponent))
     }
@@ -223,7 +226,10 @@ impl Expr {
         function.apply(arguments)
     }
 
-    /// The square root, which is the power 1/2. Errors for a negative number.
+    /// The square root, which is the power 1/2.
+    ///
+    /// # Errors
+    /// [`ExprError::Undefined`] for a negative number.
     pub fn sqrt(&self) -> Result<Self, ExprError> {
         Self::power(self, &Self::number(Rational::new(1.into(), 2.into())))
     }
@@ -298,12 +304,12 @@ impl Expr {
         }
     }
 
-    /// Is this the number 0?
+    /// Whether this is the number 0.
     pub fn is_zero(&self) -> bool {
         self.as_number().is_some_and(Zero::is_zero)
     }
 
-    /// Is this the number 1?
+    /// Whether this is the number 1.
     pub fn is_one(&self) -> bool {
         self.as_number().is_some_and(One::is_one)
     }
@@ -334,7 +340,7 @@ impl Expr {
         }
     }
 
-    /// Does it print with a minus in front? True of `-x` and of `-1 + x^2`.
+    /// Whether the expression prints with a minus in front, as `-x` and `-1 + x^2` do.
     pub fn has_leading_minus(&self) -> bool {
         match self.terms().first().map_or(self, |first| first).node() {
             Node::Number(value) | Node::Product(value, _) => value.is_negative(),
@@ -347,20 +353,20 @@ impl Expr {
         self.unique_nodes().filter_map(Self::as_symbol).collect()
     }
 
-    /// Does the symbol occur?
+    /// Whether the symbol occurs.
     pub fn contains(&self, symbol: Symbol) -> bool {
         self.unique_nodes().any(|expr| expr.as_symbol() == Some(symbol))
     }
 
-    /// Does the function occur?
+    /// Whether the function occurs.
     pub fn contains_function(&self, function: Function) -> bool {
         self.unique_nodes()
             .any(|expr| matches!(expr.node(), Node::Function(found, _) if *found == function))
     }
 
     /// Computes a value for the whole tree from the bottom up: `step` gets each node with the
-    /// values of its children. Without recursion, and once for a node that occurs in several
-    /// places.
+    /// values of its children. The walk does not recurse, and visits a node that occurs in several
+    /// places once.
     ///
     /// # Errors
     /// The first error of `step`.
@@ -391,7 +397,7 @@ impl Expr {
         step(self, &values)
     }
 
-    /// Every node, each shared one once, parents before children.
+    /// Returns every node, parents before children; a shared node comes once.
     pub fn unique_nodes(&self) -> impl Iterator<Item = &Self> {
         let mut seen = HashSet::new();
         let mut open = vec![self];
@@ -411,7 +417,7 @@ impl Expr {
         Arc::as_ptr(&self.0)
     }
 
-    /// The only place where a node is made; the caller has seen to the promises on [`Node`].
+    /// Makes a node; the caller ensures the invariants of [`Node`]. No node is made anywhere else.
     fn from_node(node: Node) -> Self {
         let mut hasher = DefaultHasher::new();
         std::mem::discriminant(&node).hash(&mut hasher);
@@ -444,11 +450,17 @@ impl Expr {
             }
         };
         let size = node.children().fold(1, |size: u32, child| size.saturating_add(child.0.size));
-        Self(Arc::new(ExprData { node, hash: hasher.finish(), size, stepwise }))
+        Self(Arc::new(ExprData {
+            node,
+            hash: hasher.finish(),
+            size,
+            stepwise,
+            compiled: OnceLock::new(),
+        }))
     }
 
-    /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a
-    /// whole interval.
+    /// Whether the expression is constant between jumps: built only from numbers, `H` and `sgn`. A
+    /// zero of such an expression extends over a whole interval.
     fn is_stepwise(&self) -> bool {
         self.0.stepwise
     }
@@ -467,15 +479,20 @@ impl Node {
 
 struct ExprData {
     node: Node,
-    /// The hash of the whole tree below, so that comparing and hashing look at one word.
+    /// The hash of the whole tree below, so that comparing and hashing need only one word.
     hash: u64,
-    /// The number of nodes below, each occurrence counted, as far as that fits.
+    /// The number of nodes below, counting each occurrence; saturated at the largest `u32`.
     size: u32,
     stepwise: bool,
+    /// The symbols and the compiled function, from the first evaluation on.
+    compiled: OnceLock<Box<CompiledExpr>>,
 }
 
-/// Children are handed to a list instead of being dropped in place: the depth of a tree never meets
-/// the stack.
+/// The symbols of an expression, and its compiled function of their values.
+type CompiledExpr = (Vec<Symbol>, Result<CompiledFunction, EvaluationError>);
+
+/// Children are moved to a list instead of being dropped in place, so that a deep tree cannot
+/// overflow the stack.
 impl Drop for ExprData {
     fn drop(&mut self) {
         let mut open = Vec::new();
@@ -557,7 +574,7 @@ impl From<Symbol> for Expr {
 impl std::str::FromStr for Expr {
     type Err = ParseError;
 
-    /// As [`parse_expression`].
+    /// Reads an expression as [`parse_expression`] does.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         parse_expression(text)
     }

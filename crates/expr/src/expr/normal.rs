@@ -1,8 +1,8 @@
 //! The normal form: the rules by which sums, products and powers are built.
 //!
 //! In come expressions that are each in normal form, out goes one; the rules are those listed in
-//! [`super`]. Each looks at the nodes it joins and never further down, so building costs what is
-//! joined and not what lies below.
+//! [`super`]. Each rule examines only the nodes that it joins, so that the cost of building does
+//! not depend on the size of the trees below.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -10,7 +10,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use super::{Expr, ExprError, LARGEST_EXPONENT, Node, number, order, print};
 use crate::exact::rational::{self, Integer, Rational};
 
-/// Flat, like terms merged, zeros gone, sorted.
+/// Returns the sum in normal form: flat, like terms merged, without zeros, sorted.
 pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
     let mut constant = Rational::zero();
     let mut parts: Vec<LikeTerm> = Vec::new();
@@ -25,7 +25,7 @@ pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
     merged(constant, parts)
 }
 
-/// The sum of a number and of terms; one piece of code, whatever the terms came from.
+/// Returns the sum of a number and of terms, not generic, so that it is compiled once.
 fn merged(constant: Rational, mut parts: Vec<LikeTerm>) -> Expr {
     sort_by_hash(&mut parts, |part| &part.rest);
     let mut merged: Vec<Expr> = Vec::with_capacity(parts.len() + 1);
@@ -56,7 +56,7 @@ fn merged(constant: Rational, mut parts: Vec<LikeTerm>) -> Expr {
     }
 }
 
-/// A term as coefficient and rest, which is what like terms share.
+/// A term as a coefficient and the rest, which is the same for like terms.
 struct LikeTerm {
     rest: Expr,
     coefficient: Rational,
@@ -83,7 +83,8 @@ fn sort_by_hash<T>(items: &mut [T], expr: impl Fn(&T) -> &Expr) {
     });
 }
 
-/// Flat, numbers gathered in the coefficient, equal bases merged, sorted.
+/// Returns the product in normal form: flat, numbers gathered in the coefficient, equal bases
+/// merged, sorted.
 pub(super) fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
     let mut gathered = ProductBuilder { coefficient: Rational::one(), powers: Vec::new() };
     for factor in factors {
@@ -156,8 +157,8 @@ impl ProductBuilder {
                     None => group.iter().for_each(|factor| self.push(factor.whole.clone())),
                 }
             }
-            // A merged power may have fallen apart into factors whose bases stand elsewhere in the
-            // product.
+            // A merged power may have split into factors whose bases occur elsewhere in the
+            // product: merge again.
             if settled {
                 break;
             }
@@ -220,7 +221,7 @@ fn content(terms: &[Expr]) -> Rational {
             multiple *= coefficient.denom() / common;
         }
     }
-    // In lowest terms: what divides every numerator divides no denominator.
+    // The fraction is in lowest terms: a divisor of every numerator divides no denominator.
     Rational::new_raw(if negative { -divisor } else { divisor }, multiple)
 }
 
@@ -270,7 +271,8 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
     }
 }
 
-/// Does a power with a rational exponent beyond the limit stand here, alone or as a factor?
+/// Whether the expression is, or has as a factor, a power with a rational exponent beyond the
+/// limit.
 pub(super) fn has_large_exponent(expr: &Expr) -> bool {
     let limit = Integer::from(LARGEST_EXPONENT);
     expr.factors().1.iter().any(|factor| match factor.node() {
@@ -291,7 +293,8 @@ fn symbolic_power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
     Ok(Expr::from_node(Node::Power(base.clone(), exponent.clone())))
 }
 
-/// A broken power of `base = factor * rest`: what of the factor has an exact root moves in front.
+/// Returns a fractional power of `base = factor * rest`: the part of the factor with an exact root
+/// moves in front.
 fn root_of_scaled(base: &Expr, factor: &Rational, exponent: &Rational) -> Result<Expr, ExprError> {
     let size = factor.abs();
     let sign = if factor.is_negative() { -Rational::one() } else { Rational::one() };
@@ -352,8 +355,8 @@ fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError>
 /// `base^exponent` of a whole number above zero as a number times a root `m^f`, `m` whole and 0 < f
 /// < 1.
 fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<Expr>)> {
-    /// In bits; the roots of longer numbers stay as they are, because looking for divisors takes
-    /// too long.
+    /// The length in bits up to which roots are simplified: looking for divisors of longer numbers
+    /// takes too long.
     const LONGEST: u64 = 4_096;
     let short = base.bits() <= LONGEST;
     let (base, exponent) = if short { as_perfect_power(base, exponent) } else { (base, exponent) };
@@ -388,9 +391,9 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
     ))
 }
 
-/// The smallest base: `4^(1/3) = 2^(2/3)`, so that equal roots look equal.
+/// Returns the power with the smallest base, `4^(1/3) = 2^(2/3)`, so that equal roots look equal.
 fn as_perfect_power(base: Integer, exponent: Rational) -> (Integer, Rational) {
-    /// A power of a larger prime is left as it is.
+    /// The prime exponents that are tried.
     const PRIMES: [u32; 18] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61];
     let (mut base, mut exponent) = (Rational::from_integer(base), exponent);
     for degree in PRIMES {

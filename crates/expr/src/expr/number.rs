@@ -2,9 +2,8 @@
 //!
 //! The library of fractions takes the greatest common divisor bit by bit, also of a million bits
 //! and 1, and compares by recursion along continued fractions. Here the divisor comes from Euclid's
-//! remainders, which is one cheap step where one number is short, and none is taken where the
-//! result is in lowest terms already (Knuth, The Art of Computer Programming, volume 2,
-//! section 4.5.1).
+//! algorithm, which takes one cheap step if one number is short, and is left out where the result
+//! is in lowest terms already (Knuth, The Art of Computer Programming, volume 2, section 4.5.1).
 
 use std::cmp::Ordering;
 
@@ -21,7 +20,7 @@ pub(super) fn add(a: &Rational, b: &Rational) -> Rational {
     }
     let rest = a.denom() / &common;
     let numerator = a.numer() * (b.denom() / &common) + b.numer() * &rest;
-    // A factor that still divides both divides the common part.
+    // Any further common factor divides the common part of the denominators.
     let again = greatest_common_divisor(&numerator, &common);
     Rational::new_raw(numerator / &again, rest * (b.denom() / again))
 }
@@ -48,7 +47,7 @@ pub(super) fn lowest_terms(numerator: Integer, denominator: Integer) -> Rational
 
 /// The greatest common divisor, not negative; that of 0 and 0 is 0.
 pub(super) fn greatest_common_divisor(a: &Integer, b: &Integer) -> Integer {
-    // Most numbers are whole.
+    // Most numbers are whole, with the denominator 1.
     if a.is_one() || b.is_one() {
         return Integer::one();
     }

@@ -44,7 +44,7 @@ pub(super) fn compare_factors(a: &Expr, b: &Expr) -> Ordering {
         .then_with(|| a.cmp(b))
 }
 
-/// The kinds of symbols in the order in which they stand in a product.
+/// The kinds of symbols in the order in which they print in a product.
 #[derive(Clone, Copy)]
 enum Class {
     Parameter,
@@ -68,7 +68,7 @@ fn compare_names(a: Symbol, b: Symbol) -> Ordering {
     folded(a).cmp(folded(b)).then_with(|| a.cmp(&b))
 }
 
-/// The place of a term, computed once for sorting. The coefficient has no part in it.
+/// The sorting key of a term, computed once; it does not depend on the coefficient.
 struct TermKey {
     kind: u8,
     degree: f64,
@@ -87,7 +87,7 @@ impl TermKey {
             };
             match (base.node(), exponent) {
                 (Node::Symbol(symbol), Some(exponent)) => {
-                    // A negative power does not count for the degree:
+                    // A negative power does not count towards the degree:
                     // `omega0 + A^2/omega0 + A^4/omega0^3`.
                     key.degree += exponent.max(0.0);
                     key.monomial.push((*symbol, exponent));
@@ -96,7 +96,7 @@ impl TermKey {
                 _ => key.kind = key.kind.max(2),
             }
         }
-        // An acceleration stays in front whatever stands beside it.
+        // A term with an acceleration comes first whatever its other factors.
         if key.monomial.iter().any(|(symbol, _)| symbol.primes() >= 2) {
             key.kind = 0;
         }
@@ -105,7 +105,8 @@ impl TermKey {
     }
 }
 
-/// Coordinates, the highest derivative first, then time, amplitudes and parameters.
+/// Compares symbols: coordinates, the highest derivative first, then time, amplitudes and
+/// parameters.
 fn compare_variables(a: Symbol, b: Symbol) -> Ordering {
     let rank = |symbol: Symbol| {
         let place = match symbol_class(symbol) {
@@ -154,8 +155,8 @@ impl Eq for TermKey {}
 
 /// A total order of trees by kind, size and content, without recursion.
 pub(super) fn compare_structure(a: &Expr, b: &Expr) -> Ordering {
-    /// After this many steps pairs already found equal are remembered, for trees that share much of
-    /// themselves.
+    /// Number of steps after which pairs already found equal are remembered, for trees with many
+    /// shared parts.
     const PATIENCE: usize = 1_000;
     if a.address() == b.address() {
         return Ordering::Equal;
@@ -171,8 +172,8 @@ pub(super) fn compare_structure(a: &Expr, b: &Expr) -> Ordering {
         if steps > PATIENCE && a.0.hash == b.0.hash && !seen.insert((a.address(), b.address())) {
             continue;
         }
-        // The size decides first among trees of one kind: deep trees that differ are seldom walked
-        // through.
+        // Among trees of one kind the size decides first, so that deep trees that differ are seldom
+        // walked through.
         let order = match (a.node(), b.node()) {
             _ if rank(a.node()) != rank(b.node()) => rank(a.node()).cmp(&rank(b.node())),
             _ if a.0.size != b.0.size => a.0.size.cmp(&b.0.size),

@@ -1,4 +1,4 @@
-//! Whether a value is missing because it is beyond double precision, or because there is none:
+//! Whether an expression has no finite value because it overflows, or because it is undefined:
 //! `exp(x)` at `x = 1e3` overflows, `1/x` at `x = 0` is a pole.
 
 use std::collections::BTreeMap;
@@ -11,16 +11,16 @@ use crate::symbol::Symbol;
 #[derive(Clone)]
 enum Magnitude {
     Finite(f64),
-    /// Larger than any number, by this part of it.
+    /// The value overflows, because of this part.
     Beyond(Expr),
     /// The value is not real, or it is a pole.
     None,
 }
 
 impl Expr {
-    /// In words, the innermost part whose value at this point is larger than any double though its
-    /// arguments are not, where that is why the whole has none. At a pole, and where there is no
-    /// real value, there is no such part.
+    /// Returns, in words, the innermost part that overflows at this point although its arguments
+    /// are finite, if that is why the expression has no value. Returns `None` at a pole, where
+    /// there is no real value, or where the value is finite.
     pub fn overflow(&self, values: &BTreeMap<Symbol, f64>) -> Option<String> {
         let (names, numbers): (Vec<Symbol>, Vec<f64>) =
             values.iter().map(|(name, value)| (*name, *value)).unzip();
@@ -44,8 +44,8 @@ impl Expr {
     }
 }
 
-/// Whether an infinite value of finite arguments is that of a pole: a small number to a negative
-/// power, or the logarithm of zero.
+/// Whether an infinite value at finite arguments is a pole: a small number to a negative power, or
+/// the logarithm of zero.
 fn is_pole(part: &Expr, children: &[Magnitude]) -> bool {
     match (part.node(), children) {
         (Node::Power(..), [Magnitude::Finite(base), ..]) => base.abs() < 1.0,

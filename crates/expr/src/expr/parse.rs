@@ -11,9 +11,9 @@
 //! number   = digits [ "." digits ] [ "e" [sign] digits ]       exact: 0.323 is 323/1000
 //! ```
 //!
-//! Every error names the place and, where it can, the right spelling. Whatever the text is, reading
-//! it ends quickly: its length, its nesting, the digits and exponents of its numbers and the work
-//! of bringing it into normal form are limited.
+//! Every error names the place and, if possible, the right spelling. Reading ends quickly for every
+//! text: its length, its nesting, the digits and exponents of its numbers and the work of bringing
+//! it into normal form are limited.
 
 mod brackets;
 mod error;
@@ -37,13 +37,13 @@ use error::shortened;
 use lexer::{Token, TokenKind};
 pub use notation::{equation_in_grammar, expression_in_grammar};
 
-/// Names of the amplitudes and the frequency in an answer. Where an equation has one of them for
-/// something of its own, `Oscillator::with_own_names_apart` keeps it apart before a formula is
-/// derived, and the answer writes another letter. `omega0` and `theta` are none of them: beside
-/// such names of an equation the answer writes `omega0_` and `phi`.
+/// Names of the amplitudes and the frequency in an answer. If an equation uses one of them as a
+/// parameter, `Oscillator::with_own_names_apart` keeps it apart before a formula is derived, and
+/// the answer writes another letter. `omega0` and `theta` are not among them: if an equation has
+/// these names, the answer writes `omega0_` and `phi`.
 pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
 
-/// Spellings of what is not a number.
+/// Spellings of NaN and infinity, which are not numbers of the grammar.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
 
 /// The deepest nesting of parentheses, calls, powers and signs together.
@@ -142,7 +142,7 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
 
 struct Parser<'a> {
     text: &'a str,
-    /// Ends with one `End`, beyond which nothing advances.
+    /// The tokens, the last of which is `End`; the parser never advances beyond it.
     tokens: Vec<Token>,
     next: usize,
     depth: usize,
@@ -166,8 +166,7 @@ impl<'a> Parser<'a> {
         self.sum_of(&mut |_, _| ())
     }
 
-    /// A sum, each term of which is shown with the numbers of its first token, signs included, and
-    /// of the one after its last.
+    /// Parses a sum; `show` is called with each term and the range of its tokens, signs included.
     fn sum_of(&mut self, show: &mut dyn FnMut(&Expr, Range<usize>)) -> Result<Expr, ParseError> {
         let start = self.token().start;
         let mut terms = Vec::new();
@@ -189,7 +188,7 @@ impl<'a> Parser<'a> {
         Ok(Expr::sum(terms))
     }
 
-    /// One side of an equation, with its terms as they stand there.
+    /// Parses one side of an equation, and returns it with its terms as they were typed.
     fn side(
         &mut self,
         right: bool,
@@ -237,7 +236,7 @@ impl<'a> Parser<'a> {
         }
         self.charge(&factors, start)?;
         let product = Expr::product(factors);
-        // Equal bases have been merged: x^9999*x^9999.
+        // Merging equal bases may exceed the limit, as in x^9999*x^9999.
         match normal::has_large_exponent(&product) {
             true => {
                 let message = format!("this product has an exponent beyond {LARGEST_EXPONENT}");
@@ -366,7 +365,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The arguments in parentheses after a function's name.
+    /// Parses the arguments in parentheses after a function's name.
     fn arguments(&mut self, name: Token) -> Result<Vec<Expr>, ParseError> {
         let open = self.advance();
         self.enter(open)?;
@@ -508,7 +507,7 @@ impl<'a> Parser<'a> {
         ParseError::new(self.text, span, message, help)
     }
 
-    /// The text itself in quotes, shortened in the middle of long ones.
+    /// The text in quotes; the end of a long one is cut off.
     fn quoted(&self, span: Range<usize>) -> String {
         format!("`{}`", shortened(&self.text[span]))
     }

@@ -1,4 +1,4 @@
-//! Between expressions and exact polynomials: what can be expanded in its symbols, and back.
+//! Conversion between expressions and exact polynomials.
 
 use num_traits::{ToPrimitive, Zero};
 
@@ -11,8 +11,7 @@ impl Expr {
     /// This expression as a polynomial in its symbols, with exponents of either sign.
     ///
     /// A factor that is not an integer power of a symbol (`sqrt(k)`, `sin(1/2)`, `1/(1 + k)`) is
-    /// offered to `name`, which may give it a symbol of its own. `Ok(None)` where a factor stays
-    /// without a name.
+    /// passed to `name`, which may return a symbol for it. Returns `Ok(None)` if it does not.
     ///
     /// # Errors
     /// The expanded form would be too long.
@@ -38,9 +37,8 @@ impl Expr {
 }
 
 impl Expr {
-    /// The degree of a polynomial in one variable that can be told without writing it out: nothing
-    /// of the highest degree can cancel where one term alone has it. `None` if it takes more than
-    /// that.
+    /// The degree of a polynomial in one variable, if it can be found without expansion: the
+    /// highest degree cannot cancel if only one term has it. `None` otherwise.
     pub fn degree_at_sight(&self, variable: Symbol) -> Option<u32> {
         let degree =
             self.fold(|part, degrees: &[u32]| degree_of(part, degrees, variable).ok_or(()));
@@ -80,7 +78,7 @@ fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -
             (Node::Pi, Some(power)) if power.is_integer() => {
                 Some(Monomial::power_of(Symbol::new("pi"), power.to_integer().to_i32()?))
             }
-            // One name for all powers of a constant.
+            // All powers of a constant share one symbol.
             (_, Some(power)) if power.is_integer() => {
                 let power = power.to_integer().to_i32()?;
                 name(base).map(|symbol| Monomial::power_of(symbol, power))

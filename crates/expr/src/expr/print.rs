@@ -1,8 +1,8 @@
-//! Expressions as text that reads back to the same tree, within the limits of reading: computed
-//! numbers and exponents may be longer than a text may hold.
+//! Expressions as text that the parser reads back to the same tree, within its limits: computed
+//! numbers and exponents may be longer than it accepts.
 //!
-//! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`]
-//! is that split, for every other notation to share. A long number that is a decimal prints as one,
+//! A product prints as a fraction, numerator over denominator: `8*eps*A/(3*pi)`. [`Expr::fraction`]
+//! makes the split, also for the other notations. A long number that is a decimal prints as one,
 //! `1e-300`. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
 //! written `sqrt(k)`.
 
@@ -57,11 +57,12 @@ impl Expr {
 }
 
 impl Expr {
-    /// A root of a sum with the number before it under it, where rounded numbers stand there then,
-    /// of fifteen digits: `sqrt(1.27901878616664 + A^2)` for
-    /// `1e-14*sqrt(1.27901878616664e28 + ...)`, as which the normal form has it. For reading alone.
+    /// Returns the square root of a sum with the number in front of it moved under the root and
+    /// long decimals rounded to fifteen digits: `sqrt(1.27901878616664 + A^2)` for the normal form
+    /// `1e-14*sqrt(1.27901878616664e28 + ...)`. The result is for display only. Returns `None` for
+    /// any other expression.
     pub fn with_number_under_root(&self) -> Option<Self> {
-        /// A fraction with more signs than this must be a rounded number.
+        /// A fraction with more characters than this must be a rounded number.
         const MANY: usize = 16;
         const DIGITS: usize = 15;
         let (number, factors) = self.factors();
@@ -110,7 +111,8 @@ impl fmt::Display for Inside<'_> {
     }
 }
 
-/// Without recursion: `open` holds what is still to be written, the next piece last.
+/// Writes an expression without recursion: `open` holds the pieces still to be written, the next
+/// one last.
 fn write_expr(expr: &Expr, place: PrintContext, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
     let mut open = vec![PrintItem::Expr(expr.clone(), place)];
     while let Some(piece) = open.pop() {
@@ -123,8 +125,8 @@ fn write_expr(expr: &Expr, place: PrintContext, formatter: &mut fmt::Formatter<'
 }
 
 impl Expr {
-    /// The terms as they stand in parentheses: where the first has a minus, those next without one
-    /// stand before it.
+    /// The terms in the order in which they stand in parentheses: terms with a leading minus come
+    /// after the run of terms without one that follows them.
     pub fn terms_inside(&self) -> impl Iterator<Item = &Self> {
         let terms = self.terms();
         let minus = terms.iter().take_while(|term| term.has_leading_minus()).count();
@@ -134,7 +136,8 @@ impl Expr {
         plus.iter().chain(minus).chain(others)
     }
 
-    /// A difference turned round, `a - b` for `b - a`, which takes a minus in front of it away.
+    /// Returns the negative of a difference, `a - b` for `b - a`, which absorbs a minus in front of
+    /// it; `None` for anything else.
     pub fn turned_round(&self) -> Option<Self> {
         match self.terms() {
             [one, other] if !one.has_leading_minus() && other.has_leading_minus() => Some(-self),
@@ -165,7 +168,7 @@ enum PrintContext {
     Exponent,
 }
 
-/// Whether an expression stands in parentheses there.
+/// Whether an expression needs parentheses in this context.
 fn in_parentheses(expr: &Expr, place: PrintContext) -> bool {
     match expr.node() {
         Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
@@ -263,7 +266,7 @@ fn write_node(
     }
 }
 
-/// A fraction, or the decimal that a long one is.
+/// Writes a fraction; as a decimal if it is long and terminates.
 fn write_number(value: &Rational, out: &mut fmt::Formatter<'_>) -> fmt::Result {
     match decimal_of_long_fraction(value) {
         Some(decimal) => out.write_str(&decimal),
@@ -271,7 +274,7 @@ fn write_number(value: &Rational, out: &mut fmt::Formatter<'_>) -> fmt::Result {
     }
 }
 
-/// Numerator over denominator, without the sign.
+/// Pushes numerator and denominator, without the sign.
 fn push_fraction(fraction: &Fraction, open: &mut Vec<PrintItem>) {
     match fraction.denominator.as_slice() {
         [] => {}
@@ -305,10 +308,10 @@ fn is_half(exponent: &Expr) -> bool {
     })
 }
 
-/// The start of an expression, short enough for a message.
+/// The text of an expression, cut off to fit into a message.
 pub(super) fn in_message(expr: &Expr) -> String {
     let mut text = Shortened(String::new());
-    // The error says only that the rest was cut off.
+    // The formatter's only error is that the rest was cut off.
     match is_long_number(expr) {
         true => "a long number".into(),
         false if write!(text, "{expr}").is_err() => text.0 + "...",

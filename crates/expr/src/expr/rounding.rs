@@ -4,8 +4,8 @@
 //! Reference: N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., SIAM 2002,
 //! section 3.3 (running error analysis).
 //!
-//! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula and has no correct digit at `A = 1e-8`:
-//! both cosines are one. Whoever evaluates it has to know.
+//! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula but has no correct digit at `A = 1e-8`,
+//! where both cosines round to one. The error bound shows this.
 
 use std::collections::BTreeMap;
 
@@ -20,15 +20,16 @@ use crate::symbol::Symbol;
 /// A value and a bound of its absolute error.
 pub type Rounded = (f64, f64);
 
-/// Half a unit in the last place, and some room for library functions that are not quite as good.
+/// Relative rounding error of an operation: half a unit in the last place, with a margin for less
+/// accurate library functions.
 const UNIT: f64 = 1.5 * f64::EPSILON;
 
-/// The part of its size by which rounding may move a force before nothing that is computed from it
-/// has its six digits.
+/// Largest relative rounding error of a force with which results computed from it still have six
+/// digits.
 const MOST_LOST: f64 = 1e-6;
 
-/// An expression whose value double precision does not hold: at a position so large, its next
-/// neighbour among the doubles is far away.
+/// The error of an expression that loses its digits in double precision: the position is so large
+/// that neighbouring doubles are far apart.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "`{expression}` has no digits left at {name} = {}: in double precision {name} and what is made of it are rounded there so \
@@ -47,10 +48,11 @@ pub struct LostDigits {
 }
 
 impl Expr {
-    /// Refuses a place at which this expression has no digits: where rounding moves it by more than
-    /// a millionth of its size, the `uncertain` symbols being rounded themselves, there and a
-    /// little nearer to zero, so that neither a jump nor a zero at the place counts. A difference
-    /// that loses its digits towards zero is no such place: they are there for no smaller values.
+    /// Refuses values at which rounding, also that of the `uncertain` symbols, changes this
+    /// expression by more than a millionth of its size. The expression is evaluated there and a
+    /// little nearer to zero, so that neither a jump nor a zero at the point counts. A difference
+    /// that loses its digits towards zero is not refused, since no smaller values would restore
+    /// them.
     ///
     /// # Errors
     /// [`LostDigits`] names the symbol.
@@ -108,8 +110,8 @@ impl Expr {
         })
     }
 
-    /// The value with a bound of the error that rounding makes, given the same of the symbols;
-    /// `None` if a symbol is missing.
+    /// Returns the value with a bound of its rounding error, from the values and error bounds of
+    /// the symbols; `None` if a symbol is missing.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -185,8 +187,7 @@ fn node(
             } else {
                 power.1
             };
-            // A base that rounding alone takes below zero is not negative where the power has a
-            // value.
+            // If the power has a value, a base that only its error makes negative counts as zero.
             let is_root =
                 number.is_some_and(|number| number.is_positive() && !number.denom().is_odd());
             let shifted = |shift: f64| match base.0 + shift * base.1 {
@@ -201,19 +202,18 @@ fn node(
         (Node::Function(function, _), [one, other]) => {
             let (value, error) =
                 moved(&|shift| function.value(one.0 + shift * one.1, other.0 + shift * other.1));
-            // Of `max` and `min` the arguments may move against each other.
+            // The arguments of `max` and `min` may move in opposite directions.
             (value, error + one.1 + other.1)
         }
         (Node::Power(..) | Node::Function(..), _) => return None,
     })
 }
 
-/// A function of one number at zero, and how far it moves when that number moves to one side or the
-/// other.
+/// Returns a function at zero, and a bound of its change as the argument varies from -1 to 1.
 fn moved(function: &dyn Fn(f64) -> f64) -> Rounded {
     let value = function(0.0);
     let spread = [-1.0, 1.0].map(|side| (function(side) - value).abs());
-    // At the edge of where the function is defined only one side says something.
+    // At the edge of its domain the function has a value on one side only.
     let spread = spread.into_iter().fold(0.0, f64::max);
     let error = if spread.is_nan() { f64::INFINITY } else { spread };
     (value, error + 2.0 * UNIT * value.abs())

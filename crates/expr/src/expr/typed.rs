@@ -1,5 +1,5 @@
-//! The terms of an equation as they were typed: for messages, which speak of what the reader wrote
-//! and not of a normal form.
+//! The terms of an equation as they were typed, so that messages quote what the user wrote and not
+//! a normal form.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,7 +20,7 @@ pub struct Typed {
 /// One term of either side, or of a bracket there that is scaled by numbers and parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct TypedTerm {
-    /// Its contribution to its own side.
+    /// The value that the term adds to its own side.
     pub value: Expr,
     /// Its range in the text, without the sign.
     pub span: Range<usize>,
@@ -32,21 +32,21 @@ pub(super) struct TypedTerm {
     pub around: Option<Arc<BracketContext>>,
 }
 
-/// The context of a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A
-/// bracket without a factor leaves the texts empty. The context of a nested bracket is that of
-/// both.
+/// The context of a bracket: in `-2*(x + x^2)/3` it is the texts `2*(` and `)/3`, and the minus. A
+/// bracket without a factor leaves the texts empty. The context of a nested bracket includes that
+/// of the bracket around it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BracketContext {
     pub opening: String,
     pub closing: String,
-    /// Whether the minuses before the brackets, those inside the texts apart, are one together.
+    /// Whether the signs before the brackets, except those inside the texts, amount to a minus.
     pub negative: bool,
     /// The factor of the terms inside, signs included.
     pub scale: Expr,
 }
 
-/// A part of an equation that a refusal names: what it is, and the words for it, which are those of
-/// the reader once it is known which typed term it comes from.
+/// A part of an equation that an error message names: the expression, and the words for it, which
+/// are as typed once the term that it comes from is known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quotation {
     expression: Expr,
@@ -54,7 +54,7 @@ pub struct Quotation {
 }
 
 impl Quotation {
-    /// An expression in words of its own.
+    /// An expression with the words that quote it.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -107,10 +107,10 @@ impl Typed {
         })
     }
 
-    /// Returns the text with numbers for some of its parameters.
+    /// Returns the terms with values for some of their parameters; the text stays the same.
     ///
     /// # Errors
-    /// A value at which a term has none.
+    /// [`ExprError`] if a term is undefined at these values.
     pub fn with_values(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         let mut typed = self.clone();
         for term in &mut typed.terms {
@@ -119,9 +119,10 @@ impl Typed {
         Ok(typed)
     }
 
-    /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has
-    /// the sign that it was typed with; of several, those of the right side are brought to the
-    /// left, and those of different brackets keep their scale, as a mere number in a bracket does.
+    /// Quotes the terms with these indices as one text: `0.5*(x')^3`. A single term keeps the sign
+    /// that it was typed with; of several terms, those of the right side are brought to the left.
+    /// The scale of the brackets is written if the terms come from different brackets, or are all
+    /// mere numbers.
     pub fn quote(&self, numbers: &[usize]) -> String {
         /// The longest text that a message quotes in full.
         const LONGEST: usize = 120;
@@ -153,8 +154,8 @@ impl Typed {
         }
     }
 
-    /// The line in which a quotation stands, and a line with carets under it; `None` if it stands
-    /// nowhere as it is.
+    /// Returns the line in which a quotation stands, and a line with carets under it; `None` if the
+    /// quotation does not occur literally.
     pub fn locate(&self, quotation: &str) -> Option<[String; 2]> {
         let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
         let span = match number.and_then(|number| self.terms.get(number)) {
@@ -164,8 +165,7 @@ impl Typed {
         Some(excerpt(&self.text, &span))
     }
 
-    /// Range of a text that does not go on as a longer name on either side; `None` if it does not
-    /// occur.
+    /// Returns the range of a text that is not part of a longer name; `None` if it does not occur.
     fn span_of(&self, quotation: &str) -> Option<Range<usize>> {
         let in_name = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '\'';
         let spans = self.text.match_indices(quotation);
@@ -177,7 +177,7 @@ impl Typed {
         })
     }
 
-    /// Whether a text stands in the equation as it is.
+    /// Whether a text occurs literally in the equation.
     pub fn contains(&self, quotation: &str) -> bool {
         self.span_of(quotation).is_some()
     }

@@ -1,11 +1,11 @@
-//! The letters of an answer: how its amplitudes and its frequency are written beside the names of
+//! The letters of an answer: the spelling of its amplitudes and its frequency beside the names of
 //! an equation.
 //!
-//! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where
-//! an equation has one of these names for something of its own, the equation keeps it, and the
-//! answer takes another. Inside the crate the symbols of an answer are the same for every equation,
-//! those of such an equation are [apart](Symbol::apart), and [`ResultSymbols`] in force say how the
-//! former are printed: in formulas and in sentences, in every format.
+//! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. If an
+//! equation uses one of these names, the equation keeps it, and the answer takes another. Inside
+//! the crate the symbols of an answer are the same for every equation, those of such an equation
+//! are [apart](Symbol::apart), and the [`ResultSymbols`] in force determine how the former are
+//! printed: in formulas and in sentences, in every format.
 
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -19,14 +19,14 @@ pub const FIRST_HARMONIC: Symbol = Symbol("a");
 /// The frequency.
 pub const FREQUENCY: Symbol = Symbol("omega");
 
-/// The names of the amplitude at the start where `A` is taken: the first of these that is free,
-/// else `A_`, `A__` and so on; the others likewise.
+/// Substitutes for `A`, the amplitude at the start, if it is taken: the first of these that is
+/// free, else `A_`, `A__` and so on. The next two lists serve the other letters likewise.
 const AMPLITUDES: [&str; 3] = ["C", "X", "A_0"];
 const FIRST_HARMONICS: [&str; 3] = ["r", "rho", "a_1"];
-/// The first of them belongs to a drive.
+/// The first substitute is not used with a drive, whose frequency it is.
 const FREQUENCIES: [&str; 3] = ["Omega", "nu", "w"];
 
-/// Returns whether an answer to some equation has this name for that which is usually called so.
+/// Returns whether an answer to some equation may write this name for the symbol `usual`.
 pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
     let others: &[&str] = match usual {
         AMPLITUDE => &AMPLITUDES,
@@ -62,7 +62,7 @@ pub struct ResultSymbols {
     pub frequency: Symbol,
 }
 
-/// The letters of most answers.
+/// The usual letters, which most answers have.
 const USUAL: ResultSymbols =
     ResultSymbols { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
 
@@ -70,7 +70,7 @@ thread_local! {
     static IN_FORCE: Cell<ResultSymbols> = const { Cell::new(USUAL) };
 }
 
-/// Letters are in force on this thread until this value is dropped.
+/// A guard that keeps letters in force on this thread until it is dropped.
 #[must_use]
 pub struct InForce {
     before: ResultSymbols,
@@ -84,8 +84,8 @@ impl Drop for InForce {
 }
 
 impl ResultSymbols {
-    /// The letters of an answer to an equation that has these names: those that it leaves free. A
-    /// `driven` equation has its `Omega` for the drive.
+    /// Chooses the letters of an answer to an equation with these names, which are not available. A
+    /// `driven` equation keeps `Omega` for the drive.
     pub fn avoiding(names: &[Symbol], driven: bool) -> Self {
         let clash = |own: &Symbol| {
             [AMPLITUDE, FIRST_HARMONIC, FREQUENCY].iter().any(|usual| usual.name() == own.name())
@@ -132,7 +132,8 @@ impl ResultSymbols {
         IN_FORCE.get()
     }
 
-    /// The symbols that are not the usual ones: each symbol of the answer and its spelling.
+    /// Returns the symbols that differ from the usual ones: each symbol of the answer, and its
+    /// spelling.
     pub fn renamed(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
         let pairs = [
             (AMPLITUDE, self.amplitude),
@@ -142,8 +143,8 @@ impl ResultSymbols {
         pairs.into_iter().filter(|(usual, written)| usual != written)
     }
 
-    /// The symbol that a person means by this name beside an equation with these names: one of the
-    /// equation, or else the one that is written so in the answer.
+    /// Returns the symbol that a user means by this name beside an equation with these names: one
+    /// of the equation, or else the symbol of the answer that is written so.
     pub fn resolve(&self, name: Symbol, names: &[Symbol]) -> Symbol {
         if let Some(own) = names.iter().find(|own| own.name() == name.name()) {
             return *own;
@@ -168,7 +169,7 @@ pub(super) fn written(symbol: Symbol) -> &'static str {
     }
 }
 
-/// Words in which the frequency is called by its usual letter, with the one that is in force.
+/// Replaces the usual letter of the frequency in a text by the one that is in force.
 pub fn of_frequency(words: &str) -> String {
     words.replace(FREQUENCY.name(), FREQUENCY.written())
 }

@@ -4,7 +4,7 @@
 //! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and
 //! faster: under light viscous damping the action, the area S of the orbit in the phase plane,
 //! falls as exp(-2 zeta t) whatever the orbit, and a swing cut at the barrier starts with less of
-//! it. What is left of a gain is the loss in contact. With A the first amplitude and a = A/10,
+//! it. The rest of a gain is due to the loss in contact. With A the first amplitude and a = A/10,
 //!
 //! ```text
 //! S(A) = 2 int_-A^A x' dx        = 16 (E(m) - (1 - m) K(m)),  m = sin^2(A/2)      without a barrier
@@ -68,11 +68,11 @@ impl Geometry {
     }
 }
 
-/// Duration of the comparison runs in durations of the run: they rest later.
+/// Duration of the comparison runs in units of that of the motion itself, because they rest later.
 pub const BASELINE_DURATIONS: f64 = 4.0;
 
-/// The rest times beside that of this motion; `None` if there is nothing to compare: no impact,
-/// nothing that damps the swing, or a pivot that moves.
+/// The rest times with which that of this motion is compared; `None` if there is nothing to
+/// compare: no impact, no damping of the swing, or a moving pivot.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -26,9 +26,10 @@ use super::units::Units;
 pub struct Case {
     /// A, rad, positive: released from rest at x = -A, or at x = A towards a barrier on the left.
     pub amplitude: f64,
-    /// The side of the barrier that is swung against: the release is on the other one.
+    /// The side of the barrier towards which the pendulum is released; the release is on the other
+    /// side.
     pub side: Side,
-    /// x(0), rad, where it is not that release.
+    /// x(0), rad, if it is not that of the release; `None` otherwise.
     pub start: Option<f64>,
     /// x'(0), rad times omega.
     pub speed: f64,
@@ -36,23 +37,23 @@ pub struct Case {
     pub left: Option<f64>,
     /// Position of the right barrier x_c, rad.
     pub right: Option<f64>,
-    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design;
-    /// 0 for no barrier.
+    /// Dimensionless stiffness gamma of the contact, positive, or 0 for no barrier; `None` if it is
+    /// that of the design.
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
-    /// The speed, in `speed_unit`, at which a restitution is stated; without it that of the first
+    /// The speed, in `speed_unit`, at which a restitution is stated; if `None`, that of the first
     /// touch without damping.
     pub at_speed: Option<f64>,
     /// The unit of that speed.
     pub speed_unit: SpeedUnit,
     /// Viscous damping ratio zeta, dimensionless, not negative.
     pub zeta: f64,
-    /// The coefficient of the viscous force on the bob, N s/m, in place of zeta.
+    /// The coefficient of the viscous force on the bob, N s/m, in place of zeta if given.
     pub viscous: Option<f64>,
     /// Coulomb friction alpha, dimensionless, not negative.
     pub alpha: f64,
-    /// The torque of that friction, N m, in place of alpha.
+    /// The torque of the friction, N m, in place of alpha if given.
     pub torque: Option<f64>,
     /// The law of that friction.
     pub friction: Friction,
@@ -90,8 +91,8 @@ impl Default for Case {
 }
 
 impl Case {
-    /// The value of a parameter; `None` if the case leaves it to others: gamma to the design, the
-    /// start to the amplitude.
+    /// The value of a parameter; `None` if it follows from others: gamma from the design, the start
+    /// from the amplitude.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Amplitude => Some(self.amplitude),
@@ -125,7 +126,7 @@ impl Case {
         }
     }
 
-    /// Gives a parameter another value; whether it makes sense is seen by [`Case::motion`].
+    /// Sets a parameter without a check; [`Case::motion`] checks the values.
     pub fn set(&mut self, parameter: Parameter, value: f64) {
         match parameter {
             Parameter::Amplitude => self.amplitude = value,
@@ -167,7 +168,7 @@ impl Case {
     /// The equation and its start.
     ///
     /// # Errors
-    /// [`ModelError`] names the parameter that makes none.
+    /// [`ModelError`] names the parameter that is not admissible.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -280,7 +281,7 @@ impl Case {
         if self.left.is_some_and(|left| x < left) || self.right.is_some_and(|right| x > right) {
             return None;
         }
-        // cos c - cos x = 2 sin((x - c)/2) sin((x + c)/2), with the digits of small swings.
+        // cos c - cos x = 2 sin((x - c)/2) sin((x + c)/2), which keeps its digits for small swings.
         let square = |barrier: f64| {
             let fallen = 2.0 * (0.5 * (x - barrier)).sin() * (0.5 * (x + barrier)).sin();
             velocity * velocity + 2.0 * fallen
@@ -298,7 +299,7 @@ impl Case {
         speed(first).or_else(|| speed(second).filter(|_| !over_the_top))
     }
 
-    /// Every form of what damps this case; those in SI units where `units` are known.
+    /// Every form of the dampings of this case; those in SI units are `None` without `units`.
     ///
     /// # Errors
     /// As [`Case::motion`].

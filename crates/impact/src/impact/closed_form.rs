@@ -1,4 +1,4 @@
-//! The main job: a swing and an elastic barrier, from the equation to three checked phases.
+//! A swing and an elastic barrier, from the equation to three verified phases.
 //!
 //! ```text
 //! x'' + sin x + gamma (x - x_c)^(3/2) H(x - x_c) = 0,   x(0) = -A, x'(0) = 0        (9)
@@ -7,11 +7,11 @@
 //! return    x = A cos(omega (t - t2) + acos(x_c/A))                                   (16)
 //! ```
 //!
-//! In: a [`Setup`]. Out: an [`Impact`]: one column for each reading. The paper's comes first, with
-//! its one-term swing by [`method::solve`] and its line by [`three_phases`], then the same with the
-//! speed from the energy, then the derived one, all harmonics and the best contact law; each judged
-//! by Runge-Kutta on the equation as it stands. Without an order or a method the derived column has
-//! the first of a ladder that passes: what it tried is told.
+//! In: a [`Setup`]. Out: an [`Impact`], one column for each reading. The paper's reading comes
+//! first, with its one-term swing by [`method::solve`] and its line by [`three_phases`], then the
+//! same with the speed from the energy, then the derived one, with all harmonics and the best
+//! contact law; each is compared with Runge-Kutta on the equation as typed. Without a given order
+//! or method the derived column uses the first of a sequence that passes, and lists the attempts.
 
 use super::collision::losses;
 use super::contact::{ContactLaw, ContactRow};
@@ -26,22 +26,22 @@ use crate::method::{self, is_odd};
 use crate::solution::{Method, Solution};
 use crate::verify::Verdict;
 
-/// The three phases in closed form beside the true motion.
+/// The three phases in closed form, compared with the true motion.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Impact {
     /// The problem that was solved.
     pub setup: Setup,
-    /// The equation as it is judged.
+    /// The equation on which the closed forms are verified.
     pub equation: String,
-    /// Its letters.
+    /// The symbols of this equation.
     pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
     /// The start of the cycle: the release, or the turning point of a motion released inside the
     /// barrier.
     pub turning_point: f64,
-    /// The derived law of the free swing in the paper's reading, where there is one.
+    /// The derived law of the free swing in the paper's reading; `None` if that does not apply.
     pub free_swing: Option<Solution>,
     /// The closed forms, the paper's first.
     pub columns: Vec<JudgedPhases>,
@@ -49,9 +49,9 @@ pub struct Impact {
     pub flight: Option<Flight>,
     /// The contact of the derived column.
     pub contact: Option<DerivedContact>,
-    /// Every law of the contact at `energy_speed`; empty if they are not asked for.
+    /// Every law of the contact at `energy_speed`; empty if not requested.
     pub contact_laws: Vec<ContactRow>,
-    /// lambda of the contact, zero where it loses nothing.
+    /// lambda of the contact; zero if it loses no energy.
     pub damping: f64,
     /// Attempts at the derived column, in order, with the reasons of their failure.
     pub tried: Vec<Attempt>,
@@ -66,7 +66,7 @@ pub struct Impact {
 /// The version of the three closed-form phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseReading {
-    /// As the paper has it: every join continuous, contact speed from the one-term motion.
+    /// The paper's reading: every join continuous, contact speed from the one-term motion.
     Paper,
     /// As in the paper, with the contact speed from the energy.
     Energy,
@@ -120,7 +120,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         let (free_swing, paper, no_paper) = match paper(trial) {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
-                // If the same method was asked for both, its reason is the whole reason.
+                // If the same method serves both readings, its reason is the only one.
                 let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
                 if derived.is_none()
                     && alone
@@ -181,10 +181,10 @@ fn methods_to_try(setup: &Setup) -> Vec<Method> {
     }
 }
 
-/// The order of the law in the paper's reading, where none is given.
+/// The order of the law in the paper's reading, if none is given.
 const PAPERS_ORDER: u32 = 2;
 
-/// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
+/// The paper's law and its two readings, by one cosine; the force of the swing must be odd.
 pub(super) fn paper(
     trial: &Trial,
 ) -> Result<(Solution, Vec<(PhaseReading, ThreePhases)>), ImpactError> {
@@ -233,7 +233,7 @@ pub(super) fn paper(
     Ok((law, phases.into_iter().collect::<Result<_, ImpactError>>()?))
 }
 
-/// One number of an impact: by Runge-Kutta and by every column.
+/// A number of an impact: by Runge-Kutta and by every column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactQuantity {
     /// Its name.
@@ -255,18 +255,18 @@ impl ImpactQuantity {
 /// velocity in rad times omega.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledMotion {
-    /// Time, displacement, velocity; the contact, short as it is, has as many points as either
+    /// Time, displacement, velocity; the contact, although short, has as many points as each
     /// flight.
     pub samples: Vec<(f64, f64, f64)>,
     /// Time since touch and depth.
     pub contact: Vec<(f64, f64)>,
 }
 
-/// Numbers beyond the tolerance, with what of the closed form they come from.
+/// Numbers beyond the tolerance, and the part of the closed form that causes them.
 pub type Shortcoming = (Vec<(&'static str, f64)>, String);
 
 impl Impact {
-    /// The column of a reading, where there is one.
+    /// The column of a reading; `None` if it has none.
     pub fn column(&self, reading: PhaseReading) -> Option<&JudgedPhases> {
         self.columns.iter().find(|column| column.reading == reading)
     }
@@ -276,7 +276,7 @@ impl Impact {
         (self.turning_point - self.equilibrium).abs()
     }
 
-    /// Whether the contact of the derived column is the exact one, by law and without loss.
+    /// Whether the contact of the derived column is computed by the exact law and without loss.
     pub fn contact_is_exact(&self) -> bool {
         self.setup.loss.is_none() && self.setup.contact_law == ContactLaw::Exact
     }
@@ -328,8 +328,9 @@ impl Impact {
         })
     }
 
-    /// Restitution and speed out of a contact that loses energy, which are judged, and what it
-    /// loses per unit of mass, which is not: of a small loss no digits are left.
+    /// Restitution and exit speed of a contact that loses energy, which are judged, and the energy
+    /// lost per unit of mass, which is not, because a small loss has no digits left. `None` without
+    /// loss.
     pub fn losses(&self) -> Option<([ImpactQuantity; 2], ImpactQuantity)> {
         self.setup.loss?;
         let truth = losses([self.truth.touch.v, -self.truth.exit.v]);

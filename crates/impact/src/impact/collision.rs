@@ -6,9 +6,9 @@
 //! ```
 //!
 //! In: the two forces as closures, release and barrier in the units of the equation. Out: a
-//! [`Collision`], the question that closed forms and judge answer, and the speed at the touch; or
-//! why there is no touch. The barrier stands on the right: a motion to the left is looked at from
-//! the other side.
+//! [`Collision`], the problem for closed forms and verification alike, and the speed at the touch;
+//! or the reason why there is no touch. The barrier is on the right; a motion to the left is
+//! mirrored.
 
 use thiserror::Error;
 
@@ -44,7 +44,7 @@ pub(super) fn losses([inwards, outwards]: [f64; 2]) -> [f64; 3] {
     [outwards / inwards, outwards, lost]
 }
 
-/// The reason why nothing hits the barrier.
+/// The reason why there is no collision.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CollisionError {
@@ -146,11 +146,11 @@ impl CollisionError {
     }
 }
 
-/// The square of it, and the square of the depth that belongs to it, are numbers still.
+/// Smallest amplitude whose square, and the square of whose depth, do not underflow.
 const SMALLEST_AMPLITUDE: f64 = 1e-120;
 
 impl Collision<'_> {
-    /// Refuses numbers that describe no collision, before anything is computed from them.
+    /// Checks that the numbers describe a collision.
     ///
     /// # Errors
     /// [`CollisionError`].
@@ -165,8 +165,7 @@ impl Collision<'_> {
         if !barrier.is_finite() {
             return Err(CollisionError::Barrier(barrier));
         }
-        // As far as a symmetric swing goes, or for a release on the way to the barrier no further
-        // than that.
+        // The farthest point of a symmetric swing is the mirror image of the release.
         let furthest = release.abs();
         if barrier >= furthest && release < 0.0 || release > 0.0 && barrier > release {
             return Err(CollisionError::NeverReaches { release, furthest, barrier });
@@ -181,8 +180,8 @@ impl Collision<'_> {
     }
 
     /// The turning point on the free side of a motion released at rest at `inside`, beyond the
-    /// barrier: where V(x) - V(x_c) = V(inside) - V(x_c) + gamma int_0^(inside - x_c) F. The
-    /// release of this collision is not asked.
+    /// barrier: where V(x) - V(x_c) = V(inside) - V(x_c) + gamma int_0^(inside - x_c) F. The field
+    /// `release` is not used.
     ///
     /// # Errors
     /// [`CollisionError::Inside`] where the barrier does not push it out, or the swing does not
@@ -200,7 +199,7 @@ impl Collision<'_> {
             Ok((gained, _)) => -gained - energy,
             Err(_) => f64::NAN,
         };
-        // In steps that grow slowly: a hill lower than the energy must not be stepped over.
+        // The search takes slowly growing steps, so that no hill of the potential is stepped over.
         let mut step = 1e-6 * depth.max(barrier.abs());
         let (mut near, mut far) = (barrier, barrier - step);
         for _ in 0..400 {
@@ -242,8 +241,8 @@ impl Collision<'_> {
     /// ```
     pub fn contact_speed(&self) -> Result<f64, CollisionError> {
         let &Collision { release, barrier, restoring_force, .. } = self;
-        // It starts only if the force drives it; a force of rounding size is the unstable
-        // equilibrium itself.
+        // The motion starts only if the force drives it; a force of the size of rounding means the
+        // unstable equilibrium itself.
         let typical = (1..=16)
             .map(|part| {
                 restoring_force(release + (barrier - release) * f64::from(part) / 16.0).abs()

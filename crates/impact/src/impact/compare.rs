@@ -1,4 +1,4 @@
-//! Every method on one impact: a row each, judged against the same true motion.
+//! Comparison of all methods for one impact with the same true motion, one row each.
 //!
 //! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at
 //! its lowest order that passes, else at its best, and the reason of each that has no row.
@@ -18,9 +18,9 @@ use crate::verify::Verdict;
 pub struct ImpactComparison {
     /// The problem that was solved.
     pub setup: Setup,
-    /// The equation as it is judged.
+    /// The equation on which the closed forms are verified.
     pub equation: String,
-    /// Its letters.
+    /// The symbols of this equation.
     pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
@@ -30,9 +30,9 @@ pub struct ImpactComparison {
     /// The rows that have numbers: the paper's readings first, then the methods in the order of
     /// [`Method::ALL`].
     pub rows: Vec<ImpactRow>,
-    /// The others, with the reason of each.
+    /// The methods without numbers, with the reason of each.
     pub refused: Vec<(ImpactMethod, String)>,
-    /// lambda of the contact, zero where it loses nothing.
+    /// lambda of the contact; zero if it loses no energy.
     pub damping: f64,
     /// Runge-Kutta on the original equation.
     pub truth: TrueImpact,
@@ -72,7 +72,7 @@ impl ImpactMethod {
 pub struct ImpactRow {
     /// The method of the row.
     pub method: ImpactMethod,
-    /// The order of the law, where it has one.
+    /// The order of the law; `None` if it has none.
     pub order: Option<u32>,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
@@ -86,7 +86,7 @@ pub struct ImpactRow {
 }
 
 impl ImpactRow {
-    /// The method with its order, as tables have it.
+    /// The method with its order, as tables print it.
     pub fn title(&self) -> String {
         let title = self.method.title();
         match (self.degrees, self.order) {
@@ -107,7 +107,7 @@ impl ImpactRow {
     }
 }
 
-/// Every method on one impact.
+/// Compares every method on one impact.
 ///
 /// # Errors
 /// As [`solve`](super::solve()), but a method that does not apply is a row of its own.

@@ -11,11 +11,11 @@
 //! return     x = X(t - t3)           t3 = t2 + t1, the turning point after the impact and the period
 //! ```
 //!
-//! A contact that loses energy is left with less speed: then X of the return is the motion of the
-//! amplitude that has this speed at the barrier, and t3 - t2 the time it takes.
+//! The pendulum leaves a contact that loses energy with less speed: then X of the return is the
+//! motion whose amplitude gives this speed at the barrier, and t3 - t2 is its time.
 //!
-//! The swing is derived as it is released, from its upper turning point: where the release is the
-//! lower one, it is the equation of -x that is derived.
+//! The swing is derived as it is released, from its upper turning point: if the release is the
+//! lower one, the equation of -x is derived.
 
 use std::f64::consts::PI;
 
@@ -45,7 +45,7 @@ pub struct Flight {
     pub amplitude: f64,
     /// 1, or -1 where the release is the lower turning point: X = -x.
     pub sign: f64,
-    /// Whether that is an equation of its own: not where the force is odd.
+    /// Whether the equation of -x differs from that of x; it does not if the force is odd.
     pub is_turned: bool,
     /// X in numbers.
     pub motion: Motion,
@@ -65,8 +65,7 @@ impl Flight {
     ) -> Result<Self, ImpactError> {
         let swing = &equations.swing;
         let turned = if sign < 0.0 { mirrored_equation(swing)? } else { None };
-        // A swing between barriers is free: what drives it is refused by the method that knows free
-        // motions alone.
+        // A swing between barriers is free: methods of free motions refuse a drive.
         let options = &method::Options {
             method: options.method.or(Some(Method::LindstedtPoincare)),
             ..options.clone()
@@ -77,7 +76,8 @@ impl Flight {
         let amplitude = match solution.amplitude {
             AmplitudeConvention::Initial => distance,
             AmplitudeConvention::FirstHarmonic => {
-                // Of the size of the distance: the other harmonics are smaller than the first.
+                // The amplitude is of the size of the distance, because the other harmonics are
+                // smaller than the first.
                 let short = |amplitude| {
                     motion_at(amplitude)
                         .map_or(f64::NAN, |motion| motion.displacement_at(0.0) - from)
@@ -116,7 +116,7 @@ impl Flight {
         };
         let excess = |amplitude: f64| {
             let touched = of(amplitude).and_then(|flight| flight.touch(barrier));
-            // Too small a swing does not come as far.
+            // Too small a swing does not reach the barrier.
             touched.map_or(-1.0, |(_, found)| (found / speed).powi(2) - 1.0)
         };
         let amplitude =
@@ -202,12 +202,12 @@ const SERIES: f64 = 1e-6;
 pub enum DerivedContact {
     /// A contact without losses.
     Elastic(Box<ContactMotion>),
-    /// With damping, the force of the swing left out of it.
+    /// A contact with damping, without the force of the swing.
     Damped(Box<HuntCrossley>),
 }
 
 impl DerivedContact {
-    /// Its greatest depth, duration, and speed out where it was entered at `speed`.
+    /// Its greatest depth, duration, and exit speed for the entry speed `speed`.
     fn numbers(&self, speed: f64) -> [f64; 3] {
         match self {
             Self::Elastic(contact) => [contact.depth, contact.duration, speed],

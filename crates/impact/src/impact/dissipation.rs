@@ -15,8 +15,8 @@
 //!
 //! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the contact.) alpha is the
 //! dimensionless coefficient of friction. A bearing of radius r with a coefficient f of its own has
-//! the torque f m g r, alpha = f r/L, where the weight alone loads it; a swing loads it with m g
-//! (cos x + x'^2) and more, so there is no key for f.
+//! the torque f m g r, alpha = f r/L, if the weight alone loads it; a swing loads it with m g (cos
+//! x + x'^2) and more, so that f is not an input.
 
 use super::contact::hunt_crossley::{damping_for, restitution};
 use super::model::ModelError;
@@ -102,7 +102,7 @@ impl ContactDamping {
         Parameter::ContactDamping,
     ];
 
-    /// A value in this form; `None` for a parameter that is no damping of the contact.
+    /// A value in this form; `None` for a parameter that is not a damping of the contact.
     pub fn given(form: Parameter, value: f64) -> Option<Self> {
         match form {
             Parameter::Mu => Some(Self::Mu(value)),
@@ -139,8 +139,8 @@ impl ContactDamping {
     /// mu of equation (7).
     ///
     /// # Errors
-    /// [`ModelError`]: a damping that is negative or too large; a restitution that is none, or at
-    /// no speed.
+    /// [`ModelError`]: a damping that is negative or too large; a restitution out of range, or
+    /// without a speed.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -186,7 +186,7 @@ impl ContactDamping {
         }
     }
 
-    /// Converts the damping to the form of another one, whose number does not matter.
+    /// Converts the damping to the form of `other`, whose value is not used.
     ///
     /// # Errors
     /// As [`ContactDamping::mu`].
@@ -243,7 +243,7 @@ pub fn torque_of_friction(alpha: f64, units: &Units) -> f64 {
     alpha * units.energy()
 }
 
-/// Every form of what damps one motion.
+/// The dampings of one motion in every form.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Dissipation {
@@ -293,7 +293,7 @@ impl Dissipation {
         })
     }
 
-    /// The quantities that are held fixed, of the dampings that act: `mu`, `zeta`.
+    /// The quantities that are held fixed, one for each damping that acts: `mu`, `zeta`.
     pub fn held_fixed(&self) -> Vec<&'static str> {
         [
             (self.mu != 0.0, self.contact.form()),

@@ -1,4 +1,4 @@
-//! Why there is no impact in closed form.
+//! Errors of an impact in closed form.
 
 use super::collision::CollisionError;
 use super::contact::ContactError;
@@ -52,7 +52,7 @@ pub enum ImpactError {
         /// The parameter.
         name: Symbol,
     },
-    /// A swing about which the paper says nothing.
+    /// A swing that the paper's reading does not cover.
     #[error(
         "the paper's cosine is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`"
     )]
@@ -78,7 +78,7 @@ pub enum ImpactError {
         /// The force.
         force: String,
     },
-    /// A value for nothing.
+    /// A value for a name that does not occur.
     #[error("there is no parameter `{name}`, neither in the swing nor in the force of the barrier")]
     Unknown {
         /// The name.
@@ -115,7 +115,7 @@ pub enum ImpactError {
     /// The answer has no motion at these numbers.
     #[error(transparent)]
     Motion(#[from] NoNumbers),
-    /// A value that is none.
+    /// A value that is not a number.
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The contact could not be computed.
@@ -152,14 +152,14 @@ pub enum ImpactError {
     /// The run gave up.
     #[error("the true motion could not be followed to the end of the impact: {}", way_forward(.0))]
     Stopped(StopReason),
-    /// Closer steps give another motion, as close as doubles allow.
+    /// The motion still changes with the tolerance at the limit of double precision.
     #[error(
         "the true motion is not known to six digits, closer steps change it by {change:.0e}: double precision cannot tell \
          apart motions that start so near the top of the swing or turn so near the barrier; lower the amplitude, or move the \
          barrier"
     )]
     NotSettled {
-        /// By how much, relative to the quantity that changes most.
+        /// The change, relative to the quantity that changes most.
         change: f64,
     },
     /// The run could not begin.

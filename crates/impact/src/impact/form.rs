@@ -77,7 +77,7 @@ impl Form {
     pub const WRITTEN_CONTACT: f64 = 1e-4;
 
     /// The terms of a sum that are worth writing, in their order, with their coefficients: those
-    /// that six digits of a flight feel, or a contact to [`Form::WRITTEN_CONTACT`]; none for the
+    /// that affect six digits of a flight, or a contact to [`Form::WRITTEN_CONTACT`]; none for the
     /// forms of one wave.
     pub fn felt_terms(&self) -> Vec<(TimeFunction, f64)> {
         let felt = match self {
@@ -149,7 +149,7 @@ impl Form {
     /// The motion in another coordinate, offset + sign x.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         match self {
-            // A cosine swings about zero.
+            // A cosine oscillates about zero and ignores the offset.
             &Self::Cosine { amplitude, frequency, phase } => {
                 Self::Cosine { amplitude: sign * amplitude, frequency, phase }
             }

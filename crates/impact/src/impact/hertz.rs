@@ -1,9 +1,8 @@
 //! Hertz contact of a sphere and an elastic barrier.
 //!
-//! In: stiffness and depth, or stiffness and speed of touch. Out: force and stored energy; how
-//! deep, how long. The law stands here alone: the fitted line, the equation of motion, both
-//! integrators and the books of the energy ask here. In the paper's dimensionless form, with d the
-//! depth,
+//! In: stiffness and depth, or stiffness and speed of touch. Out: force and stored energy; depth
+//! and duration. The law is defined only here: the fitted line, the equation of motion, both
+//! integrators and the energy balance use it. In the paper's dimensionless form, with d the depth,
 //!
 //! ```text
 //! d'' = -gamma d^(3/2),  d(0) = 0, d'(0) = v                  energy stored: (2/5) gamma d^(5/2)
@@ -39,8 +38,8 @@ pub struct NotPositive {
     pub value: f64,
 }
 
-/// The quantities that equation (8) makes the dimensionless stiffness of, with the lever arm l = L
-/// and omega^2 = g/L.
+/// The quantities from which equation (8) gives the dimensionless stiffness, with the lever arm l =
+/// L and omega^2 = g/L.
 ///
 /// The default is a light pendulum before a soft barrier, with standard gravity to two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,14 +50,14 @@ pub struct StiffnessDesign {
     pub radius: f64,
     /// Length of the pendulum, m.
     pub length: f64,
-    /// Elastic modulus of the barrier, Pa: it counts alone, the sphere is rigid.
+    /// Elastic modulus of the barrier, Pa: the sphere counts as rigid.
     pub modulus: f64,
     /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
 }
 
-/// The stiffness gamma of the default [`StiffnessDesign`], by equation (8): that of every impact
-/// and every simulation for which no other is given.
+/// The stiffness gamma of the default [`StiffnessDesign`], by equation (8): the default of every
+/// impact and simulation.
 pub const DEFAULT_STIFFNESS: f64 = 30_406_664.685_165_863;
 
 impl Default for StiffnessDesign {
@@ -142,7 +141,7 @@ pub(super) fn greatest_depth(stiffness: f64, speed: f64) -> f64 {
     power.powf(0.4)
 }
 
-/// Duration of that contact.
+/// The duration of a contact of this stiffness entered at this speed.
 ///
 /// # Errors
 /// As [`penetration`].

@@ -4,7 +4,7 @@
 //! In: the force per unit of gamma as a closure of the depth, the greatest depth D, a [`Rule`].
 //! Out: a [`LinearContactForce`].
 //!
-//! With F(d) the force, the six rules ask, on 0 <= d <= D,
+//! With F(d) the force, the six rules are, on 0 <= d <= D,
 //!
 //! ```text
 //! least squares            min over a, s of  int_0^D (F(d) - a - s d)^2 dd
@@ -77,7 +77,7 @@ impl fmt::Display for Rule {
     }
 }
 
-/// A name that is no rule.
+/// The error of a name that is not a rule.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "unknown linearisation `{0}`: choose least-squares, least-squares-origin, equal-energy, equal-peak-force, \
@@ -130,7 +130,7 @@ pub enum LinearisationError {
         "the elastic force stops no impact of energy {0:e} (per unit of gamma): it must grow with the depth"
     )]
     NeverStops(f64),
-    /// The energy is used up before there is a depth in numbers.
+    /// The energy is used up at a depth that underflows.
     #[error(
         "the elastic force stops an impact of energy {0:e} (per unit of gamma) in a depth below 1e-119: no line is fitted to so stiff a contact"
     )]
@@ -200,7 +200,8 @@ pub fn fit(
 pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, QuadratureError> {
     // d = q^2 makes any force in powers of sqrt(d) smooth.
     match integrate_smooth(|q| 2.0 * q * elastic_force(q * q), 0.0, depth.max(0.0).sqrt(), 1e-14) {
-        // A force that is a difference near the touch leaves no more digits than this.
+        // A force that is a difference of nearly equal numbers near the touch has no more digits
+        // than this.
         Err(QuadratureError::NotConverged { value, error_estimate, .. })
             if error_estimate <= 1e-11 * value.abs() =>
         {
@@ -215,8 +216,8 @@ pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, Quadr
 /// (5 v^2/(4 gamma))^(2/5).
 ///
 /// # Errors
-/// [`LinearisationError::NeverStops`] where no depth is deep enough,
-/// [`LinearisationError::TooShallow`] where every one is, and those of [`work`].
+/// [`LinearisationError::NeverStops`] if no depth suffices, [`LinearisationError::TooShallow`] if
+/// every depth does, and those of [`work`].
 pub fn greatest_depth(
     elastic_force: impl Fn(f64) -> f64,
     energy: f64,

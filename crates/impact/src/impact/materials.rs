@@ -1,8 +1,9 @@
 //! The choice of the material of a barrier: the same swing against barriers that differ in their
 //! modulus alone.
 //!
-//! In: a design, what damps it, and materials. Out: for each material the contact, the motion until
-//! it rests, and how the rest time depends on what is held fixed while the modulus changes,
+//! In: a design, its dampings, and materials. Out: for each material the contact, the motion until
+//! it rests, and the dependence of the rest time on the form of the damping that is held fixed
+//! while the modulus changes,
 //!
 //! ```text
 //! gamma = (4/3) E sqrt(R) L^(3/2)/(m g)                                      equation (8), grows with E
@@ -10,8 +11,8 @@
 //! mu/gamma fixed, or lambda, or a restitution at a speed     the restitution e((mu/gamma) v) is that of any E
 //! ```
 //!
-//! The damping that is given is taken at the design's own modulus; the other forms hold fixed what
-//! it is there.
+//! The given damping applies at the modulus of the design; every other form is held fixed at its
+//! value there.
 
 use thiserror::Error;
 
@@ -29,18 +30,18 @@ use super::simulation::{
 };
 use super::units::{FIRST_YIELD, Modulus, Units};
 
-/// The materials of a study that is given none, with their elastic moduli, Pa.
+/// The default materials of a study, with their elastic moduli, Pa.
 pub const DEFAULT_MATERIALS: [(&str, f64); 3] = [
     ("Steel alloy (ASTM-A242)", 200e9),
     ("Aluminum alloy (6061-T6)", 70e9),
     ("Polyester elastomer", 0.2e9),
 ];
 
-/// The damping ratio zeta of a study that is given none.
+/// The default damping ratio zeta of a study.
 pub const DEFAULT_ZETA: f64 = 0.02;
 
-/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design,
-/// sqrt(g L) = 0.817 m/s.
+/// The default lambda, s/m, of a study: mu/gamma = 0.1 for the default design, sqrt(g L) = 0.817
+/// m/s.
 pub fn default_lambda() -> f64 {
     let design = hertz::StiffnessDesign::default();
     0.1 / (design.gravity * design.length).sqrt()
@@ -90,8 +91,7 @@ impl Material {
 /// A study of materials: the question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialQuestion {
-    /// The pendulum and what damps it. Its modulus is the one at which the damping of the contact
-    /// is what is given.
+    /// The pendulum and its dampings. The given damping of the contact applies at its modulus.
     pub case: Case,
     /// The materials.
     pub materials: Vec<Material>,
@@ -133,12 +133,12 @@ pub enum MaterialsError {
     /// The design.
     #[error(transparent)]
     Case(#[from] ModelError),
-    /// A material that makes no motion.
+    /// A material whose parameters are not admissible.
     #[error("material `{name}`: {error}")]
     Material {
         /// Its name.
         name: String,
-        /// Why.
+        /// The reason.
         error: ModelError,
     },
     /// A motion that cannot begin.
@@ -159,7 +159,7 @@ pub struct MotionToRest {
     pub stop: SimulationStop,
 }
 
-/// Follows one motion until it rests: the one place where a study finds a rest time.
+/// Follows one motion until it rests; every study gets its rest times here.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -302,10 +302,10 @@ pub struct MaterialStudy {
     pub held_fixed: Vec<HeldFixed>,
 }
 
-/// Every material of a question.
+/// Follows the motion for every material of a study.
 ///
 /// # Errors
-/// [`MaterialsError`]: no material, a design or a material that makes no motion.
+/// [`MaterialsError`]: no material, or a design or a material that is not admissible.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -376,7 +376,7 @@ impl MaterialQuestion {
         case
     }
 
-    /// The case of a material as it is asked for: with its own damping, or with that of the design.
+    /// The case of a material as requested: with its own damping, or with that of the design.
     fn own_case(&self, material: &Material) -> Case {
         match material.damping {
             Some(damping) => self.case_of(material, damping, material.at_speed),
@@ -426,9 +426,9 @@ fn row(
     })
 }
 
-/// The numbers of a first contact in SI units; the greatest force is looked for on the motion
-/// itself. Of one of a chain, or too short for the clock, duration and force are those of the
-/// closed form, in which the swing's own force is left out: it has no time to act.
+/// The numbers of a first contact in SI units; the greatest force is found on the motion itself.
+/// For a contact of a chain, or one too short for the clock, duration and force are those of the
+/// closed form, which neglects the force of the swing.
 fn first_contact(
     impact: &ContactRecord,
     model: &Model,
@@ -526,7 +526,7 @@ impl MaterialStudy {
     }
 
     /// Whether a softer material always rests sooner (true) or always later (false); `None` if
-    /// neither is so, or one does not rest.
+    /// neither holds, or one does not rest.
     pub fn order(&self, held: &HeldFixed) -> Option<bool> {
         let mut rests: Vec<(f64, f64)> = Vec::new();
         for (row, time) in self.rows.iter().zip(&held.rest_times) {
@@ -548,11 +548,11 @@ impl MaterialStudy {
         self.units.time() * rest_time
     }
 
-    /// The motion of a material as a function of time, for so long: as asked for, or under this
-    /// form of the damping.
+    /// The motion of a material as a function of time, over this duration, with the requested
+    /// damping or with this form of it.
     ///
     /// # Errors
-    /// As [`study_materials`]; a row that is not there has no motion.
+    /// As [`study_materials`]; a row that does not exist has no motion.
     pub fn motion(
         &self,
         row: usize,

@@ -1,10 +1,10 @@
-//! The impact wing: a pendulum that meets an elastic barrier, in closed form and in full.
+//! Impacts of a pendulum on an elastic barrier, in closed form and by simulation.
 //!
 //! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0, released at rest from x = -A towards the barrier
 //! at x_c: with f = sin x and F = depth^(3/2) the paper's equation (9); with damping, friction and
-//! a moving pivot its equation (7). In: amplitude, barrier, stiffness, and what damps and drives.
-//! Out: one impact in three closed forms beside the true motion, or a whole motion, event by event,
-//! and many of them at once.
+//! a moving pivot its equation (7). In: amplitude, barrier, stiffness, dampings and drive. Out: one
+//! impact in three closed forms with its true motion, or a whole motion, event by event, or many of
+//! them at once.
 //!
 //! Each file uses only those above it:
 //!
@@ -21,25 +21,25 @@
 //! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to
 //!   (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
-//! - `dissipation`: what damps, in every form in which it may be given, and which is held fixed:
+//! - `dissipation`: every damping in every form in which it may be given, and the form held fixed:
 //!   [`Dissipation`].
-//! - `model`: the forces of equation (7) and what its parameters may be.
+//! - `model`: the forces of equation (7) and the ranges of its parameters.
 //! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`]
 //!   reads or writes.
 //! - `regularised`: contact in a variable in which it is a power series.
 //! - `polynomial`: polynomials on an interval, and where their sign changes.
-//! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
+//! - `simulation`: the result of a simulation: its path, its energy, its rest time.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
 //! - `judge`: Runge-Kutta on the equations as they stand, for one impact and for a whole motion.
 //! - [`chain`](mod@chain): the same motion by closed forms, swing and contact in turn.
-//! - `setup`: a [`Setup`], the whole question, and the equations and forces that it means.
+//! - `setup`: a [`Setup`], the whole problem, and its equations and forces.
 //! - `derived`: a [`Flight`], any derived motion as approach and return.
-//! - `trial`: the question with its true motion, and what methods are tried in turn.
+//! - `trial`: the problem with its true motion, and the methods that are tried in turn.
 //! - `closed_form`: [`solve`], every reading of the three phases and the judge together.
 //! - `si`: the numbers of an impact in SI units, an [`SiImpact`].
 //! - `compare`: [`compare`], every method in one table.
 //! - `simulate`: [`simulate`](simulate()) and [`simulate_many`], by either integrator.
-//! - `baseline`: the same swing without a barrier, and with one that loses nothing.
+//! - `baseline`: the same swing without a barrier, and with a lossless one.
 //! - `materials`: [`study_materials`], the same swing against barriers of several materials.
 //! - [`sweep`]: parameters over a range, on all cores.
 //! - [`friction`]: equation (6) beside Coulomb's law, at some speeds and near rest.

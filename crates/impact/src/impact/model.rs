@@ -1,4 +1,4 @@
-//! The equation: the forces of the paper's equation (7), its parameters and what they may be.
+//! The forces of the paper's equation (7), its parameters and their ranges.
 //!
 //! ```text
 //! x'' = -2 zeta x' - alpha sgn(x') - sin x + beta sin(Omega t/omega) cos x - F(x - x_r, x') + F(x_l - x, -x')
@@ -23,7 +23,8 @@ use crate::decimal::{decimal, significant};
 /// The law of dry friction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Friction {
-    /// Coulomb's: alpha against the motion, and at rest whatever up to alpha keeps it at rest.
+    /// Coulomb's law: alpha against the motion, and at rest any torque up to alpha that keeps it at
+    /// rest.
     #[default]
     Exact,
     /// The paper's equation (6), alpha (2/pi) atan(100 x'): it creeps and never sticks.
@@ -95,7 +96,7 @@ pub struct Model {
 
 impl Default for Model {
     /// The default barrier, [`DEFAULT_BARRIER`], with the stiffness of its design,
-    /// [`hertz::DEFAULT_STIFFNESS`], and nothing that damps or drives.
+    /// [`hertz::DEFAULT_STIFFNESS`], and no damping or drive.
     fn default() -> Self {
         Self {
             zeta: 0.0,
@@ -133,7 +134,7 @@ impl Default for Start {
     }
 }
 
-/// The reason why there is nothing to simulate.
+/// The reason why a model or a start is not admissible.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ModelError {
@@ -178,18 +179,18 @@ pub enum ModelError {
         /// Position of the right one, rad.
         right: f64,
     },
-    /// A release that is none.
+    /// An amplitude of release that is not positive.
     #[error(
         "[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`"
     )]
     Amplitude(f64),
-    /// A release behind a barrier, which is no release.
+    /// A release behind a barrier.
     #[error(
         "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
          [pendulum]", .side.name()
     )]
     Inside {
-        /// Which barrier.
+        /// The side of the barrier.
         side: Side,
         /// Its position, rad.
         barrier: f64,
@@ -199,7 +200,7 @@ pub enum ModelError {
     /// A design that has no stiffness.
     #[error("[design]: {0}")]
     Design(#[from] NotPositive),
-    /// A damping of a barrier that is none.
+    /// A damping of a contact without a barrier.
     #[error("[contact] mu = {0} damps a barrier, and gamma = 0 is none: leave out one of them")]
     NothingToDamp(f64),
     /// An excitation without a frequency.
@@ -207,35 +208,35 @@ pub enum ModelError {
         "[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing"
     )]
     NoFrequency(f64),
-    /// A damping below zero, or no number.
+    /// A damping that is negative or not a number.
     #[error("{key} must be a number and not negative, not {value}")]
     NegativeDamping {
-        /// Which.
+        /// The parameter.
         key: Parameter,
         /// The value given.
         value: f64,
     },
-    /// A restitution that is none.
+    /// A restitution outside its range.
     #[error("[contact] restitution must lie above 0 and be at most 1, not {0}")]
     Restitution(f64),
-    /// A restitution at no speed.
+    /// A restitution without a speed at which it holds.
     #[error(
         "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
          `at_speed`, in m/s beside numbers in SI units and otherwise in rad times omega"
     )]
     NoSpeed,
-    /// A speed that is none.
+    /// A speed of the restitution that is not positive.
     #[error("[contact] at_speed must be a positive number, not {0}")]
     ContactSpeed(f64),
-    /// A lambda beyond doubles.
+    /// A lambda whose mu overflows.
     #[error(
         "[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material"
     )]
     Lambda(f64),
-    /// A damping beyond doubles.
+    /// A damping that overflows.
     #[error("{key} = {value:e} makes no finite number of equation (7)")]
     InfiniteDamping {
-        /// Which.
+        /// The parameter.
         key: Parameter,
         /// The value given.
         value: f64,
@@ -246,7 +247,7 @@ pub enum ModelError {
 const LARGEST_ANGLE: f64 = 4e9;
 
 impl Model {
-    /// Whether the parameters and the start make an equation.
+    /// Checks the parameters and the start.
     ///
     /// # Errors
     /// [`ModelError`] names the first parameter that does not.
@@ -300,13 +301,13 @@ impl Model {
         near(self.left) && near(self.right)
     }
 
-    /// Whether dry friction is Coulomb's and there is some: then the motion is followed one
+    /// Whether dry friction is Coulomb's and there is some: then the motion is integrated one
     /// direction at a time.
     pub fn sticks(&self) -> bool {
         self.friction == Friction::Exact && self.alpha > 0.0
     }
 
-    /// Acceleration by all that does not depend on the velocity and is no contact: gravity and
+    /// Acceleration by the forces that do not depend on the velocity, without contact: gravity and
     /// excitation.
     pub fn field(&self, t: f64, x: f64) -> f64 {
         if self.beta == 0.0 {
@@ -372,7 +373,7 @@ impl Model {
     /// against the constant force `field` and the excitation: the time and the direction; `None` if
     /// it holds for ever.
     ///
-    /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
+    /// |field + beta cos x sin(eta t)| = alpha, with the force increasing through this limit.
     pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {
         let drive = self.beta * x.cos();
         if drive == 0.0 || self.frequency_ratio == 0.0 {
@@ -385,10 +386,10 @@ impl Model {
             if level.abs() >= 1.0 {
                 continue;
             }
-            // On its way out: direction * drive * cos(phase) > 0.
+            // The force increases through the limit: direction * drive * cos(phase) > 0.
             let angle = if direction * drive > 0.0 { level.asin() } else { PI - level.asin() };
             let turns = ((phase - angle) / TAU).floor();
-            // The state may stand at the level already, to rounding: then it goes at once.
+            // If the force is at the limit already, to rounding, the release is immediate.
             let near = 1e-14 * phase.abs().max(1.0);
             let mut candidate = angle + TAU * turns;
             if candidate < phase - near {

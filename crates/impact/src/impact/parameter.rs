@@ -1,8 +1,7 @@
-//! The parameters of a pendulum and its barrier that a study may vary: sweeps now, whatever
-//! searches for the best next.
+//! The parameters of a pendulum and its barrier that a sweep or an optimisation may vary.
 //!
-//! In: the name of a parameter. Out: a [`Parameter`]: its name, where it belongs, its unit. Its
-//! value is read and written on a [`Case`](super::Case).
+//! In: the name of a parameter. Out: a [`Parameter`]: its name, its group, its unit. Its value is
+//! read and written on a [`Case`](super::Case).
 
 use std::fmt;
 use std::str::FromStr;
@@ -20,7 +19,7 @@ pub enum Parameter {
     Start,
     /// x'(0).
     Speed,
-    /// x_c, the place of the barrier that is swung against.
+    /// x_c, the position of the barrier towards which the pendulum is released.
     Barrier,
     /// Stiffness of the contact.
     Gamma,
@@ -32,7 +31,7 @@ pub enum Parameter {
     Lambda,
     /// Damping of the contact by its coefficient of restitution.
     Restitution,
-    /// The speed at which that is stated.
+    /// The speed at which the restitution is stated.
     AtSpeed,
     /// Damping of the contact in SI units.
     ContactDamping,
@@ -162,14 +161,14 @@ impl Parameter {
     }
 }
 
-/// Group and name, as a problem file has them: `[damping] zeta`.
+/// Group and name, as in a problem file: `[damping] zeta`.
 impl fmt::Display for Parameter {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "[{}] {}", self.group(), self.name())
     }
 }
 
-/// A name that is no parameter.
+/// The error of a name that is not a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "there is no parameter `{name}` to sweep: choose one of {}",
@@ -183,7 +182,7 @@ pub struct UnknownParameter {
 }
 
 impl UnknownParameter {
-    /// The way forward: what could be written instead; `None` if it is not known.
+    /// Advice on the name to write instead; `None` if no similar one is known.
     pub fn help(&self) -> Option<String> {
         self.nearest.map(|name| format!("did you mean `{name}`?"))
     }

@@ -47,7 +47,7 @@ pub struct ImpactProblem<'a> {
     pub stiffness: f64,
     /// omega^2 of the free swing at this amplitude, from the derived law: 1 - A^2/8 for the paper.
     pub frequency_squared: f64,
-    /// f'(0): what replaces f(x)/x in the contact, 1 for the pendulum.
+    /// f'(0), which replaces f(x)/x in the contact; 1 for the pendulum.
     pub linear_stiffness: f64,
     /// f(x), the original force without the barrier.
     pub restoring_force: &'a dyn Fn(f64) -> f64,
@@ -91,13 +91,13 @@ pub struct ThreePhases {
     pub penetration: f64,
     /// Duration of the contact, in units of 1/omega for the pendulum.
     pub duration: f64,
-    /// Time from the release to the turning point after the impact, in the same unit: where nothing
+    /// Time from the release to the turning point after the impact, in the same unit: if no energy
     /// is lost, the period.
     pub period: f64,
     /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the
     /// velocity at the start and at the end of the contact. Zero for [`ContactSpeed::Paper`].
     pub velocity_jump: f64,
-    /// The line that replaces the elastic force, where one does.
+    /// The line that replaces the elastic force; `None` if none does.
     pub fitted: Option<FittedLine>,
 }
 
@@ -120,8 +120,8 @@ pub struct MotionPhase {
     pub start: f64,
     /// Time at which it ends.
     pub end: f64,
-    /// The time from which its closed form counts, its clock: the start, or the end where it is the
-    /// way back to rest.
+    /// The time from which its closed form counts, its clock: the start, or for a derived return
+    /// the end.
     pub clock: f64,
     /// Its closed form, in the time from `clock`.
     pub form: Form,
@@ -169,7 +169,7 @@ pub fn three_phases(
     let fitted_depth =
         linearisation::greatest_depth(swing.elastic_force, 0.5 * speed * speed / stiffness)?;
     let line = linearisation::fit(swing.rule, swing.elastic_force, fitted_depth)?;
-    // In equation (15) the swing pulls with k x.
+    // In equation (15) the force of the swing is k x.
     let beside = [linear_stiffness * barrier, linear_stiffness];
     let contact = LineContact::new(line, stiffness, beside, speed)
         .ok_or(ImpactError::LinearStiffness(linear_stiffness))?;
@@ -235,7 +235,7 @@ fn check(swing: &ImpactProblem) -> Result<(), ImpactError> {
 }
 
 impl ImpactProblem<'_> {
-    /// The collision without the approximations.
+    /// The collision without approximations.
     pub fn collision(&self) -> Collision<'_> {
         Collision {
             release: -self.amplitude,
@@ -320,7 +320,7 @@ impl MotionPhase {
         self.closed_form_of(Symbol::new("x"))
     }
 
-    /// The closed form with another letter for the coordinate.
+    /// The closed form with another symbol for the coordinate.
     pub fn closed_form_of(&self, coordinate: Symbol) -> String {
         let clock = match self.joined_at() {
             Some(join) => format!("(t - t{join})"),

@@ -35,14 +35,13 @@ use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
 use crate::verify::DEFAULT_TOLERANCE;
 
-/// The swing without barrier, where none is given.
+/// The swing without barrier, if none is given.
 const FREE_SWING: &str = "x'' + sin(x) = 0";
 
 /// The numbers of an impact, and what is to be derived.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The swing without the barrier, a force of the position alone; the pendulum where none is
-    /// given.
+    /// The swing without the barrier, a force of the position alone; the pendulum if none is given.
     pub swing: Option<Oscillator>,
     /// Values of the parameters of the swing and of the law of the barrier.
     pub values: Values,
@@ -56,16 +55,16 @@ pub struct Setup {
     pub stiffness: f64,
     /// The source of gamma, in words.
     pub stiffness_source: String,
-    /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is
-    /// dimensionless alone.
+    /// The pendulum in SI units, which must agree with `stiffness`; if `None`, the answer has only
+    /// dimensionless numbers.
     pub units: Option<Units>,
     /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma`
-    /// among them; without it that of Hertz, `gamma*d^(3/2)`.
+    /// among them; if `None`, that of Hertz, `gamma*d^(3/2)`.
     pub force: Option<Expr>,
     /// The method that derives the swing of the derived column; if `None`, the first of a few that
     /// passes.
     pub method: Option<Method>,
-    /// Order of the law; without it 2 for the paper's reading, and for the derived column the
+    /// Order of the law; if `None`, 2 for the paper's reading, and for the derived column the
     /// lowest that passes.
     pub order: Option<u32>,
     /// The degrees of an approximant.
@@ -74,13 +73,13 @@ pub struct Setup {
     pub amplitude_convention: Option<AmplitudeConvention>,
     /// The rule of the line in the paper's version.
     pub rule: Rule,
-    /// The law of the contact in the derived column; without say where `loss` is given.
+    /// The law of the contact in the derived column; not used if `loss` is given.
     pub contact_law: ContactLaw,
-    /// Whether every law of the contact is to stand in a table.
+    /// Whether a table of every law of the contact is wanted.
     pub every_contact_law: bool,
     /// The loss in the contact: with it the derived column is that of Hunt and Crossley.
     pub loss: Option<ContactLoss>,
-    /// The relative error up to which a closed form passes.
+    /// The largest relative error of a passing closed form.
     pub tolerance: f64,
     /// Error per step of Runge-Kutta, relative; between 1e-15 and 0.1.
     pub integrator_tolerance: f64,
@@ -127,12 +126,12 @@ impl Default for Setup {
     }
 }
 
-/// The letters of an equation with a barrier.
+/// The symbols of an equation with a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImpactSymbols {
     /// The coordinate.
     pub coordinate: Symbol,
-    /// The place of the barrier: `xc`.
+    /// The position of the barrier: `xc`.
     pub barrier: Symbol,
     /// Its stiffness: `gamma`.
     pub stiffness: Symbol,
@@ -144,30 +143,31 @@ pub struct ImpactSymbols {
 
 /// The equations of an impact, and their forces as functions.
 pub(super) struct ImpactEquations {
-    /// The swing alone, as methods are asked: with numbers in it where its equilibrium needs them.
+    /// The swing alone, as it is given to methods: with numbers for parameters if its equilibrium
+    /// needs them.
     pub(super) swing: Oscillator,
     /// The values of its parameters.
     pub(super) values: Values,
-    /// x_e in numbers; zero where there is none.
+    /// x_e as a number; zero if there is no other.
     pub(super) equilibrium: f64,
     /// The letters.
     pub(super) letters: ImpactSymbols,
     /// The equation that is judged.
     pub(super) judged: String,
-    /// The stiffness that multiplies the elastic force: gamma, or one where the force was given
-    /// whole.
+    /// The stiffness that multiplies the elastic force: gamma, or one if the whole force was given.
     pub(super) stiffness: f64,
-    /// f(x), f'(x) and F(depth), each with gamma beside it.
+    /// f(x), f'(x) and F(depth), each with gamma as a further argument.
     forces: [CompiledFunction; 3],
     gamma: f64,
-    /// F near the touch, where it would lose its digits there.
+    /// F near the touch, if its expression loses its digits there.
     near_touch: Option<NearTouch>,
 }
 
 /// The Taylor polynomial of a contact force that is a difference of nearly equal numbers near the
 /// touch.
 struct NearTouch {
-    /// In q, with depth = q^root: so a force with roots of the depth has one as well.
+    /// The polynomial in q, with depth = q^root, so that a force with roots of the depth has one as
+    /// well.
     polynomial: NearRest,
     root: u32,
 }
@@ -187,14 +187,14 @@ fn power_of(symbol: Symbol, term: &Expr) -> Option<Rational> {
 }
 
 impl NearTouch {
-    /// The roots of the depth that the polynomial can be in: a force of higher ones is left as it
-    /// is typed.
+    /// Highest root of the depth in which the polynomial may be; a force with higher roots is
+    /// evaluated as typed.
     const HIGHEST_ROOT: u32 = 12;
 
     /// The polynomial of this force of the depth; `None` if the force keeps its digits, does not
     /// vanish at the touch, or is not analytic in a root of the depth.
     fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
-        /// A depth below all that matter: digits that are there at this one are there everywhere.
+        /// A depth below any of interest: a force that keeps its digits here keeps them everywhere.
         const SMALLEST: f64 = 1e-12;
         if force.substitute(depth, &Expr::zero()).is_ok_and(|at_touch| !at_touch.is_zero()) {
             return None;
@@ -206,8 +206,8 @@ impl NearTouch {
         let root = exponents.fold(Integer::from(1), |root, exponent| root.lcm(exponent.denom()));
         let root = root.to_u32().filter(|root| *root <= Self::HIGHEST_ROOT)?;
         let q = Expr::from(depth);
-        // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the power of q that all terms of a base have is taken
-        // out of its root.
+        // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the common power of q of all terms under a root is
+        // taken out of it.
         let in_root = force.fold(|part, children: &[Expr]| match (part.node(), children) {
             (Node::Symbol(name), _) if *name == depth => q.integer_power(root.into()),
             (Node::Power(_, exponent), [base, _]) if base.contains(depth) => {
@@ -256,7 +256,7 @@ impl ImpactEquations {
 }
 
 impl Setup {
-    /// The letters, none of which the swing or the force of the barrier uses for something else.
+    /// The symbols, none of which the swing or the force of the barrier uses for another quantity.
     fn letters(&self, swing: &Oscillator) -> ImpactSymbols {
         let x = swing.coordinate;
         let mut taken = swing.parameters.clone();
@@ -298,8 +298,8 @@ impl Setup {
     /// The equations and their forces.
     ///
     /// # Errors
-    /// A swing that is none or whose force depends on more than the position; a parameter without a
-    /// value.
+    /// A swing that is not an oscillator or whose force depends on more than the position; a
+    /// parameter without a value.
     pub(super) fn equations(&self) -> Result<ImpactEquations, ImpactError> {
         let swing = match &self.swing {
             Some(swing) => swing.clone(),

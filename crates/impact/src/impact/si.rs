@@ -1,9 +1,9 @@
-//! The numbers of an impact in SI units, and what they say: whether a body yields.
+//! The numbers of an impact in SI units, and the check whether a body yields.
 //!
 //! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every
 //! number by Runge-Kutta and by each closed form. The peak force is that of Hertz at the greatest
-//! depth, also where a line stood for it; of a damped contact the greatest there is, which comes
-//! before.
+//! depth, also for a phase by a line; for a damped contact it is the greatest force, which occurs
+//! before the greatest depth.
 
 use super::closed_form::{Impact, ImpactQuantity};
 use super::contact::hunt_crossley;

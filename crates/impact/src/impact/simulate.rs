@@ -11,7 +11,7 @@
 //!
 //! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised
 //!   equation, and the events as roots of polynomials.
-//! - [`Integrator::RungeKutta`], the judge: the library's Runge-Kutta in phases.
+//! - [`Integrator::RungeKutta`], for verification: the library's Runge-Kutta in phases.
 //! - [`Integrator::Chain`], which does not integrate: closed forms, good to a part of a percent.
 
 use thiserror::Error;
@@ -33,7 +33,7 @@ pub enum SimulationError {
     /// A duration that is not a positive number.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
-    /// A motion so small that the force of a barrier cannot be told from zero.
+    /// A motion so small that the force of a barrier underflows.
     #[error(
         "the motion is of size {0:e}, at which the force of a barrier, d^(3/2), underflows: scale it up, below 1e-8 or so \
          the swing is linear"
@@ -52,13 +52,13 @@ pub enum SimulationError {
     RungeKutta(#[from] IntegrationError),
 }
 
-/// The smallest motion that can be followed: its depths to the power 5/2 are numbers still.
+/// The smallest motion that can be followed: its depths to the power 5/2 do not underflow.
 const SMALLEST: f64 = 1e-100;
 
 /// The motion from this start.
 ///
 /// # Errors
-/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask
+/// [`SimulationError`] if it cannot begin. A motion that ends early is not an error: see
 /// [`Simulation::stop`].
 ///
 /// ```
@@ -86,10 +86,10 @@ pub fn simulate(
     }
 }
 
-/// The time until which a motion with a moving pivot is known to six digits of its size, one of two
-/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None` if
-/// it is known to the end, where the pivot is at rest, whose motions are regular, or without a
-/// path. Costs as much as the motion.
+/// The time until which a motion with a moving pivot is known to six digits of its size, among two
+/// thousand instants; later, a start with the relative displacement [`DISPLACEMENT`] leads
+/// elsewhere. `None` if it is known to the end, if the pivot is at rest (such motions are regular),
+/// or without a path. The cost is that of the motion.
 ///
 /// ```text
 /// errors of the integration grow as the displacement does: six digits are lost where it has grown 1e-6/tolerance times
@@ -127,8 +127,7 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     Some(first.checked_sub(1).map_or(0.0, |last| places[last].0))
 }
 
-/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`]
-/// makes of it.
+/// Many motions on one core, by Taylor series, several at a time: each exactly as by [`simulate`].
 ///
 /// # Errors
 /// As [`simulate`], for the first that cannot begin, with its number.

@@ -1,9 +1,9 @@
-//! Many motions: any number of parameters, each with its values, on all cores, and what an engineer
-//! asks of each.
+//! Many motions on all cores, for any number of parameters with their values, and a summary of
+//! each.
 //!
 //! In: motions, in the order of their numbers, such as those of the grid of some [`Axis`]. Out: a
-//! [`Summary`] each, in that order. Every motion is followed by the same operations wherever it
-//! runs, so the result does not depend on the number of threads.
+//! [`Summary`] each, in that order. Every motion is computed by the same operations on any thread,
+//! so that the result does not depend on the number of threads.
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;
@@ -32,7 +32,7 @@ use crate::parallel::par_map;
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
 
-/// Motions that one thread follows together.
+/// Number of motions that one thread follows together.
 const CHUNK: usize = 96;
 
 /// More motions than a sweep may have.
@@ -105,10 +105,9 @@ pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
     /// The time at which the envelope fell to a tenth of the first swing, in units of 1/omega; or
-    /// why it did not.
+    /// the reason why it did not.
     pub rest_time: Result<f64, NoRest>,
-    /// The rest times of the same swing without a barrier and with a lossless one, where they were
-    /// asked for.
+    /// The rest times of the same swing without a barrier and with a lossless one, if requested.
     pub baseline: Option<[Result<f64, NoRest>; 2]>,
     /// The greatest depth in a barrier, rad; 0 without contact.
     pub deepest: f64,
@@ -127,7 +126,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Whether the motion was begun before all were asked to end.
+    /// Whether the motion had begun before the interrupt.
     pub fn is_begun(&self) -> bool {
         !matches!(self.stop, SimulationStop::Interrupted { t } if t == 0.0)
     }
@@ -142,7 +141,7 @@ impl Summary {
             baseline: None,
             deepest: largest(|impact| impact.penetration),
             fastest: largest(|impact| impact.speed_in),
-            // The sum of nothing is minus zero.
+            // An empty sum of floats is minus zero in Rust.
             energy_lost: motion
                 .impacts
                 .iter()

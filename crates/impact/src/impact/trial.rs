@@ -1,9 +1,9 @@
-//! A trial: the question of an impact, its true motion, and derived phases that are judged against
+//! A trial: the problem of an impact, its true motion, and derived phases that are compared with
 //! it.
 //!
 //! In: a [`Setup`](super::Setup) and the methods to try. Out: the derived phases of the first order
-//! and method that pass, and an [`Attempt`] for each that was tried. Everything that is judged is
-//! so in z = s (x - x_e), which runs from the equilibrium towards the barrier.
+//! and method that pass, and an [`Attempt`] for each that was tried. All comparisons are made in z
+//! = s (x - x_e), which runs from the equilibrium towards the barrier.
 
 use super::collision::{Collision, CollisionError};
 use super::contact::hunt_crossley::{damping_for, restitution};
@@ -24,17 +24,17 @@ use crate::solution::{Counts, Degrees, Method, Solution};
 pub struct Attempt {
     /// The method.
     pub method: Method,
-    /// Its order, where it was given one.
+    /// Its order; `None` if it has none.
     pub order: Option<u32>,
-    /// Its degrees, where it was given some.
+    /// Its degrees; `None` if it has none.
     pub degrees: Option<Degrees>,
-    /// The largest error, relative; of the five numbers alone where one of them is beyond the
-    /// tolerance already. Where the contact is not the exact one, that of the approach. Or why
-    /// there is none.
+    /// The largest relative error, or the reason why there is none. If one of the five numbers is
+    /// beyond the tolerance already, only these count; if the contact is not the exact one, only
+    /// the approach.
     pub error: Result<f64, String>,
 }
 
-/// The question of an impact with its true motion.
+/// The problem of an impact with its true motion.
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
     pub(super) equations: &'a ImpactEquations,
@@ -56,16 +56,15 @@ pub(super) struct Derived {
     pub(super) phases: ThreePhases,
     /// Their contact.
     pub(super) contact: DerivedContact,
-    /// Their largest error; where the contact is not the exact one, that of the approach.
+    /// Their largest error; that of the approach if the contact is not the exact one.
     error: f64,
 }
 
 /// An order or degrees of a method.
 type Rung = (Option<u32>, Option<Degrees>);
 
-/// The highest order of a method that is tried where none is asked for: expansions and balances go
-/// on for long, the others become slow, and a third pass of iteration perturbation may take
-/// minutes.
+/// The highest order of a method that is tried if none is given: high for expansions and balances,
+/// low for the others, which become slow; a third pass of iteration perturbation may take minutes.
 fn highest_order(method: Method) -> u32 {
     match method {
         Method::LindstedtPoincare | Method::HarmonicBalance => 16,
@@ -78,10 +77,10 @@ fn highest_order(method: Method) -> u32 {
 const PATIENCE: usize = 4;
 
 impl Trial<'_> {
-    /// Follows the true motion and hands the trial on.
+    /// Follows the true motion and calls `run` with the trial.
     ///
     /// # Errors
-    /// A barrier out of reach, a release from which nothing swings to it, numbers that are none.
+    /// A barrier out of reach, a release that does not lead to it, numbers that are not finite.
     pub(super) fn run<R>(
         setup: &Setup,
         body: impl FnOnce(&Trial) -> Result<R, ImpactError>,
@@ -151,8 +150,8 @@ impl Trial<'_> {
         deviation(&seen, &self.truth)
     }
 
-    /// The derived phases of the first of these methods that passes, else the best; and what was
-    /// tried.
+    /// The derived phases of the first of these methods that passes, else of the best; and the
+    /// attempts.
     pub(super) fn derived(&self, methods: &[Method]) -> (Option<Derived>, Vec<Attempt>) {
         let mut tried: Vec<Attempt> = Vec::new();
         let mut best: Option<Derived> = None;
@@ -198,7 +197,7 @@ impl Trial<'_> {
             };
             let flight =
                 Flight::derive(self.equations, [self.turning_point, -setup.side.sign()], &options);
-            // An order that adds nothing to a formula is passed over.
+            // An order that does not change the formula is skipped.
             let solution = flight.as_ref().ok().map(|flight| &flight.solution);
             let same = |last: &Solution, new: &Solution| {
                 last.law == new.law
@@ -211,11 +210,12 @@ impl Trial<'_> {
                 continue;
             }
             last = solution.cloned();
-            // A method that refuses an order refuses those above it; the first may be too low.
+            // A method that refuses an order refuses the higher ones too, unless the first was too
+            // low.
             let refused = matches!(flight, Err(ImpactError::Refusal(_)))
                 && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
-            // A law that does not apply to this contact does so at no order.
+            // A law that does not apply to this contact does not apply at any order.
             let no_law = matches!(found, Err(ImpactError::Contact(_)))
                 && self.contact(self.energy_speed).is_err();
             tried.push(Attempt {
@@ -228,7 +228,8 @@ impl Trial<'_> {
                     .map_err(|reason| reason.without_title(method)),
             });
             best = with_smaller_error(best, found.ok());
-            // Orders that bring nothing closer for long: an expansion beyond its radius.
+            // If the error has not decreased over several orders, the expansion is beyond its
+            // radius of convergence.
             let error = |attempt: &Attempt| attempt.error.clone().unwrap_or(f64::INFINITY);
             let stalls = tried.len() > PATIENCE && {
                 let (before, lately) = tried.split_at(tried.len() - PATIENCE);
@@ -247,17 +248,17 @@ impl Trial<'_> {
         (best, tried)
     }
 
-    /// The phases of this swing, and how far they are from the truth.
+    /// The phases of this swing with their error.
     fn with_contact(&self, flight: Flight) -> Result<Derived, ImpactError> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
         let contact = self.contact(speed)?;
         let phases =
             phases_of(&flight, self.equations, self.setup.barrier, [touch, speed], &contact)?;
-        // A law of the contact that is far off must not be made up for by the swing: that is chosen
-        // by its flight.
+        // The swing must not compensate the error of an inaccurate contact law, so that only its
+        // flight is judged then.
         let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
         let numbers = self.number_errors(&phases);
-        // A motion with a wrong number is not compared phase by phase.
+        // If a number is beyond the tolerance, the phases are not compared.
         let numbers = worst(if is_exact { &numbers } else { &numbers[..2] });
         let error = match (numbers <= self.setup.tolerance, is_exact) {
             (true, true) => worst(&self.errors(&phases)),
@@ -267,7 +268,7 @@ impl Trial<'_> {
         Ok(Derived { flight, phases, contact, error })
     }
 
-    /// The contact entered at this speed, the force of the swing included where nothing is lost.
+    /// The contact entered at this speed, with the force of the swing if there is no loss.
     fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
         let touch = self.touch(speed);
         match self.setup.loss {
@@ -298,7 +299,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Every law of the contact at the speed from the energy, where they are asked for.
+    /// Every law of the contact at the speed from the energy; empty if not requested.
     pub(super) fn contact_laws(&self) -> Result<Vec<ContactRow>, ContactError> {
         match self.setup.every_contact_law {
             true => comparison(&self.touch(self.energy_speed)),
@@ -325,7 +326,7 @@ impl Trial<'_> {
         ]
     }
 
-    /// The first five of them.
+    /// The first five of these [errors](Self::errors).
     fn number_errors(&self, phases: &ThreePhases) -> [f64; 5] {
         let (found, truth) = (phases.quantities(), self.truth.quantities());
         std::array::from_fn(|index| found[index] / truth[index] - 1.0)
@@ -340,7 +341,7 @@ fn with_smaller_error(one: Option<Derived>, other: Option<Derived>) -> Option<De
     }
 }
 
-/// The largest of them in size; what is not a number is the largest.
+/// The largest absolute value; NaN counts as the largest.
 pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
     errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
         true => f64::INFINITY,

@@ -1,9 +1,9 @@
-//! The pendulum in SI units: what a dimensionless number of the paper's equation (9) is in seconds,
-//! metres and newtons.
+//! The pendulum in SI units: conversion of the dimensionless numbers of the paper's equation (9) to
+//! seconds, metres and newtons.
 //!
 //! In: mass, length and gravity of the pendulum, radius and moduli of the bodies that meet. Out:
-//! the units of its numbers, the modulus that both bodies have together, and the pressure where
-//! they meet. With x the angle, d = L (x - x_c) the depth in m,
+//! the units of its numbers, the combined modulus of both bodies, and the contact pressure. With x
+//! the angle, d = L (x - x_c) the depth in m,
 //!
 //! ```text
 //! m L^2 x'' + m g L sin x + k d^(3/2) L = 0,   k = (4/3) E sqrt(R)            the motion in SI units
@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 /// yield limit.
 pub const FIRST_YIELD: f64 = 1.6;
 
-/// An elastic body, by what tables of materials print.
+/// The elastic constants of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
     /// Young's modulus, Pa, positive.
@@ -35,7 +35,7 @@ pub struct Elastic {
 }
 
 impl Elastic {
-    /// (1 - nu^2)/E, 1/Pa: what the body adds to 1/E of the contact.
+    /// (1 - nu^2)/E, 1/Pa: the contribution of the body to 1/E of the contact.
     fn compliance(self) -> f64 {
         (1.0 - self.poisson * self.poisson) / self.modulus
     }
@@ -88,7 +88,7 @@ pub struct Units {
     pub gravity: f64,
     /// Radius of the sphere, m; without it no pressure is known.
     pub radius: Option<f64>,
-    /// The modulus that gamma follows from; `None` if gamma is given.
+    /// The modulus from which gamma follows; `None` if gamma is given.
     pub modulus: Option<Modulus>,
     /// Yield limit of the sphere, Pa, where one is stated.
     pub sphere_yield: Option<f64>,

@@ -1,5 +1,5 @@
-//! The limits of the best design: found by moving every variable alone, by designs drawn around it,
-//! and by the unit of the rest time.
+//! The factors that limit the best design, found by varying each variable alone, by random designs
+//! around it, and by the unit of the rest time.
 //!
 //! ```text
 //! elasticity      (p/T) dT/dp, by steps of 1 % of p, of motions that are integrated
@@ -11,7 +11,7 @@
 //! share           the part of the box within 1 % of the best
 //! ```
 //!
-//! With a density the mass follows the radius, and the radius the mass where that is moved.
+//! With a density the mass follows the radius, or the radius the mass if that is varied.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -23,13 +23,13 @@ use crate::genetic::{Space, generator};
 use crate::impact::Parameter;
 use crate::numeric::ode::root::{BisectionStop, bisect};
 
-/// A design this much worse, in parts, is as good for an engineer.
+/// Relative difference of the objective up to which a design counts as equally good.
 pub const WITHIN: f64 = 0.01;
 
 /// The role of a variable in the best design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VariableRole {
-    /// Its whole range is as good.
+    /// Its whole range is equally good.
     Flat,
     /// The variable lies at its lower limit.
     Lower,
@@ -37,7 +37,7 @@ pub enum VariableRole {
     Upper,
     /// A constraint stops it.
     Limit,
-    /// Something is lost on either side.
+    /// The objective becomes worse on either side.
     Trade,
 }
 
@@ -45,7 +45,7 @@ impl VariableRole {
     /// Every role.
     pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
 
-    /// In a word or two.
+    /// The role in a word or two.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flat => "flat",
@@ -71,7 +71,7 @@ pub struct Sensitivity {
     /// Between these values, the others held, the objective is no more than 1 % worse.
     pub alone: [f64; 2],
     /// The least and the greatest value of the objective on its whole range, the others held,
-    /// constraints aside; `None` if the motion does not rest somewhere.
+    /// without constraints; `None` if the motion does not come to rest somewhere in it.
     pub range: Option<[f64; 2]>,
     /// The role that follows.
     pub role: VariableRole,
@@ -98,14 +98,14 @@ pub struct Ends {
 pub struct Decision {
     /// The variables, in their order.
     pub sensitivities: Vec<Sensitivity>,
-    /// The objective of the best design as the others are judged here: by closed forms where it has
+    /// The objective of the best design, computed as for the others here: by closed forms if it has
     /// them.
     pub value: f64,
     /// The least objective of all designs that were tried here and keep the constraints.
     pub least: f64,
-    /// Designs that were drawn from the whole box and from what is as good alone.
+    /// Number of designs drawn from the whole box and from the ranges that are equally good.
     pub drawn: usize,
-    /// The part of the box within 1 % of the best.
+    /// The fraction of the box within 1 % of the best.
     pub share: f64,
     /// Least and greatest value of every variable among the designs within 1 %.
     pub extents: Vec<[f64; 2]>,
@@ -116,25 +116,26 @@ pub struct Decision {
     /// The effect of the unit of the rest time, if a rest time is the objective and the length is
     /// searched.
     pub ends: Option<Ends>,
-    /// The objective with every material, the best design otherwise; nothing for one that does not
-    /// rest.
+    /// The objective with every material and the other values of the best design; `None` for one
+    /// that does not come to rest.
     pub materials: Vec<Option<f64>>,
 }
 
-/// Values that differ by less than this part are the same.
+/// Relative difference below which values are the same.
 const SAME: f64 = 1e-6;
 
-/// Designs drawn from the whole box, and from the box of what is as good alone.
+/// Numbers of designs drawn from the whole box, and from the box of the ranges that are equally
+/// good.
 const DRAWN: [usize; 2] = [4000, 2000];
 
-/// Streams of random numbers far from those of the runs.
+/// First stream of random numbers, far from those of the runs.
 const STREAM: u64 = 1 << 40;
 
 /// Steps from the best value of a variable to its limit.
 const STEPS: i32 = 40;
 
 impl Decision {
-    /// The sensitivities of this design, the best of its box, judged by integration.
+    /// The sensitivities of this design, the best of its box, by integration.
     pub(super) fn new(
         question: &OptimizationProblem,
         space: &Space,
@@ -210,18 +211,18 @@ struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// The objective at a point, constraints aside.
+    /// The objective at a point, without constraints; `None` if it has no value.
     fn value(&self, point: &[f64]) -> Option<f64> {
         let objective = *self.question.objectives.first()?;
         objective.value(&self.question.follow(point, Route::Chain, objective.is_of_contact()).ok()?)
     }
 
-    /// The objective of a point that keeps the constraints.
+    /// The objective of a point; `None` if it breaks a constraint.
     fn feasible(&self, point: &[f64]) -> Option<f64> {
         self.judged(point)[1]
     }
 
-    /// The objective of a point, constraints aside, and where it keeps them.
+    /// The objective of a point without constraints, and with them.
     fn judged(&self, point: &[f64]) -> [Option<f64>; 2] {
         let evaluation = self.question.bounded_evaluation(point, self.least.get(), &mut 0);
         let value = Some(evaluation.value()).filter(|value| value.is_finite());
@@ -302,7 +303,7 @@ impl Probe<'_> {
             limit
         };
         let alone = limits.map(reach);
-        // With a density some values are not to be had.
+        // With a density some values are not possible.
         let tried = limits.into_iter().flat_map(|limit| self.values_towards(value, limit));
         let tried = tried.filter_map(|value| self.with_variable(best, index, value));
         let tried: Vec<[Option<f64>; 2]> = tried.map(|point| self.judged(&point)).collect();
@@ -314,13 +315,13 @@ impl Probe<'_> {
         });
         let kept = tried.iter().filter_map(|[_, kept]| *kept);
         let least = kept.chain(self.value(best)).fold(f64::INFINITY, f64::min);
-        // Whether the end is as good as anything on the way.
+        // Whether the limit is the best of all values tried on the way.
         let is_end = |end: usize| {
             let point = self.with_variable(best, index, limits[end]);
             let at_end = point.and_then(|point| self.feasible(&point));
             alone[end] == limits[end] && at_end.is_some_and(|at_end| at_end <= least * (1.0 + SAME))
         };
-        // Just beyond what is as good: worse, or forbidden?
+        // Whether the values just beyond the equally good range are forbidden, not only worse.
         let is_forbidden = |end: usize| {
             let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
             alone[end] != limits[end]
@@ -370,12 +371,12 @@ impl Probe<'_> {
         Some((above / below).ln() / (ends[1] / ends[0]).ln()).filter(|slope| slope.is_finite())
     }
 
-    /// Numbers of designs drawn from the whole box, and from the ranges that are as good alone.
+    /// Numbers of designs drawn from the whole box, and from the ranges that are equally good.
     fn drawn(&self) -> [usize; 2] {
         DRAWN.map(|count| count / self.fewer)
     }
 
-    /// The part of the box within the level, and designs there.
+    /// The fraction of the box within the level, and designs there.
     fn share(&self, near: &[[f64; 2]], level: f64) -> (f64, Vec<Vec<f64>>) {
         let mut points = Vec::new();
         let mut shares = [0.0; 2];
@@ -400,7 +401,7 @@ impl Probe<'_> {
         let part =
             |(near, whole): (&[f64; 2], &[f64; 2])| (near[1] - near[0]) / (whole[1] - whole[0]);
         let volume: f64 = near.iter().zip(whole).map(part).product();
-        // Few of the whole box say little.
+        // A few designs from the whole box are not a reliable estimate.
         match shares[0] * drawn[0] as f64 >= 20.0 {
             true => (shares[0], points),
             false => (shares[1] * volume, points),

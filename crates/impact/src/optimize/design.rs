@@ -1,6 +1,6 @@
-//! One design: its motion until it rests, and the numbers that a search asks for.
+//! One design: its motion until it rests, and the numbers that a search needs.
 //!
-//! The motion is the chain of closed forms, a few microseconds; where it has none, as for a heavily
+//! The motion is the chain of closed forms, a few microseconds; if it has none, as for a heavily
 //! damped swing, it is integrated. A pendulum that a main mass carries is followed together with
 //! it, always by integration.
 
@@ -34,8 +34,8 @@ pub struct HardestContact {
 }
 
 impl HardestContact {
-    /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its
-    /// restitution. `None` if there is none.
+    /// The greatest of these contacts: each is given by its force in units of m g, its depth in
+    /// rad, and its restitution. `None` if there is none.
     fn from_contacts(
         model: &Model,
         units: &Units,
@@ -64,9 +64,9 @@ impl HardestContact {
 pub struct EvaluatedDesign {
     /// The point of the box.
     pub point: Vec<f64>,
-    /// The number of its material, where materials are tried.
+    /// The number of its material; `None` if no materials are tried.
     pub material: Option<usize>,
-    /// The pendulum, its barrier and what damps it.
+    /// The pendulum, its barrier and its dampings.
     pub case: Case,
     /// The equation.
     pub model: Model,
@@ -74,9 +74,9 @@ pub struct EvaluatedDesign {
     pub units: Units,
     /// The rest time of the pendulum, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
-    /// The contacts until it rests; all of them where it does not.
+    /// The contacts until it rests; all of them if it does not.
     pub impacts: usize,
-    /// The hardest of them; `None` if there was none, or it was not asked for.
+    /// The hardest of them; `None` if there was none, or it was not requested.
     pub hardest: Option<HardestContact>,
     /// The rest time of the main mass, s; `None` without one.
     pub primary_rest_time: Option<Result<f64, NoRest>>,
@@ -109,7 +109,7 @@ impl OptimizationProblem {
         (case, material)
     }
 
-    /// Whether a design may have the damping of the contact that is held fixed: not where every
+    /// Whether the damping of the contact that is held fixed may apply: it does not if every
     /// material has its own.
     pub fn holds_contact_damping(&self) -> bool {
         self.materials.is_empty()
@@ -156,7 +156,8 @@ impl OptimizationProblem {
         })
     }
 
-    /// The default design as a point of this box, in it or not; `None` if materials are tried.
+    /// The default design as a point of this space, inside the box or not; `None` if materials are
+    /// tried.
     pub fn default_point(&self) -> Option<Vec<f64>> {
         let usual = Case::default();
         let value = |parameter: Parameter| usual.get(parameter);
@@ -240,8 +241,8 @@ impl DesignMotion<'_> {
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 
-    /// The hardest contact of a motion that was integrated. Of one too short for the clock the
-    /// force is that of the closed form: the swing's own forces have no time to act.
+    /// The hardest contact of a motion that was integrated. For one too short for the clock the
+    /// force is that of the closed form, because the forces of the swing are negligible then.
     fn hardest_of_motion(
         &self,
         motion: &Simulation,

@@ -1,18 +1,19 @@
-//! The best damper: a genetic search for the design that rests soonest, and what decides it.
+//! The best damper: a genetic search for the design that rests soonest, and the factors that limit
+//! it.
 //!
-//! In: an [`OptimizationProblem`]: what may vary between which limits, what is held fixed, what is
-//! to be small, how it is searched. Out: a [`Study`]: the best design judged again by integration,
-//! how far many runs agree, what the same number of evaluations finds otherwise, the default design
-//! under the same assumptions, and why the best one is best: a [`Decision`]. With several
-//! objectives at once it is the Pareto front.
+//! In: an [`OptimizationProblem`]: the variables and their limits, the parameters held fixed, the
+//! objectives, the options of the search. Out: a [`Study`]: the best design verified by
+//! integration, the spread of many runs, other searches with the same number of evaluations, the
+//! default design under the same assumptions, and the factors that limit the best design: a
+//! [`Decision`]. With several objectives at once it is the Pareto front.
 //!
-//! - `objective`: what may be small or limited, one row each.
+//! - `objective`: the quantities that may be minimised or limited, one row each.
 //! - `question`: the box, the constraints, the options.
 //! - `design`: one design: its motion by closed forms until it rests, and by integration where
 //!   there are none.
-//! - `decision`: what decides the best design: sensitivities, what is as good, corner, flat
-//!   direction or trade.
-//! - `study`: all runs, and what stands beside them.
+//! - `decision`: the limiting factors: sensitivities, equally good designs, and the role of each
+//!   variable.
+//! - `study`: all runs, and the comparisons.
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;

@@ -2,7 +2,7 @@
 
 use super::design::EvaluatedDesign;
 
-/// A number of a design that is to be small.
+/// A quantity of a design that may be minimised or limited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
     /// The rest time of the pendulum in seconds.
@@ -84,17 +84,17 @@ impl Objective {
         self.row().2
     }
 
-    /// Its value of a design; `None` if it has none.
+    /// Its value for a design; `None` if it has none.
     pub fn value(self, design: &EvaluatedDesign) -> Option<f64> {
         (self.row().3)(design).filter(|value| value.is_finite())
     }
 
-    /// Whether the greatest contact has to be known.
+    /// Whether it needs the hardest contact.
     pub(super) fn is_of_contact(self) -> bool {
         matches!(self, Self::PeakForce | Self::PeakPressure)
     }
 
-    /// Whether it is one of the main mass.
+    /// Whether it is a quantity of the main mass.
     pub fn is_of_main_mass(self) -> bool {
         self == Self::PrimaryRestTime
     }

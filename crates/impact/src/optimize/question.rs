@@ -14,8 +14,7 @@ use crate::impact::{
     Settings, default_lambda,
 };
 
-/// The box of a search that is given none: each parameter with its lower and upper limit, in SI
-/// units.
+/// The default box of a search: each parameter with its lower and upper limit, in SI units.
 pub const DEFAULT_BOX: [(Parameter, f64, f64); 4] = [
     (Parameter::Mass, 0.010, 0.100),
     (Parameter::Radius, 0.001, 0.020),
@@ -34,7 +33,7 @@ pub struct Variable {
     pub upper: f64,
 }
 
-/// A number of the design that must not be larger.
+/// An upper limit of a quantity of the design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// The objective.
@@ -46,18 +45,18 @@ pub struct Limit {
 /// A search for the best design: the question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptimizationProblem {
-    /// The parameters held fixed, and all others that the variables leave open.
+    /// The values of all parameters that are not variables.
     pub case: Case,
     /// The variables of the search.
     pub variables: Vec<Variable>,
     /// The materials of the barrier that are tried, in place of its modulus; empty if that is
     /// searched or fixed.
     pub materials: Vec<Material>,
-    /// The objectives to be minimised; several at once make a front.
+    /// The objectives to be minimised; several give a Pareto front.
     pub objectives: Vec<Objective>,
     /// The limits of other quantities.
     pub limits: Vec<Limit>,
-    /// The density of the sphere, kg/m^3, where its mass is that of its radius.
+    /// The density of the sphere, kg/m^3, if its mass follows from its radius.
     pub density: Option<f64>,
     /// Whether the bodies must not yield.
     pub elastic: bool,
@@ -65,7 +64,7 @@ pub struct OptimizationProblem {
     pub sphere_yield: Option<f64>,
     /// The yield limit of the barrier, Pa, where one is stated and no materials are tried.
     pub barrier_yield: Option<f64>,
-    /// The main mass that carries the pendulum, where its rest counts.
+    /// The main mass that carries the pendulum, if its rest time is an objective or limited.
     pub main_mass: Option<MainMass>,
     /// Duration and accuracy of the motions.
     pub settings: Settings,
@@ -108,31 +107,31 @@ impl Default for OptimizationProblem {
     }
 }
 
-/// The reason why there is no search.
+/// The reason why a search is not possible.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OptimizeError {
-    /// Limits that leave nothing.
+    /// Limits that leave no design.
     #[error("[limits] {0}")]
     Limits(String),
     /// There is no objective.
     #[error("[genetic] objective names nothing that is to be small: choose one or more of {}", Objective::ALL.map(Objective::name).join(", "))]
     NoObjective,
-    /// An objective that is named twice.
+    /// An objective named twice.
     #[error("[genetic] objective names `{0}` twice")]
     SameObjective(&'static str),
     /// There is no run.
     #[error("[genetic] runs = {0}: a study needs 1 run or more, {MOST_RUNS} at most")]
     Runs(usize),
-    /// Options that make no population.
+    /// Options that are not admissible.
     #[error("[genetic] {0}")]
     Options(#[from] SearchError),
-    /// Several objectives and an option of one.
+    /// An option for a single objective, although there are several.
     #[error(
         "[genetic] {0} belongs to a search for one objective; several at once are searched by NSGA-II: leave it out"
     )]
     OneObjective(&'static str),
-    /// A design in the middle of the box that makes no motion.
+    /// The design in the middle of the box is not admissible.
     #[error("{0}")]
     Motion(String),
     /// No design comes to rest.
@@ -154,13 +153,13 @@ pub enum OptimizeError {
         constraints: String,
         /// The result of a search for the constraints alone, in words.
         nearest: String,
-        /// Whether that keeps them.
+        /// Whether that result keeps the constraints.
         exists: bool,
     },
     /// Records of another search.
     #[error("{0}")]
     Record(String),
-    /// Stopped before anything was found.
+    /// The search was stopped before a design was found.
     #[error("stopped before a design was found")]
     Stopped,
 }
@@ -172,7 +171,8 @@ impl OptimizationProblem {
     /// The box; a material is a number from 0 to their count.
     ///
     /// # Errors
-    /// [`OptimizeError::Limits`] where nothing may vary, or limits leave nothing between them.
+    /// [`OptimizeError::Limits`] if there is no variable, or a lower limit is not below the upper
+    /// one.
     pub fn space(&self) -> Result<Space, OptimizeError> {
         let mut bounds: Vec<[f64; 2]> =
             self.variables.iter().map(|variable| [variable.lower, variable.upper]).collect();
@@ -193,7 +193,7 @@ impl OptimizationProblem {
         })
     }
 
-    /// Refuses what makes no search.
+    /// Checks the problem and returns its box.
     ///
     /// # Errors
     /// [`OptimizeError`] names the key.
@@ -243,13 +243,13 @@ impl OptimizationProblem {
         Ok(space)
     }
 
-    /// Whether the greatest contact counts.
+    /// Whether the hardest contact is needed.
     pub(super) fn needs_contact(&self) -> bool {
         let limited = self.limits.iter().map(|limit| limit.objective);
         self.elastic || self.objectives.iter().copied().chain(limited).any(Objective::is_of_contact)
     }
 
-    /// Whether the rest of the pendulum counts, or what happens until then.
+    /// Whether the motion of the pendulum until it rests is needed.
     pub(super) fn follows_pendulum(&self) -> bool {
         let limited = self.limits.iter().map(|limit| limit.objective);
         let mut counting = self.objectives.iter().copied().chain(limited);
@@ -354,5 +354,5 @@ impl OptimizationProblem {
     }
 }
 
-/// A constraint is never broken by more: infinities would have no order.
+/// Upper bound of the violation of a constraint, because infinities could not be ordered.
 pub(super) const LARGEST_EXCESS: f64 = 1e100;

@@ -1,8 +1,7 @@
-//! Many runs of one search, on all cores, and what stands beside them.
+//! Many runs of one search, on all cores, and the comparisons with other searches.
 //!
-//! Run number i has the i-th stream of random numbers of the seed, so what it finds depends on
-//! nothing but the question: not on threads, not on whether it was done before and read from a
-//! record.
+//! Run number i has the i-th stream of random numbers of the seed, so its result depends only on
+//! the problem, not on the number of threads or on whether it was read from a record.
 
 use super::decision::Decision;
 use super::design::{EvaluatedDesign, Route};
@@ -40,8 +39,8 @@ pub struct SearchRun {
     /// The best design, or with several objectives the front; empty if no design rests and keeps
     /// the constraints.
     pub found: Vec<Found>,
-    /// The best value after the random population and after every generation, infinite while there
-    /// is none; with several objectives the size of the front.
+    /// The best value after the random population and after every generation, infinite as long as
+    /// there is none; with several objectives the size of the front.
     pub curve: Vec<f64>,
     /// Generations after the random population.
     pub generations: usize,
@@ -58,7 +57,7 @@ pub struct SearchRun {
 pub struct StudyObserver<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
-    /// Called with every run that has ended by itself.
+    /// Called with every run that has ended without an interrupt.
     pub done: &'a (dyn Fn(&SearchRun) + Sync),
     /// Called with the number of generations newly done, of those that
     /// [`OptimizationProblem::most_work`] counts.
@@ -74,15 +73,15 @@ impl Default for StudyObserver<'_> {
 /// The distribution of a number over the runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FiveNumberSummary {
-    /// The least.
+    /// The least value.
     pub best: f64,
-    /// A quarter is no more than this.
+    /// The lower quartile: a quarter of the values are not larger.
     pub lower_quartile: f64,
-    /// Half.
+    /// The median: half of the values are not larger.
     pub median: f64,
-    /// Three quarters.
+    /// The upper quartile: three quarters of the values are not larger.
     pub upper_quartile: f64,
-    /// The greatest.
+    /// The greatest value.
     pub worst: f64,
 }
 
@@ -154,7 +153,7 @@ pub struct Study {
     pub question: OptimizationProblem,
     /// The runs, by their numbers.
     pub runs: Vec<SearchRun>,
-    /// Whether all runs and all that stands beside them were done.
+    /// Whether all runs and comparisons were completed.
     pub complete: bool,
     /// The best designs of the runs judged again, the best first; with several objectives the
     /// front.
@@ -170,7 +169,7 @@ pub struct Study {
 /// The best of this many runs are judged again.
 const FINALISTS: usize = 10;
 
-/// Closed forms are off by less than this part of a constraint.
+/// Largest error of closed forms relative to a constraint.
 const MOST_OFF: f64 = 0.25;
 
 /// Streams of random numbers of the rivals.
@@ -183,12 +182,12 @@ impl OptimizationProblem {
         self.runs.saturating_mul((1 + rivals) * self.genetic.generations)
     }
 
-    /// The value of a design in a search, in which the best one so far has this value; what makes
-    /// no motion is worth nothing.
+    /// The value of a design in a search, in which the best one so far has this value; a design
+    /// that is not admissible gets the worst value.
     ///
-    /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one
-    /// as they may be off, which by them would be the best or on a front, is integrated. It keeps
-    /// its value by closed forms where it keeps the constraints, so that values can be compared.
+    /// Closed forms are too coarse to decide whether a constraint is kept: a design that is within
+    /// their error of a constraint and would be the best or on a front is integrated. If it keeps
+    /// the constraints, its value by closed forms is used, so that values can be compared.
     pub(super) fn bounded_evaluation(
         &self,
         point: &[f64],
@@ -225,8 +224,8 @@ impl OptimizationProblem {
         evaluation
     }
 
-    /// The function that a search makes small; it keeps in mind the best value so far, and counts
-    /// the designs that were integrated.
+    /// The function that a search minimises; it remembers the best value so far, and counts the
+    /// designs that were integrated.
     fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
         let mut best = f64::INFINITY;
         move |point| {
@@ -273,8 +272,8 @@ impl OptimizationProblem {
 /// Searches: all runs but those that are known already, on all threads of the current pool.
 ///
 /// # Errors
-/// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the
-/// constraints.
+/// [`OptimizeError`]: options that are not admissible, or a box without a design that rests and
+/// keeps the constraints.
 pub fn optimize(
     question: OptimizationProblem,
     known: Vec<SearchRun>,
@@ -284,7 +283,8 @@ pub fn optimize(
     let missing: Vec<usize> =
         (0..question.runs).filter(|number| known.iter().all(|run| run.number != *number)).collect();
     (watch.progress)((question.runs - missing.len()) * question.genetic.generations);
-    // The first one has its random population at least: there is always something to hand back.
+    // The first run always completes its random population, so that there is a result after an
+    // interrupt.
     let first = missing.first().copied();
     let one = |&number: &usize| {
         if first != Some(number) && (watch.stop)() {
@@ -320,7 +320,7 @@ pub fn optimize(
             rivals = self::rivals(&question, &space, &runs, watch);
         }
     }
-    // All of the default design, also what is held fixed here.
+    // The default design with all its values, including those that are held fixed here.
     let default_design = question.default_point().and_then(|point| {
         let mut usual = question.clone();
         usual.case.design = hertz::StiffnessDesign {
@@ -367,7 +367,7 @@ fn no_design_error(
     if !complete {
         return OptimizeError::Stopped;
     }
-    // Whether anything rests at all, constraints aside.
+    // First check: whether any design rests, without constraints.
     let mut random = generator(question.seed, u64::MAX);
     let middle = space.point_at(&vec![0.5; space.bounds().len()]);
     let mut reason = None;
@@ -390,7 +390,7 @@ fn no_design_error(
                 .to_owned(),
         };
     }
-    // Constraints alone: how far they are broken is what is to be small.
+    // Second check: the violation of the constraints is minimised.
     let tolerance = question.genetic.constraint_tolerance;
     let evaluate = |point: &[f64]| {
         let evaluation = question.bounded_evaluation(point, f64::INFINITY, &mut 0);
@@ -402,7 +402,7 @@ fn no_design_error(
     };
     let mut options = GeneticOptions { penalty: Penalty::Death, ..question.genetic };
     if question.main_mass.is_none() {
-        // Closed forms cost little: enough of them to say that there is nothing.
+        // Closed forms are cheap, so that a large population can exclude the existence of a design.
         options.population = options.population.max(ENOUGH[0]);
         options.generations = options.generations.max(ENOUGH[1]);
     }
@@ -463,7 +463,7 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
     let judged = par_map(&found, judge);
     let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
     if question.objectives.len() > 1 {
-        // By integration a design may break a constraint, or be worse than another in everything.
+        // By integration a design may break a constraint, or be dominated by another.
         finalists.retain(|finalist| finalist.feasible);
         let evaluations: Vec<Evaluation> =
             finalists.iter().map(|finalist| question.evaluation(&finalist.design)).collect();
@@ -474,7 +474,7 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
         let mut number = 0..;
         finalists.retain(|_| number.next().is_some_and(|number| front.contains(&number)));
     }
-    // Those that keep the constraints first; of a front by the first objective.
+    // Designs that keep the constraints come first; a front is sorted by the first objective.
     finalists.sort_by(|one, other| {
         let broken = one.feasible.cmp(&other.feasible).reverse();
         broken.then(one.values[0].total_cmp(&other.values[0]))
@@ -482,8 +482,8 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
     finalists
 }
 
-/// The first designs that differ from those before by more than the tolerance of manufacture, as a
-/// part of the limits.
+/// The first designs that differ from those before by more than the tolerance of manufacture,
+/// relative to the range between the limits.
 fn distinct<'a>(
     question: &OptimizationProblem,
     found: &[(usize, &'a Found)],
@@ -519,7 +519,8 @@ fn merged_front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'
     while left.len() > most {
         let standing: Vec<&Evaluation> = left.iter().map(|index| &all[*index]).collect();
         let lonely = crowding(&standing);
-        // A tenth of what is too many at a time: neighbours that go together leave no gap.
+        // A tenth of the surplus is removed at a time, because removing neighbours together would
+        // leave gaps.
         let mut order: Vec<usize> = (0..left.len()).collect();
         order.sort_by(|one, other| lonely[*one].total_cmp(&lonely[*other]));
         let mut gone: Vec<usize> =
@@ -543,7 +544,7 @@ fn rivals(
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
     let compete = |name: &'static str, work: &(dyn Fn(usize) -> GeneticRun + Sync)| {
         let runs = par_map(runs, |run| {
-            // Asked to stop, it is not used.
+            // A run is not begun after an interrupt.
             let run = (!(watch.stop)()).then(|| work(run.number));
             (watch.progress)(generations);
             run
@@ -596,12 +597,12 @@ fn rivals(
 
 impl Study {
     /// The best design that keeps the constraints, judged by integration; with several objectives
-    /// the one best in the first. There always is one.
+    /// the one best in the first. A study always has one.
     pub fn best(&self) -> Option<&Finalist> {
         self.finalists.first()
     }
 
-    /// The best values of the runs that found one, as the searches have them.
+    /// The best values of the runs that found one, as computed by the searches.
     pub fn values(&self) -> Vec<f64> {
         let value = |run: &SearchRun| Some(run.found.first()?.values[0]);
         self.runs.iter().filter_map(value).collect()
@@ -631,7 +632,7 @@ impl Study {
         (0..length).filter_map(at).collect()
     }
 
-    /// The generation from which on the median run was within this part of its last value.
+    /// The generation from which on the median was within this relative distance of its last value.
     pub fn generation_of_convergence(&self, part: f64) -> Option<usize> {
         let curve = self.median_curve();
         let last = *curve.last()?;

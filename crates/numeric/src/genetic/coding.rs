@@ -14,12 +14,12 @@ pub enum Coding {
     /// A gene is a number.
     #[default]
     Real,
-    /// Bits: each number is a string of this many genes, 0 or 1.
+    /// Each number is a string of this many bits, with a gene for each bit.
     Bits(u32),
 }
 
 impl Coding {
-    /// Random genes.
+    /// Returns the genes of a random point, drawn evenly.
     pub fn draw(self, space: &Space, generator: &mut impl Rng) -> Vec<f64> {
         match self {
             Self::Real => space.draw(generator),
@@ -31,7 +31,7 @@ impl Coding {
         }
     }
 
-    /// The point that genes say.
+    /// Decodes genes into a point of the box.
     ///
     /// ```
     /// # use lindstedt_numeric as lindstedt;

@@ -7,11 +7,12 @@ use super::space::Space;
 /// The operator that makes a child of two parents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Crossover {
-    /// On the line from the worse to the better parent, beyond it: [`heuristic`], of this ratio.
+    /// The child lies on the line from the worse to the better parent, beyond it: [`heuristic`],
+    /// with this ratio.
     Heuristic(f64),
-    /// Every gene from either parent by chance: [`scattered`].
+    /// Every gene comes from either parent by chance: [`scattered`].
     Scattered,
-    /// The first genes from one parent, the others from the other: [`one_point`].
+    /// The first genes come from one parent, the others from the other: [`one_point`].
     OnePoint,
 }
 
@@ -21,8 +22,10 @@ impl Default for Crossover {
     }
 }
 
-/// The child worse + R (better - worse) with R the ratio or, where that leaves the box, the largest
-/// R below it that does not: no chance plays a part. Wright's heuristic crossover, kept feasible.
+/// Returns the child worse + R (better - worse), where R is the ratio or, if that leaves the box,
+/// the largest R below it that does not.
+///
+/// This is Wright's heuristic crossover, kept feasible; it draws no random number.
 ///
 /// With both parents in the box and a ratio of 1 or more, R is at least 1.
 ///
@@ -45,13 +48,13 @@ pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Ve
         }
     }
     let place = |((from, to), [lower, upper]): ((&f64, &f64), &[f64; 2])| {
-        // The last digit may lie outside.
+        // Rounding may carry the child just outside the box.
         (from + reach * (to - from)).clamp(*lower, *upper)
     };
     worse.iter().zip(better).zip(space.bounds()).map(place).collect()
 }
 
-/// Every gene from one parent or the other, by the toss of a coin.
+/// Returns a child that has every gene from either parent with probability 1/2.
 pub fn scattered(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
     let gene = |(one, other): (&f64, &f64)| {
         if generator.random::<bool>() { *one } else { *other }
@@ -59,8 +62,8 @@ pub fn scattered(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f6
     one.iter().zip(other).map(gene).collect()
 }
 
-/// The genes up to a random place from one parent, those after it from the other; some from both
-/// where there are two or more.
+/// Returns a child with the genes up to a random place from one parent and those after it from the
+/// other. If there are two genes or more, each parent gives at least one.
 pub fn one_point(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
     let shared = one.len().min(other.len());
     if shared < 2 {

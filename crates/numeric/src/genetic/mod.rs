@@ -1,5 +1,5 @@
-//! Search by a genetic algorithm: a population of points of a box, better ones more often parents.
-//! It knows numbers and functions of them, nothing of what they mean.
+//! Search by a genetic algorithm: a population of points of a box, of which better ones become
+//! parents more often. The module handles numbers and functions of them, whatever they stand for.
 //!
 //! In: a [`Space`], a function that gives every point an [`Evaluation`], [`GeneticOptions`], a
 //! generator of random numbers. Out: a [`GeneticRun`]: the best point that keeps the constraints,
@@ -9,8 +9,8 @@
 //! score -> scale by rank -> select parents -> elite + children by crossover + children by mutation -> score
 //! ```
 //!
-//! One file for each operator, by the names that users of MATLAB's `ga` know; written from
-//! descriptions of what they do, and held to their properties by tests:
+//! Each operator has a file, under the name that users of MATLAB's `ga` know. The operators are
+//! written from descriptions of their behaviour, and tests check their properties:
 //!
 //! - `space`: the box.
 //! - `coding`: numbers as they are, or as strings of bits.
@@ -21,8 +21,8 @@
 //!   [`scattered`], [`one_point`].
 //! - `mutation`: [`adaptive_feasible`], an algorithm of our own under a known name, and
 //!   [`bit_flips`].
-//! - `penalty`: what a point is worth that breaks a constraint.
-//! - `stopping`: when the best value has ceased to change.
+//! - `penalty`: the score of a point that violates a constraint.
+//! - `stopping`: the test of whether the best value has ceased to change.
 //! - `population`: the generations of one run: [`search`].
 //! - `pareto`, `nsga`: several functions at once (K. Deb et al., *IEEE Trans. Evol. Comput.* 6
 //!   (2002) 182): [`search_front`].
@@ -68,9 +68,9 @@ pub use stopping::{GeneticStop, StallTest, has_stalled};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The random numbers of one run: stream `stream` of ChaCha8 with this seed, the same on every
-/// machine. Streams of one seed have nothing in common, so runs may follow each other in any order,
-/// on any number of threads.
+/// Returns the random number generator of one run: stream `stream` of ChaCha8 with this seed, the
+/// same on every machine. Streams of one seed are independent, so runs may follow each other in any
+/// order, on any number of threads.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

@@ -1,7 +1,7 @@
 //! Mutation: a child of one parent.
 //!
 //! Adaptive feasible mutation is a name without a published algorithm. Ours, in the manner of
-//! mesh-adaptive direct search (C. Audet and J. E. Dennis, *SIAM J. Optim.* 17 (2006) 188), keeps
+//! mesh-adaptive direct search (C. Audet and J. E. Dennis, *SIAM J. Optim.* 17 (2006) 188), does
 //! what the name says: directions adapt to the last successful or unsuccessful generation, and
 //! every step stays in the box.
 //!
@@ -13,8 +13,8 @@
 //! if none is, halve D for this child, eight times at most, then keep x
 //! ```
 //!
-//! So a step is of the size sqrt(D) of the box, and the smaller it is, the more directions there
-//! are.
+//! A step is therefore about sqrt(D) times the size of the box, and the smaller it is, the more
+//! directions are possible.
 
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -31,13 +31,13 @@ pub enum Mutation {
     BitFlips(f64),
 }
 
-/// D never falls below it.
+/// The smallest value of D.
 pub const SMALLEST_STEP: f64 = 1e-6;
 
 /// Largest number of halvings of D for one child.
 const MOST_HALVINGS: usize = 8;
 
-/// D of the generation after this one, the first of number 0.
+/// Returns D of the generation after `generation`, which is counted from 0.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -53,7 +53,8 @@ pub fn next_step(step: f64, generation: usize, improved: bool) -> f64 {
     }
 }
 
-/// A child in the box near its parent, by the algorithm of this file, with D = `step`.
+/// Returns a child in the box near its parent, by the algorithm of this module with D = `step`; the
+/// parent itself if no step fits.
 pub fn adaptive_feasible(
     parent: &[f64],
     step: f64,
@@ -81,9 +82,9 @@ pub fn adaptive_feasible(
     parent.to_vec()
 }
 
-/// As many linearly independent directions as there are variables.
+/// Returns `count` linearly independent directions, each with `count` whole numbers.
 fn directions(count: usize, step: f64, generator: &mut impl Rng) -> Vec<Vec<f64>> {
-    // 1/sqrt(D) up to rounding.
+    // The floor of 1/sqrt(D), safe from a rounding error just below a whole number.
     let size = (1.0 / step.sqrt() + 1e-9).floor().max(1.0) as i64;
     let mut rows: Vec<usize> = (0..count).collect();
     rows.shuffle(generator);
@@ -101,7 +102,7 @@ fn directions(count: usize, step: f64, generator: &mut impl Rng) -> Vec<Vec<f64>
     columns
 }
 
-/// Every bit turned over with this probability.
+/// Returns the bits of the parent, each flipped with the probability `rate`.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

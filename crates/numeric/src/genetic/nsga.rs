@@ -1,9 +1,10 @@
 //! NSGA-II: a population that spreads along the front of several values.
 //!
 //! (K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, *IEEE Trans. Evol. Comput.* 6 (2002) 182;
-//! simulated binary crossover: K. Deb and R. B. Agrawal, *Complex Systems* 9 (1995) 115.) Children
-//! come from tournaments of two, won by the lower rank, of equals by the lonelier; of parents and
-//! children together the better half goes on. Genes are numbers.
+//! simulated binary crossover: K. Deb and R. B. Agrawal, *Complex Systems* 9 (1995) 115.) Parents
+//! are chosen by tournaments of two: the lower rank wins, and of equal ranks the larger crowding
+//! distance. The better half of parents and children together goes on to the next generation. Genes
+//! are numbers.
 
 use rand::{Rng, RngExt};
 
@@ -22,9 +23,9 @@ const MUTATION_INDEX: f64 = 20.0;
 /// The probability that two parents are crossed at all.
 const CROSSED: f64 = 0.9;
 
-/// One of two children by simulated binary crossover, kept in the box: their mean is that of the
-/// parents, and their distance in parts of the parents' is spread as that of the children of
-/// strings of bits.
+/// Returns one of two children by simulated binary crossover, kept in the box. The mean of the two
+/// is the mean of the parents; the ratio of their distance to that of the parents is distributed as
+/// in the crossover of strings of bits.
 pub fn simulated_binary(
     one: &[f64],
     other: &[f64],
@@ -44,8 +45,8 @@ pub fn simulated_binary(
     one.iter().zip(other).zip(space.bounds()).map(gene).collect()
 }
 
-/// Each number changed with the probability 1/n, by a part of its range that is mostly small; kept
-/// in the box.
+/// Returns the parent with each of its n numbers changed with the probability 1/n, by a mostly
+/// small part of its range; kept in the box.
 pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl Rng) -> Vec<f64> {
     let rate = 1.0 / parent.len().max(1) as f64;
     let gene = |(x, [lower, upper]): (&f64, &[f64; 2])| {
@@ -63,8 +64,11 @@ pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl R
     parent.iter().zip(space.bounds()).map(gene).collect()
 }
 
-/// One run of NSGA-II: the front it ends with, everybody in it feasible. Of the options population,
-/// generations, budget and the tolerance of constraints count. The curve has the size of the front.
+/// Runs NSGA-II and returns the feasible individuals of its last front, and the record of the run.
+///
+/// Of the options only the population, the generations, the budget and the tolerance of constraints
+/// are used. The curve is the number of feasible individuals in the front, generation by
+/// generation.
 pub fn search_front(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -139,7 +143,7 @@ pub fn search_front(
     (front, run)
 }
 
-/// Ranks, and how lonely everybody is among those of the same rank.
+/// Returns the rank of every individual, and its crowding distance among those of the same rank.
 fn ranks_and_crowding(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
     let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
     let ranks = ranks(&all, tolerance);

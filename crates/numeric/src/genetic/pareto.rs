@@ -1,11 +1,11 @@
-//! Several values at once: who is better, and who stands alone.
+//! Several objectives at once: dominance, ranks and crowding distances.
 //!
 //! (K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, *IEEE Trans. Evol. Comput.* 6 (2002) 182.)
 
 use super::space::Evaluation;
 
-/// Whether one is no worse in every value and better in one; with constraints, whether it breaks
-/// them less.
+/// Whether `one` is no worse in every objective and better in one; if either violates a constraint,
+/// whether `one` violates them less.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -61,7 +61,7 @@ pub fn ranks(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     ranks
 }
 
-/// Indices of the points that no other dominates; of equal ones the first.
+/// Returns the indices of the points that no other dominates; of equal ones only the first.
 pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let stands = |index: &usize| {
         let is_worse = |(place, other): (usize, &&Evaluation)| {
@@ -76,7 +76,7 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
 }
 
 /// Crowding distance of every individual: the sum over the objectives of the distance between its
-/// neighbours on either side, in parts of the whole range; infinite at the ends.
+/// neighbours on either side, as a fraction of the whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
     let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);

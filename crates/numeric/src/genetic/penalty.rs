@@ -1,21 +1,22 @@
-//! The score of a point that violates a constraint: a number for every individual, to be small.
+//! The score of a point that violates a constraint: a number for every individual, the smaller the
+//! better.
 //!
-//! - Death penalty: none at all, infinite.
+//! - Death penalty: the score is infinite.
 //! - Feasible first (K. Deb, *Comput. Methods Appl. Mech. Eng.* 186 (2000) 311): the worst value of
-//!   those that break none, plus the sum of what it breaks.
+//!   the points that violate no constraint, plus the sum of the violations.
 //! - Augmented Lagrangian (R. T. Rockafellar, *Math. Program.* 5 (1973) 354), f under c_e = 0 and c
 //!   <= 0:
 //!
 //! ```text
 //! score = f + sum_e (l_e c_e + (rho/2) c_e^2) + (1/(2 rho)) sum (max(0, l + rho c)^2 - l^2)
-//! after every subproblem, of so many generations, at its best point:
+//! after every subproblem, of a fixed number of generations, at its best point:
 //!   violated no more than the tolerance, or a quarter of before:  l_e <- l_e + rho c_e,  l <- max(0, l + rho c)
 //!   else  rho <- rho times the penalty factor
 //! ```
 //!
-//! rho begins as the initial penalty, l at zero. MATLAB's `ga` has inequalities in a logarithm
-//! instead; its initial penalty 10 and factor 100 are these rho and its factor. Without constraints
-//! that are not linear neither does anything.
+//! rho begins as the initial penalty, l at zero. MATLAB's `ga` puts inequalities into a logarithm
+//! instead; its initial penalty 10 and factor 100 are these rho and its factor. Without nonlinear
+//! constraints neither has an effect.
 
 use super::space::Evaluation;
 
@@ -29,31 +30,31 @@ pub enum Penalty {
     FeasibleFirst,
     /// Points that violate a constraint pay a penalty.
     AugmentedLagrangian {
-        /// rho at first.
+        /// The initial rho.
         initial: f64,
-        /// The factor of the violation.
+        /// The factor by which rho grows while the violation does not fall fast enough.
         factor: f64,
     },
 }
 
-/// rho goes no higher: beyond it the objective has no digits left.
+/// The largest rho: beyond it the objective has no digits left.
 const LARGEST_WEIGHT: f64 = 1e10;
 
 /// The multipliers of an augmented Lagrangian.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Multipliers {
-    /// rho.
+    /// The weight rho of the squared violations.
     pub weight: f64,
     /// Multipliers of the equalities.
     pub equalities: Vec<f64>,
     /// Multipliers of the inequalities, none negative.
     pub inequalities: Vec<f64>,
-    /// Violation of the best point of the last generation.
+    /// Violation of the best point of the last subproblem; infinite before the first.
     violation: f64,
 }
 
 impl Multipliers {
-    /// The initial multipliers.
+    /// Multipliers of zero, one for each constraint of `like`, with rho = `initial`.
     pub fn new(initial: f64, like: &Evaluation) -> Self {
         Self {
             weight: initial,
@@ -75,7 +76,7 @@ impl Multipliers {
         if score.is_nan() { f64::INFINITY } else { score }
     }
 
-    /// A subproblem ends with this as its best point.
+    /// Updates the multipliers, or rho, after a subproblem whose best point is `best`.
     pub fn update(&mut self, best: &Evaluation, factor: f64, tolerance: f64) {
         let violation = best.violation(tolerance);
         if violation <= (0.25 * self.violation).max(tolerance) {
@@ -93,7 +94,7 @@ impl Multipliers {
     }
 }
 
-/// The scores of a population, to be small.
+/// Returns the score of every individual, the smaller the better.
 pub fn scores(
     population: &[&Evaluation],
     penalty: Penalty,

@@ -12,14 +12,14 @@ use super::selection::stochastic_uniform;
 use super::space::{Evaluation, Space};
 use super::stopping::{GeneticStop, StallTest, has_stalled};
 
-/// Options of a genetic algorithm. The default has real numbers in place of bits, and a penalty.
+/// Options of a genetic algorithm. By default genes are real numbers and the penalty is infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeneticOptions {
-    /// Individuals.
+    /// Number of individuals in a generation.
     pub population: usize,
-    /// The best ones, which go on as they are.
+    /// Number of the best individuals that go on to the next generation unchanged.
     pub elite: usize,
-    /// The part of the others that crossover makes; mutation makes the rest.
+    /// Fraction of the others, from 0 to 1, that crossover makes; mutation makes the rest.
     pub crossover_fraction: f64,
     /// The encoding of points as genes.
     pub coding: Coding,
@@ -31,7 +31,7 @@ pub struct GeneticOptions {
     pub penalty: Penalty,
     /// Largest value of an equality that counts as zero.
     pub constraint_tolerance: f64,
-    /// The most generations after the random population.
+    /// Largest number of generations after the random population.
     pub generations: usize,
     /// Number of generations over which the best value is watched.
     pub stall_generations: usize,
@@ -39,7 +39,7 @@ pub struct GeneticOptions {
     pub function_tolerance: f64,
     /// The measure of that change.
     pub stall_test: StallTest,
-    /// The most evaluations of a run, where there is such a limit.
+    /// Largest number of evaluations of a run; `None` sets no limit.
     pub budget: Option<usize>,
 }
 
@@ -63,29 +63,29 @@ impl Default for GeneticOptions {
     }
 }
 
-/// Why a search cannot begin.
+/// The reason why a search cannot begin.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SearchError {
-    /// Nothing to vary.
+    /// There is no variable.
     #[error("there is nothing to vary")]
     Empty,
-    /// Bounds in the wrong order, equal or no numbers.
+    /// The bounds of a variable are equal, in the wrong order or not finite.
     #[error("the bounds {lower} and {upper} of variable {number} leave nothing between them")]
     Inverted {
-        /// Which, counted from 1.
+        /// The number of the variable, counted from 1.
         number: usize,
-        /// What was given for the lower one.
+        /// The lower bound given.
         lower: f64,
-        /// What was given for the upper one.
+        /// The upper bound given.
         upper: f64,
     },
-    /// Fewer than two have nobody to cross with.
+    /// The population is too small to cross, or too large.
     #[error(
         "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
     )]
     Population(usize),
-    /// There are no generations.
+    /// There are no generations, or too many.
     #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
     Generations(usize),
     /// The elite is the whole population.
@@ -101,7 +101,8 @@ pub enum SearchError {
     /// The crossover fraction is not between 0 and 1.
     #[error("crossover_fraction must lie between 0 and 1, not {0}")]
     Fraction(f64),
-    /// A child short of the better parent.
+    /// The crossover ratio is below 1 or not finite, so that a child would lie short of the better
+    /// parent.
     #[error(
         "crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent"
     )]
@@ -109,10 +110,10 @@ pub enum SearchError {
     /// The mutation rate is not a probability.
     #[error("mutation_rate must lie between 0 and 1, not {0}")]
     Rate(f64),
-    /// Too few or too many.
+    /// There are too few or too many bits.
     #[error("bits must be a whole number from 1 to 52, not {0}")]
     Bits(u32),
-    /// An operator that needs numbers.
+    /// An operator that needs real numbers was combined with bits.
     #[error(
         "{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`"
     )]
@@ -122,12 +123,12 @@ pub enum SearchError {
         /// The operators that work instead.
         instead: &'static str,
     },
-    /// An operator that needs bits.
+    /// An operator that needs bits was combined with real numbers.
     #[error(
         "mutation \"bit-flip\" needs coding = \"bits\": give that too, or use \"adaptive-feasible\""
     )]
     NeedsBits,
-    /// A penalty that is none.
+    /// A tolerance, or a parameter of the penalty, is not a positive number.
     #[error("{key} must be a positive number, not {value}")]
     NotPositive {
         /// The key.
@@ -138,7 +139,7 @@ pub enum SearchError {
     /// The window of the stall test is empty.
     #[error("stall_generations must be 1 or more")]
     Window,
-    /// Less than the random population.
+    /// The budget is smaller than the random population.
     #[error("a budget of {budget} evaluations a run is less than one population of {population}")]
     Budget {
         /// The budget of one run.
@@ -151,11 +152,11 @@ pub enum SearchError {
 /// The largest population.
 const MOST_INDIVIDUALS: usize = 100_000;
 
-/// The most generations.
+/// The largest number of generations.
 const MOST_GENERATIONS: usize = 1_000_000;
 
 impl GeneticOptions {
-    /// Refuses what makes no population.
+    /// Checks that a search with these options can begin.
     ///
     /// # Errors
     /// [`SearchError`] names the option.
@@ -222,7 +223,7 @@ impl GeneticOptions {
         }
     }
 
-    /// Numbers of children by crossover and by mutation.
+    /// Returns the numbers of children by crossover and by mutation.
     ///
     /// ```
     /// # use lindstedt_numeric as lindstedt;
@@ -236,7 +237,7 @@ impl GeneticOptions {
         (crossed, all - crossed)
     }
 
-    /// The most evaluations of one run.
+    /// Returns the largest number of evaluations of one run.
     pub fn most_evaluations(&self) -> usize {
         let (crossed, mutated) = self.children();
         let all =
@@ -245,7 +246,7 @@ impl GeneticOptions {
     }
 }
 
-/// A point and what it is worth.
+/// A point and its evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Individual {
     /// The point, in the box.
@@ -259,8 +260,8 @@ pub struct Individual {
 pub struct GeneticRun {
     /// The best of all points that break no constraint; `None` if there was none.
     pub best: Option<Individual>,
-    /// Its value after the random population and after every generation; infinite while there was
-    /// none.
+    /// The best value after the random population and after every generation; infinite while no
+    /// point is feasible.
     pub curve: Vec<f64>,
     /// Generations after the random population.
     pub generations: usize,
@@ -273,16 +274,16 @@ pub struct GeneticRun {
 /// After this many generations the multipliers of an augmented Lagrangian are corrected.
 const SUBPROBLEM: usize = 10;
 
-/// One individual as the search has it: the genes and their point.
+/// An individual of the search: its genes and the point that they encode.
 struct Member {
     genes: Vec<f64>,
     individual: Individual,
 }
 
-/// One run of the genetic algorithm: the smallest first objective under the constraints.
+/// Minimises the first objective under the constraints by one run of the genetic algorithm.
 ///
-/// `go_on` is called with the number of each generation before it begins, and may end the run
-/// there.
+/// `go_on` is called with the number of each generation before it begins; the run ends there if it
+/// returns `false`.
 pub fn search(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -375,14 +376,14 @@ impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
         Member { genes, individual }
     }
 
-    /// The best value so far; infinite while there is none.
+    /// Returns the best value so far; infinite while there is none.
     fn value(&self) -> f64 {
         let best = self.best.as_ref();
         best.map_or(f64::INFINITY, |best| best.evaluation.value())
     }
 }
 
-/// The reason why no further generation is begun, where one of the limits is reached.
+/// Returns the reason why no further generation is begun; `None` if no limit is reached.
 fn ended(
     options: &GeneticOptions,
     curve: &[f64],
@@ -401,7 +402,7 @@ fn ended(
     options.budget.is_some_and(spent).then_some(GeneticStop::Budget)
 }
 
-/// The genes of the children: of two parents each first, then of one.
+/// Returns the genes of the children: first those by crossover, then those by mutation.
 fn children(
     population: &[Member],
     scored: &[f64],
@@ -411,7 +412,7 @@ fn children(
 ) -> Vec<Vec<f64>> {
     let (crossed, mutated) = options.children();
     let mut children: Vec<Vec<f64>> = Vec::with_capacity(crossed + mutated);
-    // Fewer where no score is a number.
+    // There are fewer parents if no score is a number.
     let (pairs, alone) = parents.split_at(parents.len().min(2 * crossed));
     for pair in pairs.chunks_exact(2) {
         let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);

@@ -17,7 +17,7 @@ use super::population::{GeneticRun, Individual};
 use super::space::{Evaluation, Space};
 use super::stopping::GeneticStop;
 
-/// The best of what was evaluated, and how it came down.
+/// Evaluates points, and keeps the best of them and the curve of its value.
 struct BestTracker<F> {
     evaluate: F,
     tolerance: f64,
@@ -60,8 +60,8 @@ impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
     }
 }
 
-/// Draws this many points evenly from the box; the curve has the best value after every `every` of
-/// them.
+/// Draws `evaluations` points evenly from the box; the curve has the best value after every `every`
+/// of them.
 pub fn random_search(
     space: &Space,
     evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -76,7 +76,7 @@ pub fn random_search(
     watch.finish(GeneticStop::Budget)
 }
 
-/// The problem as the library wants it.
+/// The problem in the form that `basin` expects.
 struct Boxed<F> {
     watch: RefCell<BestTracker<F>>,
     lower: Vec<f64>,
@@ -128,10 +128,11 @@ pub fn differential_evolution(
         lower,
         upper,
     };
-    // The first population is one more.
+    // The initial population costs as much as a generation.
     let generations = (evaluations / size).saturating_sub(1).max(1) as u64;
     let start = PopulationProgress::<Vec<f64>>::empty();
-    // It cannot fail: the box is one, and a cost is always a number. What was seen is the result.
+    // The run cannot fail: the bounds are in order, and a cost is always a finite number. The
+    // result is in the tracker.
     let ended = Executor::new(&problem, De::new(seed).with_pop_size(size), start)
         .max_iter(generations)
         .run();

@@ -1,8 +1,8 @@
-//! Fitness scaling: how many parents are expected of each individual.
+//! Fitness scaling: how often each individual is expected to be a parent.
 
-/// Expectations by rank: the individual of rank r, the best of rank 1, gets 1/sqrt(r), scaled so
-/// that all together are the number of parents. `scores` are to be small; equal ones keep their
-/// order.
+/// Returns how often each individual is expected to be a parent, by its rank: the individual of
+/// rank r, the best having rank 1, gets 1/sqrt(r), scaled so that the sum is the number of parents.
+/// A smaller score is better; equal ones keep their order.
 ///
 /// The differences of the scores play no part, and neither does the unit of the objective.
 ///

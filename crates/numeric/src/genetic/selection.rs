@@ -3,12 +3,12 @@
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 
-/// Stochastic uniform selection, Baker's stochastic universal sampling: the weights laid end to end
-/// on a line, and equal steps along it from a random place in the first one; the parent is whose
-/// part is met. Parents come in random order.
+/// Returns the indices of the parents, in random order, by stochastic uniform selection: the
+/// weights are laid end to end on a line, along which equal steps are taken from a random place in
+/// the first one; each step chooses the individual in whose part it ends.
 ///
-/// Stochastic universal sampling: an individual with the share w of all weights is chosen n w
-/// times, rounded down or up, for n parents.
+/// This is Baker's stochastic universal sampling: of n parents, an individual with the share w of
+/// all weights is chosen n w times, rounded down or up.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

@@ -1,4 +1,4 @@
-//! The box that is searched, and what a point of it is worth.
+//! The box that is searched, and the evaluation of its points.
 
 use rand::{Rng, RngExt};
 
@@ -12,7 +12,7 @@ impl Space {
     /// The box between these bounds, finite and the lower one first.
     ///
     /// # Errors
-    /// [`SearchError`]: no variable, or one without a range.
+    /// [`SearchError`] if there is no variable, or one without a finite range.
     pub fn new(bounds: Vec<[f64; 2]>) -> Result<Self, SearchError> {
         if bounds.is_empty() {
             return Err(SearchError::Empty);
@@ -38,7 +38,8 @@ impl Space {
         point.len() == self.0.len() && point.iter().zip(&self.0).all(inside)
     }
 
-    /// The point at these parts of the ranges, 0 the lower and 1 the upper bound, never outside.
+    /// Returns the point at these fractions of the ranges, 0 being the lower and 1 the upper bound;
+    /// it never lies outside the box.
     pub fn point_at(&self, parts: &[f64]) -> Vec<f64> {
         let place = |(part, [lower, upper]): (&f64, &[f64; 2])| {
             (lower + part * (upper - lower)).clamp(*lower, *upper)
@@ -65,7 +66,7 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// One value without constraints.
+    /// The evaluation of a point with one objective and no constraints.
     pub fn unconstrained(value: f64) -> Self {
         Self { objectives: vec![value], ..Self::default() }
     }
@@ -76,7 +77,8 @@ impl Evaluation {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// Sum of the violations of all constraints; an equality is violated beyond the tolerance.
+    /// Returns the sum of the violations of all constraints; an equality counts by its excess over
+    /// the tolerance.
     pub fn violation(&self, tolerance: f64) -> f64 {
         let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
         let inequalities = self.inequalities.iter().map(|value| value.max(0.0));
@@ -84,7 +86,7 @@ impl Evaluation {
         if sum.is_nan() { f64::INFINITY } else { sum }
     }
 
-    /// Whether it has values and breaks no constraint.
+    /// Whether the objectives are finite and no constraint is violated.
     pub fn is_feasible(&self, tolerance: f64) -> bool {
         self.violation(tolerance) == 0.0 && self.objectives.iter().all(|value| value.is_finite())
     }

@@ -1,5 +1,5 @@
-//! When a run ends: the best value has ceased to change, or its generations or evaluations are used
-//! up.
+//! The end of a run: the best value has ceased to change, or the generations or evaluations are
+//! used up.
 //!
 //! With B_g the best value up to generation g, w the window:
 //!
@@ -15,10 +15,10 @@
 /// The measure of the change of the best value over a window of generations.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum StallTest {
-    /// Its average.
+    /// The average change.
     #[default]
     Average,
-    /// Its last changes above all.
+    /// A weighted sum of the changes, in which the last ones count most.
     Weighted,
 }
 
@@ -27,7 +27,7 @@ pub enum StallTest {
 pub enum GeneticStop {
     /// The best value has ceased to change.
     Stalled,
-    /// The last generation allowed.
+    /// The largest number of generations was reached.
     Generations,
     /// The budget of evaluations is spent.
     Budget,
@@ -39,7 +39,7 @@ impl GeneticStop {
     /// Every reason.
     pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
 
-    /// `stalled`
+    /// Returns the name of the reason, such as `stalled`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Stalled => "stalled",
@@ -49,14 +49,14 @@ impl GeneticStop {
         }
     }
 
-    /// The reason of this name.
+    /// Returns the reason of this name; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|stop| stop.name() == name)
     }
 }
 
-/// Whether the best values, that of the random population first, have ceased to change. Where there
-/// was none all along they have too.
+/// Whether the best values, beginning with that of the random population, have ceased to change.
+/// They count as unchanged if no point was feasible over the whole window.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -67,7 +67,7 @@ impl GeneticStop {
 /// assert_eq!(first, Some(52)); // the random population and 51 generations
 /// ```
 pub fn has_stalled(best: &[f64], window: usize, tolerance: f64, test: StallTest) -> bool {
-    // The random population is no generation.
+    // The random population does not count as a generation.
     let generations = best.get(1..).unwrap_or_default();
     let (Some(first), Some(last)) = (
         window

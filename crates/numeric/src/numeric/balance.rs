@@ -7,15 +7,15 @@
 //! R(u, p) = the same coefficients of omega^2 X'' + f(X, omega X', theta; p)
 //! ```
 //!
-//! The forces are sampled at equal steps of the phase and taken apart into their harmonics again:
-//! alternating time and frequency (T. M. Cameron and J. H. Griffin, *J. Appl. Mech.* 56 (1989) 149;
-//! G. von Groll and D. J. Ewins, *J. Sound Vib.* 241 (2001) 223; M. Krack and J. Gross, *Harmonic
-//! Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the harmonics
-//! of the derivatives of the forces at the same samples. In: coefficients, and the forces as a
-//! closure. Out: residual and derivatives, in the units of the equations.
+//! The forces are sampled at equal steps of the phase and transformed back into harmonics, the
+//! alternating frequency-time method (T. M. Cameron and J. H. Griffin, *J. Appl. Mech.* 56 (1989)
+//! 149; G. von Groll and D. J. Ewins, *J. Sound Vib.* 241 (2001) 223; M. Krack and J. Gross,
+//! *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the
+//! harmonics of the derivatives of the forces at the same samples. In: coefficients, and the forces
+//! as a closure. Out: residual and derivatives, in the units of the equations.
 //!
-//! Samples do not tell where a force jumps. The caller adds what is more on one side of the jump as
-//! integrals at phases that it has located, [`LocatedForces`].
+//! Samples do not show where a force jumps. The caller adds the surplus of the force on one side of
+//! the jump, as integrals at phases that it has located: [`LocatedForces`].
 //!
 //! Without a drive the frequency of a motion is an unknown, and the time at which it begins is
 //! free: it begins where the first sine of one coordinate is zero, and the frequency takes the
@@ -48,17 +48,17 @@ use nalgebra::{DMatrix, DVector};
 use super::harmonics::{Harmonics, Transform};
 use super::ode::newton::{Progress, newton};
 
-/// Samples for each harmonic, and of all of them: forces of the seventh power are exact.
+/// Samples per harmonic, and the least number of samples: forces up to the seventh power are exact.
 const SMOOTH: [usize; 2] = [8, 32];
 
-/// Samples where the forces have corners: with fewer the branch would waver as a corner moves from
-/// sample to sample.
+/// Samples per harmonic, and the least number of samples, for forces with corners: with fewer the
+/// branch would waver as a corner moves from sample to sample.
 const CORNERED: [usize; 2] = [32, 512];
 
-/// A step of Newton's method that is smaller than this part of the motion is its last.
+/// Relative size of a step of Newton's method below which it has converged.
 pub const CONVERGED: f64 = 1e-10;
 
-/// The equations of n coordinates with so many harmonics.
+/// The harmonic balance equations of n coordinates with H harmonics.
 #[derive(Clone, Debug)]
 pub struct HarmonicBalance {
     /// n: the number of coordinates.
@@ -68,14 +68,14 @@ pub struct HarmonicBalance {
     /// The coordinate whose first sine is zero, where nothing drives the motion: the frequency
     /// stands in the place of that sine among the unknowns.
     pub anchor: Option<usize>,
-    /// From samples to harmonics and back; the number of samples is a power of two.
+    /// The transform from samples to harmonics and back; the number of samples is a power of two.
     transform: Transform,
 }
 
-/// The forces at a phase, one on each coordinate, and their derivatives; row i is that of f_i.
+/// The forces at a phase, one on each coordinate, and their derivatives; row i belongs to f_i.
 #[derive(Clone, Debug)]
 pub struct ForceSample {
-    /// f_i.
+    /// The forces f_i.
     pub value: DVector<f64>,
     /// The derivative of f_i by the position of coordinate j.
     pub by_position: DMatrix<f64>,
@@ -89,23 +89,23 @@ pub struct ForceSample {
 #[derive(Clone, Debug, Default)]
 pub struct LocatedForces {
     phases: Vec<f64>,
-    /// A row for each phase: those of [`ForceSample::write_row`], one after the other.
+    /// For each phase the rows of [`ForceSample::write_row`], coordinate by coordinate.
     rows: Vec<f64>,
 }
 
 /// The residual and its derivatives at a point.
 #[derive(Clone, Debug)]
 pub struct Linearised {
-    /// R.
+    /// The residual R.
     pub residual: DVector<f64>,
-    /// dR/du and dR/dp, the last column.
+    /// dR/du, with dR/dp as the last column.
     pub jacobian: DMatrix<f64>,
     /// The size of the terms that cancel in R.
     pub scale: f64,
 }
 
 impl ForceSample {
-    /// No force on so many coordinates.
+    /// A sample of zero forces on this many coordinates.
     pub fn zeros(coordinates: usize) -> Self {
         Self {
             value: DVector::zeros(coordinates),
@@ -115,8 +115,8 @@ impl ForceSample {
         }
     }
 
-    /// Writes row i with the number of each column: f_i, its derivatives by n positions, n
-    /// velocities and the parameter, and last this one by the frequency.
+    /// Calls `write` with the index and the value of each column of row i: f_i, its derivatives by
+    /// n positions, by n velocities and by the parameter, and last `by_frequency`.
     fn write_row(&self, i: usize, by_frequency: f64, mut write: impl FnMut(usize, f64)) {
         let n = self.value.len();
         write(0, self.value[i]);
@@ -137,7 +137,7 @@ impl LocatedForces {
         for i in 0..velocities.len() {
             let products = velocities.iter().enumerate();
             let products = products.map(|(j, velocity)| integral.by_velocity[(i, j)] * velocity);
-            // By the frequency times the frequency, which is not known here.
+            // The derivative by the frequency, times the frequency: `linearised` divides by it.
             let first = self.rows.len();
             self.rows.resize(first + 2 * velocities.len() + 3, 0.0);
             integral
@@ -147,9 +147,9 @@ impl LocatedForces {
 }
 
 impl HarmonicBalance {
-    /// The equations of so many coordinates with `harmonics` harmonics, one at least; `smooth` says
-    /// that the forces have no corners, `anchor` which first sine is zero if the frequency is
-    /// unknown.
+    /// The equations of `coordinates` coordinates with `harmonics` harmonics, one at least;
+    /// `smooth` says that the forces have no corners, `anchor` which first sine is zero if the
+    /// frequency is unknown.
     pub fn new(coordinates: usize, harmonics: usize, smooth: bool, anchor: Option<usize>) -> Self {
         let harmonics = harmonics.max(1);
         let [each, least] = if smooth { SMOOTH } else { CORNERED };
@@ -172,18 +172,20 @@ impl HarmonicBalance {
         self.transform.samples()
     }
 
-    /// The place of the frequency among the unknowns, if it is one of them: that of b_1 of the
-    /// anchor.
+    /// Returns the index of the frequency among the unknowns, where b_1 of the anchor would stand;
+    /// `None` if the frequency is given.
     pub fn frequency_place(&self) -> Option<usize> {
         Some(self.anchor? * self.block() + 2)
     }
 
-    /// The frequency of a motion: `given`, or that among the unknowns.
+    /// Returns the angular frequency of a motion: the one among the unknowns, or `given` if there
+    /// is none.
     pub fn frequency(&self, unknowns: &DVector<f64>, given: f64) -> f64 {
         self.frequency_place().map_or(given, |place| unknowns[place])
     }
 
-    /// Cosine and sine of every harmonic of a coordinate; first the mean and zero.
+    /// Returns the coefficients of cosine and sine of every harmonic of a coordinate; the first
+    /// pair is the mean and zero.
     pub fn waves(
         &self,
         unknowns: &DVector<f64>,
@@ -198,8 +200,8 @@ impl HarmonicBalance {
         [[own[0], 0.0]].into_iter().chain(own[1..].chunks_exact(2).enumerate().map(wave))
     }
 
-    /// Cosine and sine of a harmonic of a coordinate, as [`HarmonicBalance::waves`] has them; zero
-    /// beyond the last.
+    /// Returns the coefficients of cosine and sine of one harmonic of a coordinate, as in
+    /// [`HarmonicBalance::waves`]; zero beyond the last.
     pub fn harmonic(
         &self,
         unknowns: &DVector<f64>,
@@ -209,7 +211,7 @@ impl HarmonicBalance {
         self.waves(unknowns, coordinate).nth(harmonic).unwrap_or_default()
     }
 
-    /// The size of what moves in a motion: the norm of all waves.
+    /// Returns the size of a motion about its mean: the norm of the coefficients of all harmonics.
     pub fn extent(&self, unknowns: &DVector<f64>) -> f64 {
         let waves = |coordinate: usize| {
             let first = coordinate * self.block() + 1;
@@ -224,7 +226,7 @@ impl HarmonicBalance {
         (0..self.coordinates).map(waves).fold(0.0, f64::hypot)
     }
 
-    /// The size of the last quarter of the harmonics.
+    /// Returns the norm of the coefficients of the last quarter of the harmonics.
     pub fn last_harmonics(&self, unknowns: &DVector<f64>) -> f64 {
         let first = self.harmonics - self.harmonics / 4;
         let last = |coordinate| {
@@ -234,7 +236,8 @@ impl HarmonicBalance {
         (0..self.coordinates).flat_map(last).fold(0.0, f64::hypot)
     }
 
-    /// X_i, X_i' and X_i'' by the phase, at every sample, for each coordinate.
+    /// Returns X_i and its first and second derivative by the phase, at every sample, for each
+    /// coordinate.
     pub fn motion(&self, unknowns: &DVector<f64>) -> Vec<Vec<[f64; 3]>> {
         let of_coordinate = |coordinate: usize| {
             let derivative = |times: u32| {
@@ -276,7 +279,7 @@ impl HarmonicBalance {
         point
     }
 
-    /// X_i'' by the phase.
+    /// Returns the second derivative of X_i by the phase.
     pub fn curvature(&self, unknowns: &DVector<f64>, coordinate: usize, phase: f64) -> f64 {
         let term = |(harmonic, [a, b]): (usize, [f64; 2])| {
             let k = harmonic as f64;
@@ -307,8 +310,8 @@ impl HarmonicBalance {
         self.in_order(positions.iter().map(of_coordinate))
     }
 
-    /// The unknowns of a motion of this frequency, known as those of
-    /// [`HarmonicBalance::coefficients_of`] are.
+    /// The unknowns of a motion of this frequency, whose coordinates are known as in
+    /// [`HarmonicBalance::coefficients_of`].
     pub fn unknowns_of(&self, positions: &[&[f64]], frequency: f64) -> DVector<f64> {
         let coefficients = self.coefficients_of(positions);
         let Some(place) = self.frequency_place() else {
@@ -320,7 +323,7 @@ impl HarmonicBalance {
         unknowns
     }
 
-    /// The motion begun later by a phase.
+    /// Returns the coefficients of the same motion begun later by `phase`.
     pub fn later(&self, coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
         let mut turned = coefficients.clone();
         for harmonic in 1..=self.harmonics {
@@ -335,7 +338,7 @@ impl HarmonicBalance {
         turned
     }
 
-    /// The coefficients of each coordinate, in the order of the unknowns.
+    /// Arranges the coefficients of each coordinate in the order of the unknowns.
     fn in_order(&self, harmonics: impl Iterator<Item = Harmonics>) -> DVector<f64> {
         let all = harmonics.flat_map(|Harmonics { cosines, sines }| {
             (0..self.block()).map(move |index| match index {
@@ -348,8 +351,8 @@ impl HarmonicBalance {
     }
 
     /// The residual and its derivatives on a motion, given by [`HarmonicBalance::motion`] and by
-    /// its frequency, with the derivative of that by the parameter. `force` hears a phase with
-    /// position and velocity of each coordinate, and writes the forces there, of which those that
+    /// its frequency, with the derivative of that by the parameter. `force` is called with a phase
+    /// and the position and velocity of each coordinate, and writes the forces there; entries that
     /// it never writes are zero; `located` is added to them. `None` if some force has no finite
     /// value on the motion.
     pub fn linearised(
@@ -445,17 +448,17 @@ impl HarmonicBalance {
             |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
         DMatrix::from_fn(self.block(), self.block(), |row, column| {
             let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
-            // A cosine turns into minus a sine, a sine into a cosine.
+            // The derivative of a cosine is minus a sine, and of a sine a cosine.
             let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
             let value = coupled(stiffness, (k, k_sine), (l, l_sine))
                 + turned * coupled(damping, (k, k_sine), (l, !l_sine));
-            // The mean is half the harmonic 0.
+            // The mean is half the coefficient of harmonic 0.
             if k == 0 { 0.5 * value } else { value }
         })
     }
 
     /// Newton's method for the unknowns at a fixed parameter; `equations` gives the residual and
-    /// its derivatives. `None` if it does not settle.
+    /// its derivatives. Returns `None` if it does not converge.
     pub fn solve(
         &self,
         guess: &DVector<f64>,
@@ -474,7 +477,8 @@ impl HarmonicBalance {
             }
             let settled = match self.frequency_place() {
                 None => step.norm() <= CONVERGED * unknowns.norm(),
-                // A frequency is measured in itself.
+                // The frequency has a unit of its own, so its step is compared with the frequency
+                // alone.
                 Some(place) => {
                     let [size, moved] = [unknowns, step].map(|vector| {
                         let means = vector.iter().step_by(self.block());

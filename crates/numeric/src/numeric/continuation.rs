@@ -1,5 +1,5 @@
 //! Branches of solutions, followed step by step: prediction along the tangent, correction by
-//! Newton's method, and lengths of the steps that fit the branch.
+//! Newton's method, and step lengths that adapt to the branch.
 //!
 //! ```text
 //! F(u) = 0,  n equations for n + 1 unknowns:      [F_u; t^T] du = -[F; 0]     Newton's method at right angles to the tangent t
@@ -8,7 +8,8 @@
 //!
 //! References: H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press 1977; E. L.
 //! Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapters 2 and
-//! 6. Folds are no obstacle, since no unknown is the one that grows along the branch.
+//! 6. Folds are no obstacle, since the branch is parametrised by its arc length, not by one of the
+//!   unknowns.
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
@@ -24,8 +25,9 @@ pub enum ContinuationStep<Point, End> {
     Ended(Option<Point>, End),
 }
 
-/// The points of a branch from the first one on, and its end. `step` takes a step from the last of
-/// the points, of a length that it may shorten; `length` is the first, in the unit of the caller.
+/// Returns the points of a branch from `first` on, and its end. `step` takes a step from the last
+/// of the points, of a length that it may shorten; `length` is the first length and `longest` the
+/// largest, in the unit of the caller.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -79,13 +81,14 @@ pub fn follow<Point, End>(
     }
 }
 
-/// The Jacobian of n equations for n + 1 unknowns with this last row.
+/// Returns the Jacobian of n equations for n + 1 unknowns, bordered with `row` as its last row.
 pub fn bordered(jacobian: &DMatrix<f64>, row: &DVector<f64>) -> DMatrix<f64> {
     let count = jacobian.nrows();
     DMatrix::from_fn(count + 1, count + 1, |i, j| if i < count { jacobian[(i, j)] } else { row[j] })
 }
 
-/// The tangent of a branch, of any length, from the factors of the bordered Jacobian.
+/// Returns a tangent of the branch, not normalised, from the factors of the bordered Jacobian;
+/// `None` if that is singular.
 pub fn tangent(factors: &LU<f64, Dyn, Dyn>) -> Option<DVector<f64>> {
     let mut right = DVector::zeros(factors.lu_internal().nrows());
     let last = right.len() - 1;
@@ -93,7 +96,7 @@ pub fn tangent(factors: &LU<f64, Dyn, Dyn>) -> Option<DVector<f64>> {
     factors.solve(&right)
 }
 
-/// Whether the way from one point to the next passes a third one in between.
+/// Whether the straight line from one point to the next passes close to a third one in between.
 pub fn passes<D: Dim>(
     target: &OVector<f64, D>,
     from: &OVector<f64, D>,

@@ -1,4 +1,5 @@
-//! The harmonics of a period that is known at equal steps, and back, by the fast Fourier transform.
+//! The harmonics of a periodic function from its values at equal steps of a period, and back, by
+//! the fast Fourier transform.
 //!
 //! ```text
 //! a_k = 2/N sum_j f_j cos(k theta_j),   b_k = 2/N sum_j f_j sin(k theta_j),   theta_j = 2 pi j/N
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
-/// Harmonics 0 to some highest one: twice the mean, then cosines; sines.
+/// The Fourier coefficients of the harmonics from 0 to some highest one.
 pub struct Harmonics {
     /// Twice the mean, then the coefficient of `cos(k theta)` at `k`.
     pub cosines: Vec<f64>,
@@ -20,7 +21,7 @@ pub struct Harmonics {
 }
 
 impl Harmonics {
-    /// Adds what stands at one phase.
+    /// Adds a function concentrated at one phase, where its integral over the phase is `value`.
     pub fn add(&mut self, phase: f64, value: f64) {
         if value == 0.0 {
             return;
@@ -36,19 +37,19 @@ impl Harmonics {
         }
     }
 
-    /// The cosine of an index of either sign.
+    /// Returns the coefficient of the cosine for an index of either sign.
     pub fn cosine(&self, index: isize) -> f64 {
         self.cosines[index.unsigned_abs()]
     }
 
-    /// The sine of an index of either sign.
+    /// Returns the coefficient of the sine for an index of either sign, odd in the index.
     pub fn sine(&self, index: isize) -> f64 {
         let value = self.sines[index.unsigned_abs()];
         if index < 0 { -value } else { value }
     }
 }
 
-/// The transform of a number of samples.
+/// The discrete Fourier transform of a fixed number of samples.
 #[derive(Clone)]
 pub struct Transform(Arc<dyn Fft<f64>>);
 
@@ -80,7 +81,8 @@ impl Transform {
         Harmonics { cosines, sines }
     }
 
-    /// The sum of waves, `(cosine, sine)` of the harmonics from 0 on, at the samples.
+    /// Returns the sum of waves at the samples, from the coefficients `[cosine, sine]` of the
+    /// harmonics from 0 on.
     pub fn sum_of_waves(&self, waves: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
         let mut parts: Vec<Complex<f64>> =
             waves.map(|[cosine, sine]| Complex::new(cosine, sine)).collect();

@@ -1,5 +1,5 @@
-//! True motions in numbers: nothing here knows where an equation came from, so what is judged
-//! shares nothing with its judge.
+//! Numerical reference motions: nothing here knows where an equation came from, so a formula that
+//! is judged shares no code with its judge.
 //!
 //! In come forces as closures, starts and tolerances; out go motions, periods and limit cycles, or
 //! the reason why there is none. Units are those of the closures. [`ode`], `harmonics` and
@@ -7,16 +7,17 @@
 //! first two:
 //!
 //! - [`ode`]: Runge-Kutta with dense output and events, quadrature, roots; turning points.
-//! - `harmonics`: the Fourier coefficients of a period that is known at equal steps, and back.
-//! - [`balance`]: harmonic balance, the equations of a periodic motion for its Fourier coefficients.
-//! - [`period`]: the true period of a force of the position alone, from its energy, and of others
-//!   from their return.
+//! - `harmonics`: the Fourier coefficients of a period from its values at equal steps, and back.
+//! - [`balance`]: harmonic balance, the equations of a periodic motion for its Fourier
+//!   coefficients.
+//! - [`period`]: the true period under a force that depends on the position alone, from the energy,
+//!   and under any other force from the return to a turning point.
 //! - [`continuation`]: branches of solutions, step by step.
 //! - [`periodic`]: true periodic orbits by shooting, and their Floquet multipliers.
 //! - [`return_map`]: true limit cycles, from one turning point to the next.
 //!
-//! [`period`], [`periodic`] and [`return_map`] belong to the judge: no method takes its answer from
-//! them.
+//! [`period`], [`periodic`] and [`return_map`] belong to the judge: no approximate method takes its
+//! answer from them.
 
 pub mod balance;
 pub mod continuation;

@@ -1,12 +1,11 @@
-//! The true frequency, by ways that share nothing with the formulas.
+//! The true period, by methods that share no code with the formulas.
 //!
-//! Conservative motion: adaptive quadrature of the time that [`crate::numeric::ode::energy`] gives
-//! for every angle between the two turning points.
+//! Conservative motion: adaptive quadrature of the time per angle that
+//! [`crate::numeric::ode::energy`] gives between the two turning points.
 //!
-//! Any other periodic motion: the Runge-Kutta return to a turning point.
+//! Any other periodic motion: the return to a turning point, followed by a Runge-Kutta method.
 //!
-//! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` holds the
-//! wall.
+//! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` checks it.
 
 pub use crate::numeric::ode::energy::{PeriodError, PiecewiseForce, turning_point};
 
@@ -65,8 +64,8 @@ fn period_of_rates(rates: &TimePerAngle) -> Result<f64, PeriodError> {
             rates.tolerance(piece),
         ) {
             Ok((value, error)) => (half, estimate) = (half + value, estimate + error),
-            // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no
-            // panel gets below that.
+            // Where the force is a small difference, as x^2 - 4 near x = 2, its own rounding limits
+            // every panel: the best value is taken.
             Err(QuadratureError::NotConverged { value, error_estimate, .. }) => {
                 (half, estimate) = (half + value, estimate + error_estimate)
             }
@@ -108,7 +107,7 @@ impl Swing {
         self.path.end().t * self.time
     }
 
-    /// Position and velocity at a time from zero to the period.
+    /// Position and velocity at a time from zero to the period; `None` before.
     pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         let (x, v) = self.path.phase_point_at((t / self.time).min(self.path.end().t))?;
         Some((self.equilibrium + self.length * x, self.length / self.time * v))
@@ -147,8 +146,8 @@ pub fn swing(
     swing_with_cuts(acceleration, &[], equilibrium, start, longest)
 }
 
-/// As [`swing`], restarted at every cut, so that no step jumps over a corner or a narrow place of
-/// the force.
+/// Follows a swing as [`swing`] does, restarted at every cut, so that no step jumps over a corner
+/// or a narrow part of the force.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -204,8 +203,8 @@ pub fn swing_with_cuts(
     }
 }
 
-/// The reason why a motion cannot be followed past a state: a place where the force has no value,
-/// or that it has left for good.
+/// Returns the reason why a motion cannot be followed past a state: the force has no value there,
+/// or the motion escapes or runs away.
 fn ending(
     acceleration: &dyn Fn(f64, f64, f64) -> f64,
     equilibrium: f64,
@@ -214,7 +213,7 @@ fn ending(
 ) -> PeriodError {
     /// Number of amplitudes beyond which a motion does not oscillate.
     const FAR: f64 = 1e6;
-    /// Times the force at rest, beyond which it is the speed that drives the motion.
+    /// Ratio of the force to that at rest beyond which it is the speed that drives the motion.
     const DRIVEN: f64 = 1e3;
     let length = (start - equilibrium).abs();
     let [moving, still] = [state.v, 0.0].map(|speed| acceleration(state.t, state.x, speed).abs());

@@ -11,8 +11,8 @@
 //! multipliers: the eigenvalues of M;                       the orbit attracts where all lie inside the unit circle
 //! ```
 //!
-//! The guess is only where the search begins: the orbit found is one of the equation alone, stable
-//! or not. Orbits that are known already are kept away from by deflation (P. E. Farrell, A.
+//! The guess only begins the search: the orbit found depends on the equation alone, and may be
+//! stable or not. Orbits that are known already are avoided by deflation (P. E. Farrell, A.
 //! Birkisson, S. W. Funke, SIAM J. Sci. Comput. 37, 2015, A2026):
 //!
 //! ```text
@@ -33,7 +33,8 @@ pub struct PeriodicOrbit<const N: usize = 2, Path = Trajectory> {
     pub start: [f64; N],
     /// The period.
     pub period: f64,
-    /// The monodromy matrix: the derivative of the state after a period by that at its beginning.
+    /// The monodromy matrix: the derivative of the state after a period by the state at its
+    /// beginning.
     pub monodromy: SMatrix<f64, N, N>,
     /// The orbit as it was followed over a period.
     pub path: Path,
@@ -50,7 +51,7 @@ impl<const N: usize, Path> PeriodicOrbit<N, Path> {
         }
     }
 
-    /// Whether neighbouring motions come closer.
+    /// Whether neighbouring motions approach the orbit: all multipliers lie inside the unit circle.
     pub fn attracts(&self) -> bool {
         self.multipliers().iter().all(|value| value.norm() < 1.0)
     }
@@ -62,7 +63,7 @@ impl PeriodicOrbit {
         self.path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN))
     }
 
-    /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
+    /// Returns the amplitude of a harmonic of the orbit, `sqrt(c^2 + s^2)` of its cosine and sine.
     pub fn harmonic(&self, number: u32) -> f64 {
         const SAMPLES: usize = 4096;
         let sample = |k: usize| {
@@ -76,7 +77,8 @@ impl PeriodicOrbit {
     }
 }
 
-/// The eigenvalues of a matrix of two rows, the larger first, from its trace and its determinant.
+/// Returns the eigenvalues of a 2 by 2 matrix, the larger first, from its trace and its
+/// determinant.
 pub fn eigenvalues_of_two(trace: f64, determinant: f64) -> [Complex<f64>; 2] {
     let half = 0.5 * trace;
     let square = half * half - determinant;
@@ -94,35 +96,38 @@ pub fn eigenvalues_of_two(trace: f64, determinant: f64) -> [Complex<f64>; 2] {
 pub struct Shooting<'a, const N: usize> {
     /// The state from which the search begins.
     pub guess: [f64; N],
-    /// The period, only a guess of it where there are `rates`.
+    /// The period; only a guess of it if `rates` are given.
     pub period: f64,
-    /// The rates of a state by equations without drive, whose period is an unknown.
+    /// The rates of a state under autonomous equations, for which the period is an unknown; `None`
+    /// for driven equations.
     pub rates: Option<&'a dyn Fn([f64; N]) -> [f64; N]>,
     /// The positive size in which each state is measured.
     pub sizes: [f64; N],
-    /// The solution of the equations of a step: where every amplitude is an orbit, that of least
-    /// norm leads to the nearest.
+    /// Solves the linear equations of a step. If there is an orbit of every amplitude the matrix is
+    /// singular, and the solution of least norm leads to the nearest orbit.
     pub solve: fn(DMatrix<f64>, DVector<f64>) -> Option<DVector<f64>>,
-    /// Newton's steps after which the search ends.
+    /// Largest number of Newton steps.
     pub most: usize,
     /// Largest change of the start, in units of the sizes, and of the period, in units of its
     /// guess.
     pub far: f64,
-    /// The starts of orbits that are not looked for.
+    /// The starts of known orbits, which the search avoids.
     pub known: &'a [[f64; N]],
 }
 
 impl<const N: usize> Shooting<'_, N> {
-    /// The orbit; `None` if one cannot be followed over a period, or Newton's steps do not settle.
-    /// `follow` gives the state after a period from a start, its derivative by the start and the
-    /// path; `settled` is called with the distance of an orbit from closing and the step of
-    /// Newton's method, both in units of the sizes, and returns whether it has converged.
+    /// Returns the orbit; `None` if a motion cannot be followed over a period, or Newton's method
+    /// does not converge. `follow` returns the state after a period from a start, its derivative by
+    /// the start and the path; `settled` is called with the distance of an orbit from closing and
+    /// the step of Newton's method, both in units of the sizes, and returns whether it has
+    /// converged.
     pub fn orbit<Path>(
         &self,
         mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,
         mut settled: impl FnMut(f64, f64) -> bool,
     ) -> Option<PeriodicOrbit<N, Path>> {
-        /// The longest step: one beyond the size of the orbit leads to another one, or nowhere.
+        /// The longest step, in units of the sizes: a longer one leads to another orbit, or
+        /// nowhere.
         const LONGEST: f64 = 0.5;
         let [guess, sizes] = [self.guess, self.sizes].map(SVector::from);
         let in_sizes = |vector: SVector<f64, N>| vector.component_div(&sizes);
@@ -177,8 +182,9 @@ impl<const N: usize> Shooting<'_, N> {
     }
 }
 
-/// The arguments of [`Shooting::orbit`] with the derivative by central differences: `follow`
-/// returns the state after a period from a start, and the path; `sizes` are those of the states.
+/// Returns the triple that `follow` of [`Shooting::orbit`] returns, with the derivative by central
+/// differences: here `follow` returns only the state after a period from a start, and the path;
+/// `sizes` are the sizes of the states.
 pub fn by_differences<const N: usize, Path>(
     start: [f64; N],
     sizes: [f64; N],
@@ -201,9 +207,10 @@ pub fn by_differences<const N: usize, Path>(
     Some((end, derivative, path))
 }
 
-/// The periodic motion of `x'' = acceleration(t, x, x')`, which has this period in `t`, near a
-/// start, position and velocity at `t = 0`, that is none of those that begin at the known places;
-/// `size` is about how large it is. `None` if none was found near there, or it cannot be followed.
+/// Returns the periodic motion of `x'' = acceleration(t, x, x')`, which has this period in `t`,
+/// near a start, given by position and velocity at `t = 0`. Motions that begin at the known starts
+/// are avoided; `size` is the approximate amplitude. Returns `None` if no motion is found, or it
+/// cannot be followed.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -222,7 +229,7 @@ pub fn periodic_motion(
     size: f64,
     known: &[[f64; 2]],
 ) -> Option<PeriodicOrbit> {
-    /// A step so short is the last.
+    /// Relative size of a step below which Newton's method has converged.
     const SETTLED: f64 = 1e-11;
     let (sizes, far) = ([size, size * (TAU / period)], f64::INFINITY);
     let options = IntegrationOptions {

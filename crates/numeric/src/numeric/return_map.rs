@@ -23,24 +23,27 @@ use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajecto
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
 
-/// Relative error of a return to the start that is accepted if the accuracy of the steps decides.
+/// Relative error of a return to the start that counts as rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// Tolerance per step of the implicit method, and what its returns may miss their start by.
+/// Tolerance per step of the implicit method, and the relative error of a return that then counts
+/// as rounding.
 const STIFF_TOLERANCE: f64 = 1e-14;
 const STIFF_ROUNDING: f64 = 1e-8;
 
-/// Steps of one return while the neighbourhood is searched, of the first return, and of a stiff
-/// one.
+/// Largest number of steps of one return: in the search by rings, of a relaxation oscillation, and
+/// by the implicit method.
 const STEPS_OF_SEARCH: usize = 20_000;
 const STEPS_OF_RELAXATION: usize = 40_000;
 const STIFF_STEPS: usize = 40_000;
 
-/// The longest time of a return, in radians of the linear frequency.
+/// The longest time of a return, in radians of the linear frequency, by the explicit and by the
+/// implicit method.
 const LONGEST: f64 = 1e4;
 const STIFF_LONGEST: f64 = 1e12;
 
-/// Starts of the search: `RATIO^k` amplitudes for `|k| <= RINGS`, a sixtieth to sixty of them.
+/// Starts of the search: `RATIO^k` amplitudes for `|k| <= RINGS`, from a sixtieth of an amplitude
+/// to sixty.
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
@@ -48,10 +51,10 @@ const RINGS: i32 = 30;
 /// looked for reaches as far.
 const GONE: f64 = 1e4;
 
-/// Rings on end without a return after which a side is given up.
+/// Number of consecutive rings without a return after which the search on that side ends.
 const LOST_RINGS: usize = 4;
 
-/// `x'' = acceleration(x, x')`, and what to measure it with.
+/// The equation `x'' = acceleration(x, x')`, with its scales of length and time.
 pub struct AutonomousEquation<'a> {
     /// The acceleration.
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
@@ -125,11 +128,11 @@ impl NumericalLimitCycle {
     }
 }
 
-/// The limit cycle nearest to the amplitude of `equation`; one that attracts, or that repels, where
-/// `attracts` says so and there is one.
+/// Returns the limit cycle nearest to the amplitude of `equation`. If `attracts` is given, a cycle
+/// that attracts (`true`) or repels (`false`) is preferred.
 ///
 /// # Errors
-/// None within a factor of sixty.
+/// [`NoLimitCycle`] if no cycle is found within a factor of sixty of the amplitude.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -188,8 +191,9 @@ pub fn nearest_limit_cycle(
     })
 }
 
-/// Finds a cycle of strong attraction, as that of a relaxation oscillation, directly: after two
-/// returns the motion is on it to the last digit.
+/// Finds a cycle of strong attraction, such as a relaxation oscillation, directly: after two
+/// returns the motion is on it to the last digit. Returns `None` if the returns do not converge so
+/// fast.
 fn at_once(
     equation: &AutonomousEquation,
     attracts: bool,
@@ -207,7 +211,8 @@ fn at_once(
     }
 }
 
-/// The cycle onto which a few returns lead, to this accuracy.
+/// Returns the cycle onto which a few returns lead, to the relative accuracy `rounding`; `None` if
+/// there is none.
 fn cycle_by_returns(
     rounding: f64,
     equation: &AutonomousEquation,
@@ -227,14 +232,15 @@ fn cycle_by_returns(
     Ok(None)
 }
 
-/// The first ring about the amplitude in which the return map changes from growing to shrinking.
+/// Finds a cycle in the ring nearest to the amplitude in which P(x) - x changes from positive to
+/// negative.
 fn by_rings(equation: &AutonomousEquation, directions: &[bool]) -> Option<NumericalLimitCycle> {
     let growth = |attracts: bool, start: f64| {
         let path = swing(equation, attracts, start, STEPS_OF_SEARCH);
         path.map_or(f64::NAN, |path| path.end().x - start)
     };
-    // The growth at the inner and at the outer end of what was looked at, for each direction of
-    // time.
+    // P(x) - x at the inner and at the outer end of the range searched so far, for each direction
+    // of time.
     let mut ends: Vec<[f64; 2]> =
         directions.iter().map(|&attracts| [growth(attracts, 1.0); 2]).collect();
     let mut lost = vec![[0; 2]; directions.len()];
@@ -276,7 +282,7 @@ fn cycle(equation: &AutonomousEquation, attracts: bool, path: Trajectory) -> Num
     }
 }
 
-/// The reason why a motion was not seen to come back.
+/// The reason why a motion did not return.
 enum NoReturn {
     Away,
     Escapes,
@@ -296,7 +302,7 @@ fn swing(
     follow(equation, forward, start, LONGEST, &options)
 }
 
-/// The half swing by an implicit method, whatever the number of steps.
+/// The motion of [`swing`] by an implicit method, which takes long steps between the jumps.
 fn stiff_swing(
     equation: &AutonomousEquation,
     forward: bool,
@@ -330,8 +336,8 @@ fn follow(
     let path =
         integrate(scaled, state, longest, &[turning], options).map_err(|_| NoReturn::Away)?;
     match path.stop_reason() {
-        // A cycle goes around the equilibrium: what turns back on one side of it is rounding, as at
-        // mu = 1e30.
+        // A cycle goes around the equilibrium: a motion that turns back on one side of it is
+        // rounding, as for van der Pol's equation at mu = 1e30.
         StopReason::Event { .. } if path.end().x > 0.0 && path.knots().any(|knot| knot.x < 0.0) => {
             Ok(path)
         }

@@ -1,10 +1,10 @@
 //! Narrow features of a force: corners, steep walls and narrow bumps, found from the structure of
 //! its expression.
 //!
-//! A grid of points, however fine, misses a bump narrower than itself:
-//! `x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)` looks like `x`. The expression knows better. With `u` the
-//! argument of a function or the base of a power, the force may turn fast only where `u` does
-//! something special:
+//! A grid of points, however fine, misses a bump narrower than itself: `x - 1e5*(x + 1)*exp(-1e4*(x
+//! + 1)^2)` looks like `x`. The expression knows better. With `u` the argument of a function or the
+//! base of a power, the force may vary on a short scale only where `u` takes a special value or is
+//! stationary:
 //!
 //! ```text
 //! H(u), abs(u), sgn(u), max(u, v), min(u, v)    u = 0, u - v = 0                 a corner
@@ -28,19 +28,18 @@ use crate::numeric::ode::polynomial::real_zeros;
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 
-/// A place where a force may turn fast.
+/// A position about which a force may vary on a short scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Feature {
     /// The position.
     pub place: f64,
     /// The distance over which the force may change; zero at a corner, a jump or a pole.
     pub width: f64,
-    /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the
-    /// faster the closer.
+    /// Whether it is a pole, a root or a logarithm: the force varies the faster the closer to it.
     pub singular: bool,
 }
 
-/// The arguments inside a force at whose zeros and stationary points it may turn fast.
+/// The arguments inside a force at whose zeros and stationary points it may vary on a short scale.
 #[derive(Clone, Debug, Default)]
 pub struct Features {
     parts: Vec<InnerFunction>,
@@ -75,7 +74,7 @@ const GRID: usize = 128;
 /// The most points any grid may have.
 const MOST_POINTS: usize = 4096;
 
-/// A power this high is a bump or a wall.
+/// An exponent at or above this makes a power a narrow bump or a steep wall.
 const HIGH_POWER: f64 = 8.0;
 
 /// Ratio of the widths of neighbouring panels beside a narrow place.
@@ -106,12 +105,12 @@ impl Features {
         Self { parts }
     }
 
-    /// Whether nothing in the force can turn fast, wherever it is looked at.
+    /// Whether the force has no feature at any position.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
     }
 
-    /// Whether some part of it goes up and down again and again, as a sine does.
+    /// Whether some part of the force oscillates, as a sine does.
     pub fn waves(&self) -> bool {
         self.parts.iter().any(|part| part.kind == FunctionKind::Scale { waves: true })
     }
@@ -169,7 +168,7 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     let length = high - low;
     let mut points = Vec::new();
     for feature in features {
-        // Beside a singular place the force is as narrow as that is far.
+        // Beside a singularity the force varies on the scale of the distance from it.
         let outside = f64::max(low - feature.place, feature.place - high).max(0.0);
         let width = if feature.singular { 0.5 * outside } else { feature.width };
         // A feature as wide as the interval needs no cut.
@@ -313,7 +312,8 @@ impl InnerFunction {
     }
 }
 
-/// The sign changes of a function between the points of a grid; where the grid meets a zero, that.
+/// The sign changes of a function between the points of a grid, and the points of the grid at which
+/// it is zero.
 fn zeros(function: &dyn Fn(f64) -> f64, grid: &[f64]) -> Vec<f64> {
     let mut found = Vec::new();
     let mut last: Option<(f64, f64)> = None;
@@ -324,7 +324,7 @@ fn zeros(function: &dyn Fn(f64) -> f64, grid: &[f64]) -> Vec<f64> {
             continue;
         }
         if value == 0.0 {
-            // Of a stretch on which the function is zero, its beginning.
+            // Of an interval on which the function is zero only the first point counts.
             if last.is_none_or(|(_, before)| before != 0.0) {
                 found.push(x);
             }

@@ -1,5 +1,5 @@
-//! A force at given numbers, measured from its equilibrium: what every law that is solved by
-//! numbers evaluates.
+//! A force with numbers for its parameters, as a function of the distance from its equilibrium.
+//! Every law that is solved numerically evaluates it.
 //!
 //! Near rest a force such as `exp(x) - 1`, or any force about an equilibrium that is not zero, is a
 //! small difference of large numbers. Where rounding would show, its Taylor polynomial stands in
@@ -42,7 +42,7 @@ struct AtNumbers {
     force: Expr,
     coordinate: Symbol,
     numbers: BTreeMap<Symbol, f64>,
-    /// In symbols, and its place.
+    /// The equilibrium in symbols, and its position.
     equilibrium: (Expr, f64),
     value: CompiledFunction,
     slope: Option<CompiledFunction>,
@@ -50,7 +50,7 @@ struct AtNumbers {
     /// The Taylor coefficients about the equilibrium, where there are any.
     coefficients: OnceCell<Option<Vec<f64>>>,
     features: OnceCell<Features>,
-    /// Whether places of features are poles, each decided once.
+    /// Whether a feature is a pole, by the bits of its position; each is decided once.
     poles: RefCell<BTreeMap<u64, bool>>,
 }
 
@@ -152,8 +152,8 @@ impl CentredForce {
         }
     }
 
-    /// Whether rounding leaves the force a digit at the distance `y`: none where it is the
-    /// difference of numbers that agree to all of theirs.
+    /// Whether the force has a significant digit left at the distance `y`; it has none where it is
+    /// the difference of numbers that agree to all of their digits.
     pub(super) fn has_digits(&self, y: f64) -> bool {
         let there = |symbol: Symbol| match symbol == self.of.coordinate {
             true => Some((self.equilibrium() + y, 0.0)),
@@ -207,8 +207,7 @@ impl CentredForce {
         cuts.into_iter().map(|place| place - at).collect()
     }
 
-    /// Whether some part of it goes up and down again and again, so that many waves may lie between
-    /// two cuts.
+    /// Whether some part of the force oscillates, so that many waves may lie between two cuts.
     pub fn waves(&self) -> bool {
         self.of.features().waves()
     }
@@ -262,9 +261,10 @@ impl CentredForce {
         Some(NearRest { coefficients: coefficients.clone(), radius })
     }
 
-    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and
-    /// within four times the distance nothing that turns within less than that: of what happens
-    /// there, as of a bump beyond its tail, the Taylor coefficients at rest may know nothing.
+    /// Whether the Taylor polynomial may represent the force up to this radius: no corner lies
+    /// within it (one at the equilibrium itself apart), and within four times the radius lies no
+    /// feature narrower than that. The Taylor coefficients at rest need not show such a feature, as
+    /// a bump whose tail has died away there.
     fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
         let narrow = self
             .of
@@ -316,7 +316,8 @@ impl CentredForce {
                 (place - self.equilibrium()).abs() > 8.0 * f64::EPSILON * self.equilibrium().abs()
             })
             .find(|&place| {
-                // At zero alone the answer depends on the size of the motion.
+                // Only at zero does the answer depend on the amplitude, so that it must not be
+                // remembered.
                 let known = self.of.poles.borrow().get(&place.to_bits()).copied();
                 let pole = known.filter(|_| place != 0.0);
                 pole.unwrap_or_else(|| {
@@ -338,9 +339,9 @@ impl CentredForce {
         }
     }
 
-    /// Whether the force grows towards a place so fast that its potential is infinite there: as
-    /// close to it as rounding lets the force be known, like a power of the distance no weaker than
-    /// its inverse, or nearly.
+    /// Whether the force grows towards a place so fast that its potential is infinite there: like
+    /// the inverse of the distance or faster, or nearly so, over the two closest decades in which
+    /// rounding leaves the force a digit.
     pub fn is_pole(&self, place: f64, size: f64) -> bool {
         const DECADES: i32 = 13;
         const FASTER_THAN: f64 = 0.83;

@@ -11,9 +11,9 @@
 //!
 //! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as
 //! expressions, or `None` if a term has no closed form here: the methods fall back on quadrature
-//! and say so. With numbers for all symbols out goes a [`CentredForce`], which has a value, a slope
-//! and a turning point as near to rest as one likes, and knows where it turns fast; its
-//! [well](well::Well) has ends.
+//! and say so. With numbers for all symbols the result is a [`CentredForce`], which gives a value,
+//! a slope and a turning point however close to rest, and knows its narrow features; its
+//! [well](well::Well) is the range of its periodic motions.
 
 pub mod features;
 pub mod force;
@@ -77,8 +77,8 @@ pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Ex
 }
 
 /// The force without `abs`, `sgn`, `max` and `min` of shifted arguments: `abs(u) = u (2 H(u) - 1)`
-/// and so on. Those of the coordinate itself stay. Steps of what has its zeros in closed form, as
-/// `1 - x^2`, are sums of steps at these.
+/// and so on. Those of the coordinate itself stay. A step whose argument has its zeros in closed
+/// form, as `1 - x^2`, becomes a sum of steps at these zeros.
 pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
     use crate::expr::{Function, Node};
     let step = |u: Expr| match steps_at_zeros(&u, coordinate) {
@@ -113,9 +113,10 @@ pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprE
     })
 }
 
-/// `H(u)` as a sum of steps at the zeros of `u`, a constant and a power of the coordinate or of its
-/// size, or a quadratic in numbers: `None` for anything else, and where it is one already. Letters
-/// under a root are taken to be positive.
+/// `H(u)` as a sum of steps at the zeros of `u`, where `u` is a constant plus a power of the
+/// coordinate or of its size, or a quadratic with numbers for coefficients; `None` for anything
+/// else, and for a step that is in this form already. Parameters under a root are taken to be
+/// positive.
 fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
     use crate::expr::Function;
     use num_integer::Integer as _;
@@ -140,8 +141,8 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
         powers.push((power, coefficient));
     }
     let constant = Expr::sum(constants);
-    // Of the two signs one is that of a number, if either is: where the zeros are real the other is
-    // opposite.
+    // If one of the two signs is that of a number, the other is its opposite: only then are the
+    // zeros real.
     let inside_and_outside = |inside: Expr, within: &Expr, beyond: &Expr| {
         let [within, beyond] = match (within.as_number(), beyond.as_number()) {
             (None, Some(_)) => [step(&-beyond)?, step(beyond)?],
@@ -156,7 +157,7 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
         let root = Expr::number(power.exponent.recip());
         let ratio = (-&Expr::divide(&constant, coefficient).ok()?).expand().ok()?;
         if power.odd {
-            // Monotonic: of a negative number the root is that of its size.
+            // An odd power is monotonic: the root of a negative number is minus that of its size.
             let (negative, size) = match ratio.has_leading_minus() {
                 true => (true, -ratio),
                 false => (false, ratio),
@@ -205,7 +206,8 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
     inside_and_outside(between(&low, &high)?, &-&square_number, &square_number)
 }
 
-/// The root of what is positive where it is real, by its degree: of `c^2/4` it is `abs(c)/2`.
+/// The root, of this degree, of a value that is positive wherever the root is real: that of `c^2/4`
+/// is `abs(c)/2`.
 fn root_of_size(value: &Expr, degree: &Rational) -> Option<Expr> {
     use crate::expr::Function;
     use num_integer::Integer as _;

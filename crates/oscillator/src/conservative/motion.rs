@@ -59,8 +59,8 @@ impl CentredForce {
     }
 
     /// The reason why a motion released at the distance `start` has no period, where a search or a
-    /// quadrature has failed with `error`: at the separatrix that ends the well neither knows what
-    /// it met. It takes a search for the rims of the well, so this is for messages.
+    /// quadrature has failed with `error`: near the separatrix that ends the well neither can tell
+    /// the cause. The search for the rims of the well is slow, so this is for messages only.
     pub fn why_no_period(&self, start: f64, error: PeriodError) -> PeriodError {
         /// Relative distance from the end of the well within which its position is known.
         const ON: f64 = 1e-13;

@@ -17,7 +17,7 @@ use super::force::CentredForce;
 use super::well::{WellBoundary, end_of_force, rise, sign_change};
 use crate::numeric::ode::root::find_root;
 
-/// One range of amplitudes; of a motion of either sign the size counts.
+/// One range of amplitudes; the sign of an amplitude does not count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
     /// The amplitude that all of its motions exceed; zero where they begin at rest.
@@ -34,11 +34,10 @@ pub struct Passage {
 const DECADES: i32 = 12;
 const GROWTH: f64 = 1.02;
 
-/// Equilibria on one side after which a force is taken to go on like that.
+/// Number of equilibria on one side after which the search stops: the force is taken to repeat.
 const MOST: usize = 24;
 
-/// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of what is
-/// looked at.
+/// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of length.
 pub fn pushes_away(force: &CentredForce, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
@@ -129,11 +128,11 @@ fn beginning(force: &CentredForce, begin: f64, end: Option<f64>, height: f64) ->
 struct Side {
     /// Distances at which the force changes its sign.
     places: Vec<f64>,
-    /// Whether it pulls back up to each of these, and beyond the last.
+    /// Whether the force pulls back up to each of these distances, and beyond the last.
     pulls: Vec<bool>,
     /// The end of the force, or a pole.
     end: Option<WellBoundary>,
-    /// Whether all of it was looked at.
+    /// Whether the search covered the whole side.
     is_whole: bool,
 }
 
@@ -174,7 +173,7 @@ impl Side {
                     distance = next;
                     continue;
                 }
-                // A force that has grown beyond all numbers goes on, only not in numbers.
+                // A force that overflows f64 has a value all the same.
                 if strongest <= 1e250 && force.overflow(next).is_none() {
                     side.end = Some(ends_at(end_of_force(&value, distance, next)));
                 }

@@ -32,8 +32,8 @@ pub fn potential(force: &Expr, coordinate: Symbol) -> Option<Expr> {
         let parts = force.terms().iter().map(|term| of_term(term, coordinate));
         Some(Expr::sum(parts.collect::<Option<Vec<_>>>()?))
     };
-    // As it was typed, so that (x - xc)^(3/2)*H(x - xc) and 1/(1 + x^2) stay together, else written
-    // out.
+    // The force is first tried as it was typed, so that (x - xc)^(3/2)*H(x - xc) and 1/(1 + x^2)
+    // stay together, then in expanded form.
     let force = with_steps(force, coordinate).ok()?;
     terms(&force).or_else(|| terms(&force.expand().ok()?))
 }
@@ -82,7 +82,7 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     has_logarithms_at_rest(&found, coordinate).then(|| outside * found)
 }
 
-/// `c u^n`, where `u` is positive or the power has a value.
+/// An antiderivative of `c u^n`, valid where `u` is positive or the power has a value.
 fn power_of(term: &Expr, variable: Symbol) -> Option<Expr> {
     let (outside, inside) = split(term, variable);
     let [factor] = inside.as_slice() else {
@@ -144,7 +144,8 @@ fn at_sight(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     let next = &power.exponent + Rational::one();
     let whole = power.exponent.is_integer();
     let value = match inside.as_slice() {
-        // Of 1/x on both sides of the pole; that of 1/|x| would jump there.
+        // The antiderivative log|x| of 1/x serves on both sides of the pole; that of 1/|x| would
+        // jump there.
         [] if next.is_zero() && power.odd => {
             let size = Expr::function(Function::Absolute, vec![x]).ok()?;
             Expr::function(Function::Log, vec![size]).ok()?

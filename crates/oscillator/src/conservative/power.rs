@@ -5,7 +5,7 @@ use num_traits::ToPrimitive as _;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// The highest whole power beside a function that is no power.
+/// The highest whole power that may multiply a function that is not a power.
 const HIGHEST_POWER: usize = 24;
 
 /// `|y|^exponent`, times `sgn(y)` where odd. The exponent may be a symbol, which is taken to be
@@ -53,7 +53,7 @@ impl Power {
         true
     }
 
-    /// The whole number that it is a power by, where it is one of the variable itself.
+    /// The exponent, if this is a whole power of the variable itself, and not of its size.
     pub(crate) fn integer_exponent(&self) -> Option<usize> {
         let number = self.exponent.as_number()?;
         let whole = number.is_integer() && self.odd == number.numer().is_odd();
@@ -61,7 +61,7 @@ impl Power {
         (whole && count <= HIGHEST_POWER).then_some(count)
     }
 
-    /// As an expression, for the projections of one variable.
+    /// This power of `variable` as an expression; `None` if it has none.
     pub(crate) fn in_terms_of(&self, variable: Symbol) -> Option<Expr> {
         let size = Expr::function(Function::Absolute, vec![Expr::from(variable)]).ok()?;
         let power = Expr::power(&size, &self.exponent).ok()?;

@@ -161,7 +161,7 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
         let value = power_coefficient(&power.exponent, power.odd, k)?;
         return Some(coefficient * value * size(&power.exponent)?);
     }
-    // Beside anything else only whole powers of x itself.
+    // Only whole powers of x itself may multiply the factors that follow.
     let whole = power.exponent.is_integer() && power.odd == power.exponent.numer().is_odd();
     let exponent =
         power.exponent.to_integer().to_usize().filter(|&n| whole && n <= HIGHEST_POWER)?;
@@ -233,7 +233,7 @@ fn times_cosine(exponent: usize, k: usize, of: &dyn Fn(usize) -> Option<Expr>) -
 /// `c_k` of `function(z cos theta + phase)`.
 fn wave_coefficient(function: Function, z: &Expr, phase: &Expr, k: usize) -> Option<Expr> {
     let bessel = |circular: bool| {
-        // The sign of J follows the quarter turns.
+        // The Jacobi-Anger expansion gives J the sign (-1)^floor(k/2).
         let sign = if circular && (k / 2).is_odd() { -2 } else { 2 };
         Some(Expr::from(sign) * bessel_function(circular, k, z)?)
     };
@@ -308,9 +308,9 @@ fn steps_coefficient(
     Some(times_cosine(exponent, k, &arc)? * power)
 }
 
-/// `edge/amplitude` kept between -1 and 1, for beyond the edge is never reached, or always passed;
-/// and its angle. An edge with a minus is written by its mirror image, `acos(-c) = pi - acos(c)`,
-/// so that symmetric pairs add up.
+/// `edge/amplitude` limited to [-1, 1], since beyond these the edge is never reached or always
+/// passed; and its angle. An edge with a minus is written by its mirror image, `acos(-c) = pi -
+/// acos(c)`, so that symmetric pairs add up.
 fn edge_angle(edge: &Expr, amplitude: &Expr) -> Option<(Expr, Expr)> {
     if edge.terms().len() == 1 && edge.has_leading_minus() {
         let (cosine, angle) = edge_angle(&-edge, amplitude)?;

@@ -302,7 +302,7 @@ fn rise_to_infinity(force: &CentredForce, side: f64, unit: f64) -> Option<f64> {
     /// A quotient closer to one than this belongs to a potential that grows without end, as a
     /// logarithm, or may do so.
     const CONVERGES: f64 = 0.97;
-    /// The change of the quotient that still counts as settled.
+    /// Largest change of the quotient at which the series counts as geometric.
     const SETTLED: f64 = 1e-4;
     let mut sum = rise(force, side * unit)?;
     let (mut last, mut quotient) = (f64::INFINITY, f64::INFINITY);
@@ -314,7 +314,7 @@ fn rise_to_infinity(force: &CentredForce, side: f64, unit: f64) -> Option<f64> {
         };
         sum += work;
         if work <= NEGLIGIBLE * NEGLIGIBLE * sum {
-            // Rounding may be all that is left of it.
+            // The rest of the work may be rounding alone.
             return (work >= -NEGLIGIBLE * sum).then_some(sum);
         }
         let settled = (work / last - quotient).abs() < SETTLED;
@@ -405,8 +405,8 @@ fn rim(force: &CentredForce, side: f64, unit: f64) -> Option<Wall> {
                 continue;
             }
         }
-        // A force that has grown beyond all numbers goes on, only not in numbers, as does one that
-        // dies away as a quotient of such.
+        // A force that overflows f64 has a value all the same, and so has one that dies away as a
+        // quotient of numbers that overflow.
         if !there.is_finite() && (strongest > 1e250 || force.overflow(side * next).is_some()) {
             return levels_off(force, side, unit, pull(distance) / strongest);
         }
@@ -417,7 +417,7 @@ fn rim(force: &CentredForce, side: f64, unit: f64) -> Option<Wall> {
             ));
         }
         if there <= 0.0 {
-            // Below its rounding a force that dies away turns its sign without a zero.
+            // A decaying force may change its sign by rounding, without a zero.
             let is_rounding =
                 [distance, next].into_iter().all(|size| !force.has_digits(side * size));
             let Some((size, separatrix)) =
@@ -436,8 +436,8 @@ fn rim(force: &CentredForce, side: f64, unit: f64) -> Option<Wall> {
     levels_off(force, side, unit, pull(distance) / strongest)
 }
 
-/// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in
-/// the end, where its potential is finite there.
+/// Infinity as the rim of a force that pulls back on all of this side and weakens to the fraction
+/// `weakened` of its largest value; `None` unless its potential is finite there.
 fn levels_off(force: &CentredForce, side: f64, unit: f64, weakened: f64) -> Option<Wall> {
     /// A force that has not weakened by this over ten decades, a million units far, does not die
     /// away as fast as its inverse distance.

@@ -1,8 +1,8 @@
-//! The force of the position alone: whether it rests at zero, and where else.
+//! The force of the position alone: its equilibria, at zero and elsewhere.
 //!
-//! In: a force and its coordinate, with letters or without. Out: its stable equilibria, by closed
-//! forms where there are some, chosen with numbers in place of the letters, or by numbers; the
-//! names of them, for messages.
+//! In: a force and its coordinate, with or without parameters. Out: its stable equilibria, in
+//! closed form where there is one (chosen with sample values for the parameters), else as numbers;
+//! and their list for messages.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -31,13 +31,13 @@ pub(super) enum SingularAttraction {
     /// Weak attraction: the potential is finite there, as for `sgn(x)/abs(x)^(1/3)`, and the motion
     /// passes through.
     Passed,
-    /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those
-    /// of weaker powers, which swing through.
+    /// Attraction as `1/x` by an odd force: the potential is a logarithm, and the motion the limit
+    /// of those of weaker powers, which swing through.
     Inverse,
-    /// As `1/x`, but with an even part.
+    /// Attraction as `1/x`, but with an even part.
     UnevenInverse,
-    /// Faster than `1/x`: whatever falls in gains energy as a power of the distance, and nothing
-    /// says how it would come out.
+    /// Attraction faster than `1/x`: the potential is minus infinity as a power of the distance,
+    /// and the equation does not say how a motion would come out.
     Endless,
 }
 
@@ -54,7 +54,7 @@ impl<'a> PositionForce<'a> {
         Self { force, coordinate, value: CompiledFunction::new(force, &[coordinate]).ok() }
     }
 
-    /// Whether it has no letters beside the coordinate.
+    /// Whether the force has no symbol but the coordinate.
     pub(super) fn is_numerical(&self) -> bool {
         self.value.is_some()
     }
@@ -117,7 +117,7 @@ impl<'a> PositionForce<'a> {
     /// other force.
     pub(super) fn pull_without_bound(&self) -> Option<SingularAttraction> {
         /// Two exponents that differ by less than this are the same: over seventy decades rounding
-        /// makes one of 1e-17.
+        /// amounts to an exponent of 1e-17.
         const SAME: f64 = 1e-12;
         let value = self.at_numbers(&self.sample(1.0))?;
         // Decay of force times distance from far to near, in decades per decade: p + 1 for a power
@@ -141,8 +141,8 @@ impl<'a> PositionForce<'a> {
         })
     }
 
-    /// Whether the force, zero at `x = 0`, pulls back there; a parameter is given the benefit of
-    /// the doubt.
+    /// Whether the force, zero at `x = 0`, pulls back there; it is taken to do so where that
+    /// depends on a parameter.
     pub(super) fn is_stable_at_zero(&self) -> bool {
         let origin = [(self.coordinate, Rational::zero())];
         for degree in [1, 3, 5, 9, 15] {
@@ -161,7 +161,8 @@ impl<'a> PositionForce<'a> {
                 return power % 2 == 1 && !negative;
             }
         }
-        // Without a Taylor series, or flat: the first force that is felt on either side.
+        // Without a Taylor series, or if all its terms vanish, the first nonzero force on either
+        // side decides.
         let Some(value) = &self.value else {
             return true;
         };
@@ -285,8 +286,8 @@ impl<'a> PositionForce<'a> {
         forms.iter().filter_map(stable).collect()
     }
 
-    /// The stable equilibrium in the parameters that has the value asked for whatever they are,
-    /// however that is written.
+    /// The stable equilibrium in closed form that equals `asked` for all sample values of the
+    /// parameters, however `asked` is written.
     pub(super) fn stable_form_of(&self, asked: &Expr) -> Option<Expr> {
         if self.value.is_some() {
             return None;
@@ -306,8 +307,8 @@ impl<'a> PositionForce<'a> {
         samples.iter().any(is_stable).then(|| form.clone())
     }
 
-    /// The refusal of `x = 0`; with the motions through it as a way forward, where the force is all
-    /// that there is and has such.
+    /// The error of an unstable `x = 0`; it suggests the motions through it if the equation is
+    /// conservative and has such motions.
     pub(super) fn unstable(&self, conservative: bool) -> OscillatorError {
         OscillatorError::Unstable {
             coordinate: self.coordinate,
@@ -317,8 +318,8 @@ impl<'a> PositionForce<'a> {
     }
 
     /// The motions through zero that run over the wells on both sides of it, where it is a hilltop
-    /// between them; `position` is where zero is. With letters it is one where it is for positive
-    /// ones of all sizes.
+    /// between them; `position` is the position of zero in the equation as typed. A force with
+    /// parameters counts if zero is a hilltop for positive sample values of all sizes.
     pub(super) fn cross_well(&self, position: &Expr) -> Option<CrossWell> {
         /// Largest relative difference of a closed form and the number found, which is as accurate
         /// as the quadrature of the energy.
@@ -407,7 +408,7 @@ impl<'a> PositionForce<'a> {
         forms
     }
 
-    /// The stable equilibria: the nearest few, and the period with which they come back.
+    /// The stable equilibria: the nearest few, and the period with which they repeat.
     pub(super) fn stable_equilibria(&self) -> Equilibria {
         const MOST: usize = 4;
         if self.value.is_none() {
@@ -442,7 +443,8 @@ impl<'a> PositionForce<'a> {
         }
     }
 
-    /// The period of a force of angles, by trying those of its sines and cosines.
+    /// The period of a force that is periodic in the coordinate, found by trying those of its sines
+    /// and cosines.
     fn period(&self) -> Option<Expr> {
         let mut slopes: Vec<Rational> = Vec::new();
         let collected = self.force.fold(|expr, _: &[()]| {

@@ -1,4 +1,4 @@
-//! Zeros of a force with letters that are found by inverting it: the coordinate stands in one
+//! Zeros of a force with parameters that are found by inverting it: the coordinate stands in one
 //! place, or in the sine and cosine of one angle, or the force is a polynomial of third degree in
 //! it, in a power of it or in an exponential.
 //!
@@ -14,8 +14,8 @@
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
 //!
-//! The values of the letters decide which of them are real; that is left to the caller. In: a force
-//! and its coordinate. Out: candidates, some of which may be zeros for no values at all.
+//! The values of the parameters decide which of them are real; that is left to the caller. In: a
+//! force and its coordinate. Out: candidates, some of which may be zeros for no values at all.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -67,7 +67,7 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
 }
 
-/// A term as what does not move times the one factor that does.
+/// A term as a constant factor and the one factor that contains `x`; `None` if several contain it.
 fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
     let (number, factors) = term.factors();
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
@@ -131,7 +131,7 @@ fn zeros_at_values(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Exp
     Ok(found?.into_iter().flatten().collect())
 }
 
-/// The angle of `c sin u + d cos u = r`, and what it may be.
+/// The angle `u` of `c sin u + d cos u = r`, and the values that it may have.
 fn angles(terms: [&(Expr, Expr); 2], r: &Expr) -> Result<Option<(Expr, Vec<Expr>)>, ExprError> {
     let named = |(factor, function): &(Expr, Expr)| match function.node() {
         Node::Function(name @ (Function::Sin | Function::Cos), arguments) => {
@@ -185,7 +185,7 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
     if others.iter().any(|other| other.base != first.base) {
         return Ok(vec![]);
     }
-    // Every exponent by how many steps it is away from the first.
+    // The difference of every exponent from the first, in multiples of one step.
     let constant = (!r.is_zero()).then(|| (Expr::zero(), -r));
     let terms = others.iter().map(|power| (power.exponent.clone(), power.factor.clone()));
     let terms: Vec<(Expr, Expr)> = terms.chain(constant).collect();
@@ -263,8 +263,8 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
     Some(vec![Power { factor: factor.clone(), base: Some(base), exponent }])
 }
 
-/// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all
-/// coefficients from the lowest on; `None` beyond the third degree.
+/// Converts coefficients at exponents that need not be whole to those of a polynomial: returns the
+/// unit of the exponents, and all coefficients from the lowest on; `None` beyond the third degree.
 fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
     const DEGREE: usize = 3;
     let lowest = places.iter().map(|place| &place.0).min()?;

@@ -1,5 +1,5 @@
-//! A root that is real on one side of rest alone, as that of `x^1.5`: on the other there is no
-//! force, and nothing pulls back.
+//! Refusal of a root that is real on one side of rest alone, as that of `x^1.5`: on the other side
+//! there is no force, and nothing pulls back.
 
 use num_integer::Integer as _;
 use num_traits::Zero;
@@ -12,7 +12,7 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
-/// The refusal of a force that has a value on one side of `x = 0` alone; letters inside its root
+/// The refusal of a force that has a value on one side of `x = 0` alone; parameters inside its root
 /// are taken to be positive. `None` if no root of it begins there.
 pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<OscillatorError> {
     let coordinate = oscillator.coordinate;
@@ -35,7 +35,7 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
     };
     let typed = oscillator.typed.values().position(|value| contains(&value));
     let words = typed.map(|number| oscillator.typed.quote(&[number]));
-    // A decimal exponent stays one.
+    // The exponent is looked for as it may have been typed, as a decimal.
     let point = format!("^{}", decimal(to_f64(&exponent)));
     let by_point = words.as_ref().is_some_and(|words| words.contains(&point));
     let power_of = |base: &str| match by_point {

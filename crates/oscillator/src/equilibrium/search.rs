@@ -1,4 +1,4 @@
-//! The zeros of a force by numbers, at any scale.
+//! Numerical search for the zeros of a force, at any scale.
 //!
 //! In: the force as a function, and places where it may have small features. Out: every zero at
 //! which it changes its sign, whether it pulls back there, and whether it can be reached from
@@ -22,14 +22,14 @@ pub(super) struct Zero {
     pub reachable: bool,
 }
 
-/// Decades on either side of one, and points in each.
+/// Number of decades searched on either side of 1, and of grid points in each.
 const DECADES: i32 = 30;
 const PER_DECADE: i32 = 64;
 
 /// Values below are what underflow leaves of a force that dies out.
 const UNDERFLOW: f64 = 1e-300;
 
-/// Zeros on one side after which a force is taken to go on like that.
+/// Number of zeros on one side after which the search stops: the force is taken to repeat.
 const MOST: usize = 24;
 
 /// All zeros of a force, those of the right side first, each side outwards; `centres` are places
@@ -37,8 +37,8 @@ const MOST: usize = 24;
 pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     let mut found = Vec::new();
     let nearest = 10_f64.powi(-DECADES);
-    // A force at rest that is smaller than the rounding beside it leaves the zero at zero: the
-    // first force that is felt on either side tells its sign.
+    // Beside a zero at x = 0 the force may underflow: the first nonzero value on either side tells
+    // its sign.
     let at_zero = value(0.0) == 0.0;
     let felt = |side: f64| {
         let mut forces =
@@ -65,8 +65,8 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     found
 }
 
-/// The grid of one side, from the nearest place to the farthest. No place is a round number, where
-/// poles like to be.
+/// The grid of one side, from the nearest place to the farthest. No grid point is a round number,
+/// where poles often lie.
 fn grid_of_side(side: f64, centres: &[f64]) -> Vec<f64> {
     const PER_DECADE_OF_A_CENTRE: i32 = 16;
     const DECADES_OF_A_CENTRE: i32 = 9;
@@ -101,8 +101,8 @@ impl ZeroSearch<'_> {
         // The last two places at which the force has a value other than zero, and the zeros since.
         let (mut before, mut last): (Option<ForceSample>, Option<ForceSample>) = (None, None);
         let mut flat = 0;
-        // A pole at zero has no other side to be reached from; beside it a high power is beyond all
-        // numbers for a while.
+        // A pole at zero hides no zero of this side; close to it a high power overflows over some
+        // points.
         let mut in_pole = !value(0.0).is_finite();
         for &x in places {
             let force = value(x);
@@ -119,7 +119,7 @@ impl ZeroSearch<'_> {
                 continue;
             }
             if let Some(last) = last {
-                // Between two places on which the force rests nothing is singled out.
+                // On an interval on which the force vanishes no zero is singled out.
                 if flat <= 1 {
                     walk.between(before, last, (x, force));
                 }

@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 /// The most terms of an expression whose zero is looked for.
 const LONGEST_LINEAR: usize = 16;
 
-/// The force at a position, as simple as it gets.
+/// The force at a position, simplified.
 pub(super) fn value_at(
     force: &Expr,
     coordinate: Symbol,
@@ -169,7 +169,7 @@ pub(super) fn linear_zeros(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
 }
 
 /// The coefficients of an expression as a polynomial in the coordinate, lowest power first; `None`
-/// if it is none.
+/// if it is not one.
 pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<Expr>> {
     let mut coefficients: Vec<Vec<Expr>> = Vec::new();
     for term in expression.expand().ok()?.terms() {
@@ -230,7 +230,7 @@ pub(super) fn closed_forms(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
     forms
 }
 
-/// The force times all that stands below its lines.
+/// The numerator of the force over a common denominator.
 pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
     let mut below: BTreeMap<String, (Expr, i64)> = BTreeMap::new();
     let expanded = force.expand().ok()?;

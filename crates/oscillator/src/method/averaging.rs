@@ -21,9 +21,9 @@
 //! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a closed
 //! form; order 2 adds `u_1`, `A_2` and `B_2`, for polynomials in `x` and `x'`. The error of either
 //! is one power more of `delta` over times of `1/delta`. Everything but the linear restoring force
-//! is small: the letters whose vanishing leaves that alone, or else all other terms together. Where
-//! nothing linear restores, but one power of the coordinate, the true motion of that is averaged
-//! along.
+//! is small: the parameters whose vanishing leaves that alone, or else all other terms together. If
+//! the restoring force is a power of the coordinate, the average is taken along the true motion in
+//! that force.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -72,7 +72,7 @@ type Series = FourierSeries<Polynomials>;
 /// Derives the equations of amplitude and phase.
 ///
 /// # Errors
-/// A drive that is no wave near a resonance, a term without a closed projection, no linear
+/// A drive that is not a wave near a resonance, a term without a closed projection, no linear
 /// restoring force, an order that is not 1 or 2.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
@@ -107,8 +107,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
             averaged
         }
-        // A series in what marks the terms is not a polynomial in the coordinate and its velocity;
-        // steps at a letter are none either, whose force at rest is known not to act.
+        // A term may not be a polynomial in the coordinate and its velocity. Nor is a step at a
+        // parameter, as H(x - xc), and its apparent force at rest is known to vanish.
         Err(
             OscillatorError::NotPolynomial(_)
             | OscillatorError::Taylor(_)
@@ -119,7 +119,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             | OscillatorError::Taylor(_)
             | OscillatorError::NoEquilibrium(_),
         ) => {
-            // That it restores is said first.
+            // A missing restoring force is the more important reason, and reported first.
             small.linear_part()?;
             let force = small.without_linear()?;
             return Err(not_polynomial(&force, oscillator.coordinate, Method::Averaging));
@@ -162,9 +162,9 @@ struct Averaged {
     /// The symbol of the amplitude.
     amplitude: Symbol,
     definitions: Vec<Definition>,
-    /// `A_1`, then the sum of all `A_i`.
+    /// `a'` to the first order, `A_1`, and to all orders, the sum of the `A_i`.
     amplitude_rates: [Expr; 2],
-    /// `omega0 + B_1`, then with all `B_i`.
+    /// `psi'` to the first order, `omega0 + B_1`, and to all orders.
     phase_rates: [Expr; 2],
     /// `u_1`, of order 2.
     correction: Series,
@@ -176,8 +176,8 @@ struct Averaged {
 }
 
 impl Averaged {
-    /// The amplitude from that of the first harmonic to `A = x(0)`, of a motion that loses nothing:
-    /// `a = A - u_1(A, 0)`.
+    /// Replaces the amplitude of the first harmonic by `A = x(0)` for a motion without damping: `a
+    /// = A - u_1(A, 0)`.
     fn measure_at_start(&mut self) -> Result<(), Refusal> {
         let (a, start) = (self.amplitude, AmplitudeConvention::Initial.symbol());
         let renamed = |value: &Expr| value.substitute(a, &Expr::from(start));
@@ -338,7 +338,7 @@ fn of_polynomial(
     let in_numbers = |rate: &Polynomial| Expr::from(rate);
     let mixes = |term: &Term| term.velocity % 2 == 1 && (term.position + term.velocity) == 2;
     // A quadratic damping acts on the amplitude from the second order on, as strongly as a cubic
-    // one: the first is not leading there.
+    // one: the first order is not the leading one there.
     let (steady, mut notes) = match order == 2 && force.terms.iter().any(mixes) {
         true => (vec![], vec![]),
         false => steady(force, &omega0, small.delta(), &taken),
@@ -358,7 +358,7 @@ fn of_polynomial(
     })
 }
 
-/// The amplitudes that stay to leading order, with what has to be said of them.
+/// The steady amplitudes to leading order, with the notes on them.
 fn steady(
     force: &PerturbedForce,
     omega0: &Polynomial,

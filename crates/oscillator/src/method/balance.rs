@@ -21,7 +21,8 @@
 //!
 //! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2`
 //! points; and over Gauss points between the instants at which the motion crosses a corner, a jump
-//! or a narrow place of the force; where a force waves more often than they follow, finer ones.
+//! or a narrow place of the force; finer ones are used where a force oscillates more often than
+//! they resolve.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::PI;
@@ -52,9 +53,9 @@ pub struct BalanceSolution {
     pub over_several_wells: bool,
 }
 
-/// What is known of the branch from rest of one balance, force and harmonics being the same, from
-/// the amplitudes that were asked for before: the next is reached from the nearest below it instead
-/// of from rest.
+/// The known motions on the branch from rest of one balance, for a fixed force and fixed harmonics,
+/// from the amplitudes solved before: the next amplitude is reached from the nearest known one
+/// below it instead of from rest.
 #[derive(Debug, Default)]
 pub struct Continuation {
     states: RefCell<Vec<BalanceUnknowns>>,
@@ -98,8 +99,8 @@ pub fn balance(
     amplitude: f64,
     known: &Continuation,
 ) -> Result<BalanceSolution, NoNumbers> {
-    /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
-    /// and take long.
+    /// Largest number of features along the motion, such as the waves of a sine: a few harmonics
+    /// cannot represent more, and the sums would take long.
     const MOST_CUTS: usize = 600;
     let mut problem =
         BalanceProblem::new(force, degree, harmonics, amplitude).ok_or(NoNumbers::NoBalance)?;
@@ -131,7 +132,8 @@ pub fn balance(
     })
 }
 
-/// The last of these motions up to which, from the first on, nothing changes.
+/// The last of these motions up to which, from the first on, the shape does not change; `None` if
+/// the first ones differ.
 fn converged<'s>(motions: &[&'s (BalanceUnknowns, f64)]) -> Option<&'s (BalanceUnknowns, f64)> {
     let first = motions.first()?.1;
     let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
@@ -176,7 +178,7 @@ struct BalanceProblem<'a> {
     /// Narrow places and corners of the force, up to the distance `reach`.
     cuts: Vec<f64>,
     reach: f64,
-    /// The points of equal steps, once they were asked for.
+    /// The points of equal steps, once they have been needed.
     equal_steps: OnceCell<Rc<Nodes>>,
 }
 
@@ -244,7 +246,7 @@ impl<'a> BalanceProblem<'a> {
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
-    /// The points for sums along this motion, `finer` times as many as this problem has them.
+    /// The points for sums along this motion, `finer` times as many as this problem uses.
     fn nodes(&self, state: &BalanceUnknowns, finer: usize) -> Rc<Nodes> {
         let once = finer == 1;
         let finer = finer * self.fineness;
@@ -326,8 +328,7 @@ impl<'a> BalanceProblem<'a> {
             let pieces = (1 + (length * highest as f64 / 8.0) as usize) * finer;
             for piece in 0..pieces {
                 let at = |part: usize| part as f64 / pieces as f64;
-                // Points crowd at both ends, where a root or a corner makes the force less than
-                // smooth.
+                // Points crowd at both ends, where a root or a corner makes the force not smooth.
                 for (u, weight) in nodes_and_weights(at(piece), at(piece + 1)) {
                     angles.push(pair[0] + length * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
                     weights.push(weight * length * 30.0 * (u * (1.0 - u)).powi(2));
@@ -460,10 +461,11 @@ impl<'a> BalanceProblem<'a> {
     }
 
     /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its
-    /// first harmonic alone, or, where the force has no linear part, the nearest below which
-    /// nothing changes any more, as for a power of x.
+    /// first harmonic alone, or, where the force has no linear part, the nearest below which the
+    /// shape no longer changes, as for a power of x.
     fn small_amplitude_start(&self) -> Option<BalanceUnknowns> {
-        /// Corrections so small, and a frequency so close, that the branch is that of rest.
+        /// Largest corrections, and largest difference from the linear frequency, of a motion on
+        /// the branch from rest.
         const NEARLY_ALONE: f64 = 0.01;
         const NEARLY_LINEAR: f64 = 0.05;
         let linear = self.force.slope(0.0);
@@ -485,7 +487,7 @@ impl<'a> BalanceProblem<'a> {
         self.solve_near(&converged(&upwards)?.0, 0.5)
     }
 
-    /// A motion of an amplitude so large that nothing changes any more beyond it.
+    /// A motion of so large an amplitude that its shape no longer changes beyond it.
     fn large_amplitude_start(&self) -> Option<BalanceUnknowns> {
         const DOUBLINGS: i32 = 40;
         let tried: Vec<Option<(BalanceUnknowns, f64)>> = (0..=DOUBLINGS)
@@ -503,8 +505,9 @@ impl<'a> BalanceProblem<'a> {
         self.at_amplitude(guess, 1).filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
-    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
-    /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
+    /// Follows the branch from rest to the amplitude, or else that from large amplitudes; then the
+    /// amplitude at which the branch from rest ends is returned as well. The sums are refined if
+    /// the branch ends only because they are too coarse.
     fn followed(
         &mut self,
         known: &Continuation,
@@ -531,7 +534,8 @@ impl<'a> BalanceProblem<'a> {
             self.equal_steps.take();
         };
         let amplitude = end.logarithm().exp() * self.side();
-        // A true motion that stays in one of several wells is none about all of them.
+        // If the true motion stays in one of several wells, a solution that passes all of them is
+        // discarded.
         let fits = |found: &BalanceUnknowns| {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
@@ -545,12 +549,12 @@ impl<'a> BalanceProblem<'a> {
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
     fn follow_cross_well_branch(&self, known: &Continuation) -> Result<BalanceUnknowns, NoNumbers> {
-        /// Starts that are tried, and how far they are from the amplitude: to four times, where
-        /// there is no end before.
+        /// Number of starts that are tried, at up to four times the amplitude unless the range ends
+        /// before.
         const STARTS: usize = 6;
         const PER_DOUBLING: i32 = 3;
-        /// Starts in vain, for all amplitudes together: along a force of many waves each takes
-        /// long.
+        /// Largest number of failed starts for all amplitudes together: each takes long in a force
+        /// of many waves.
         const MOST_IN_VAIN: usize = 12;
         let passages = passages(self.force, self.amplitude);
         let range = passage_at(&passages, self.amplitude).ok_or(NoNumbers::NoBalance)?;
@@ -577,7 +581,7 @@ impl<'a> BalanceProblem<'a> {
             .filter(|&size| size > range.from && size < end)
             .filter_map(|size| self.one_term_guess(size * self.side()))
             .collect();
-        // Nearly of one term, and not far.
+        // Good starts are nearly of one term, and close to the amplitude.
         let merit = |(state, corrections): &(BalanceUnknowns, f64)| {
             corrections + 0.1 * (state.logarithm() - goal).abs()
         };
@@ -607,7 +611,8 @@ impl<'a> BalanceProblem<'a> {
         known: &Continuation,
     ) -> Option<Result<BalanceUnknowns, BalanceUnknowns>> {
         let mut passed = Vec::new();
-        // By the sums of this problem, which may be finer than those that it was found with.
+        // The start is corrected with the sums of this problem, which may be finer than those it
+        // was found with.
         let nearest = known.below(self.amplitude);
         let nearest = nearest.and_then(|state| self.solve_near(&state, 0.05));
         let mut found =
@@ -624,8 +629,8 @@ impl<'a> BalanceProblem<'a> {
         found.map(Ok)
     }
 
-    /// Whether the force waves more often than the sums can follow: finer ones say that this is not
-    /// a solution.
+    /// Whether the force oscillates more often than the sums resolve: with finer ones this is not a
+    /// solution.
     fn is_too_coarse(&self, state: &BalanceUnknowns) -> bool {
         const FINER: usize = 4;
         const AGREEING: f64 = 1e-7;
@@ -636,11 +641,12 @@ impl<'a> BalanceProblem<'a> {
             && residual(FINER).is_some_and(|residual| residual > AGREEING)
     }
 
-    /// Whether the force pulls back all the way between two distances on either side of the
-    /// equilibrium: there is no other.
+    /// Whether the force pulls back everywhere between two distances on either side of the
+    /// equilibrium, so that there is no other equilibrium.
     fn is_pulled_back(&self, low: f64, high: f64) -> bool {
         const SAMPLES: i32 = 1000;
-        // Near the equilibrium and far from it alike.
+        // Samples in geometric steps resolve the surroundings of the equilibrium, equal steps the
+        // rest.
         let parts =
             (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
         let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
@@ -665,7 +671,7 @@ impl<'a> BalanceProblem<'a> {
     }
 
     /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards;
-    /// what it passes is added to `passed`.
+    /// the motions that it passes are added to `passed`.
     ///
     /// # Errors
     /// The last motion, where the branch does not reach the amplitude.
@@ -678,8 +684,8 @@ impl<'a> BalanceProblem<'a> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
-        /// A correction longer than this share of its step leads to another branch, or round a bend
-        /// too fast.
+        /// A correction longer than this share of its step may lead to another branch: the step was
+        /// too long for the curvature.
         const SHARE: f64 = 0.2;
         let goal = self.amplitude.abs().ln();
         let (amplitude, mut steps) = (self.count + 1, 0);
@@ -692,8 +698,8 @@ impl<'a> BalanceProblem<'a> {
             if left.abs() < 1e-12 || steps > STEPS {
                 return Ended(None, left.abs() < 1e-12);
             }
-            // Round a turn the branch would come back to amplitudes that it has passed, with
-            // another motion.
+            // Beyond a fold the branch would return to amplitudes that it has passed, with another
+            // motion.
             let tangent = self.tangent(state, &direction);
             let Some(tangent) = tangent.filter(|tangent| way * tangent[amplitude] > 0.0) else {
                 return Ended(None, false);
@@ -736,7 +742,7 @@ impl<'a> BalanceProblem<'a> {
         (norm.is_finite() && norm > 0.0).then(|| tangent / norm)
     }
 
-    /// The same solution by finer and finer sums, until they agree.
+    /// Refines a solution by finer and finer sums, until two agree.
     fn refined(&self, mut state: BalanceUnknowns) -> Result<BalanceUnknowns, NoNumbers> {
         const MOST_POINTS: usize = 1 << 17;
         /// Largest change from one refinement to the next that is accepted: the digits that a user

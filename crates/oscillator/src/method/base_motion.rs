@@ -26,8 +26,8 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
 /// no base moves, or there is no answer in that coordinate either.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let relative = fresh("z", &oscillator.names());
-    // Seen from one of two bases the other moves: all are those of the equation as it is, never
-    // those of the relative one.
+    // In the coordinate relative to one of two bases the other moves: only bases of the equation as
+    // typed are tried, never those of a relative one.
     for base in base_motions(oscillator).ok()? {
         let seen = relative_to(oscillator, &base, relative).ok()?;
         match solve_in_its_coordinate(&seen, options) {
@@ -71,8 +71,8 @@ fn relative_to(
 
 /// The motions of all bases, each once, in the order of the sums in the force that hold them.
 fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
-    /// One for each sum of a force would be tried for ever in a long one; two bases that move
-    /// differently are rare.
+    /// Largest number of bases that are tried: a long force may hold many sums, but two bases that
+    /// move differently are rare.
     const MOST: usize = 8;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let mut bases: Vec<Expr> = vec![];
@@ -81,7 +81,7 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
             |name: Symbol| Ok::<_, ExprError>(moving_part(sum, name, own)?.map(|moving| -&moving));
         let base = match (moves(own[0])?, moves(own[1])?) {
             (Some(base), _) => Some(base),
-            // A velocity that is not a sum of waves leaves the bases that were found.
+            // A velocity that is not a sum of waves adds no base.
             (None, Some(speed)) => match integrated(&speed) {
                 Ok(base) => Some(base),
                 Err(refusal) if bases.is_empty() => return Err(refusal),

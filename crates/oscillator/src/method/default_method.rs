@@ -13,8 +13,8 @@
 //!                                        quadrature; the same through an unstable equilibrium that is asked for
 //! ```
 //!
-//! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands
-//! in for the usual method says so.
+//! A formula of one term leaves out the drift that an even force causes, and is not used then. The
+//! answer says when another method takes the place of the usual one.
 
 use super::linear::{Linear, is_free_and_linear};
 use super::multiple_scales::scaling::{
@@ -81,7 +81,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
             _ => found,
         };
     }
-    // A limit cycle, and the frequency alone, are asked of expansions.
+    // Only expansions can give a certain limit cycle, or the frequency alone.
     if options.cycle.is_some() || options.frequency_alone {
         return found;
     }
@@ -116,7 +116,8 @@ pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solut
     solve_by(Method::Exact, oscillator, options).ok()
 }
 
-/// Whether an expansion in periodic motions is refused for what drains or feeds energy.
+/// Whether an expansion in periodic motions is refused because of a term that dissipates or feeds
+/// energy.
 pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool {
     let damped = || {
         let parts = oscillator.parts();
@@ -168,8 +169,9 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
     }
 }
 
-/// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all
-/// but the linear terms small, and quadratic terms that damp act on the amplitude as cubic ones do.
+/// Whether the terms from which a limit cycle begins are not the leading ones: no parameter makes
+/// all but the linear terms small, and quadratic terms that damp act on the amplitude as cubic ones
+/// do.
 fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
     let marked =
         |note: &Note| matches!(note, Note::Cut(Truncation::Truncated { marks: Some(_), .. }));
@@ -192,8 +194,8 @@ fn swings_over_a_hilltop(oscillator: &Oscillator) -> bool {
     centred(oscillator, None).is_ok_and(|centred| centred.cross_well.is_some())
 }
 
-/// Slow equations in powers of the amplitude, where that is asked to be small, or where quadratic
-/// terms are left out of the first order of averaging.
+/// Slow equations in powers of the amplitude, if the amplitude is the small parameter asked for, or
+/// if the first order of averaging leaves out quadratic terms.
 fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(options.small.as_deref());
     let asked = options.small.is_some() && matches!(small, Ok(SmallParameter::Amplitude));
@@ -240,7 +242,7 @@ fn in_powers(
     }
 }
 
-/// The expansion in the amplitude of a force that is not a polynomial beside a letter that might
+/// The expansion in the amplitude of a force that is not a polynomial, although a parameter might
 /// have been small.
 fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(None);

@@ -5,10 +5,10 @@
 //! F cos(Omega t + phi), F sin(Omega t), h x cos(2 Omega t), and sums of them
 //! ```
 //!
-//! Time begins where the first wave does: of the others the phase beside that of the first counts,
-//! `cos(m theta + delta) = cos(delta) cos(m theta) - sin(delta) sin(m theta)`. What the coordinate
-//! adds to the phase, as in the wave `cos(Omega t - k x)` that runs past, is taken apart alike: it
-//! is a factor of two waves.
+//! Time is measured from the phase of the first wave; the others have a phase relative to it,
+//! `cos(m theta + delta) = cos(delta) cos(m theta) - sin(delta) sin(m theta)`. A phase that
+//! contains the coordinate, as in the travelling wave `cos(Omega t - k x)`, is separated likewise
+//! and becomes a factor of two waves.
 
 use num_integer::Integer as _;
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
@@ -59,7 +59,7 @@ pub(super) enum Quadrature {
 }
 
 impl Quadrature {
-    /// The wave that a phase beside this one mixes in, and its sign.
+    /// The other quadrature, which a phase difference mixes in, and its sign.
     fn quarter_later(self) -> (Self, Expr) {
         match self {
             Self::Cosine => (Self::Sine, -Expr::one()),
@@ -111,7 +111,7 @@ impl Drive {
         oscillator: &Oscillator,
         method: Method,
     ) -> Result<Self, Refusal> {
-        /// The frequencies of two waves, as multiples of one.
+        /// Largest multiple of a common frequency that a wave may have.
         const HIGHEST_MULTIPLE: u32 = 12;
         let taken = oscillator.names();
         let mut drive = Self {
@@ -138,7 +138,7 @@ impl Drive {
                 }
             }
         }
-        // The largest rate of which all are multiples.
+        // The largest frequency of which all are multiples.
         let below = multiples.iter().fold(1.into(), |common: Integer, own| common.lcm(own.denom()));
         let whole: Vec<Integer> = multiples
             .iter()
@@ -269,7 +269,7 @@ impl Drive {
     }
 }
 
-/// A constant, by a name where it is not a number.
+/// A constant, replaced by a name if it is not a number.
 fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[Symbol]) -> Expr {
     if value.as_number().is_some() {
         return value;
@@ -329,7 +329,7 @@ impl HarmonicExcitation {
         Ok(Self { factor, rate, phase, quadrature })
     }
 
-    /// The part of the phase that does not move.
+    /// The part of the phase that does not contain the coordinate.
     fn still_phase(&self, coordinate: Symbol) -> Expr {
         let terms = self.phase.terms().iter().cloned();
         Expr::sum(terms.filter(|term| !term.contains(coordinate)))

@@ -1,5 +1,4 @@
-//! The answer of a driven motion, whichever method derived its slow equations: one place for what
-//! all have alike.
+//! The answer of a driven motion, common to all methods that derive slow equations.
 
 use super::drive::Drive;
 use crate::derivation::DerivationLine;

@@ -112,7 +112,7 @@ fn period_by_energy(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Derivat
     energy.period(oscillator)
 }
 
-/// `M x'^2/2 + U`, what a period follows from.
+/// The energy `M x'^2/2 + U`, from which the period follows.
 pub(super) struct EnergyIntegral<'a> {
     /// `U'`.
     pub(super) force: &'a Expr,
@@ -130,10 +130,11 @@ impl EnergyIntegral<'_> {
         let (x, amplitude) = (oscillator.coordinate, Expr::symbol("A"));
         let names = oscillator.names();
         let [variable, total, turning_back] = ["u", "T", "x1"].map(|name| fresh(name, &names));
-        // In closed form where all of it is.
+        // The potential in closed form, if it has one.
         let at = |place: &Expr| -> Option<Expr> {
             let value = self.potential.as_ref()?.substitute(x, place).ok()?;
-            // Of both signs where the other turning point is another.
+            // A is taken to be positive only for an even potential, whose turning points are A and
+            // -A.
             let value = if self.is_odd { positive_amplitude(&value)? } else { value };
             value.expand().ok()
         };
@@ -345,8 +346,8 @@ pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> 
     Expr::divide(&(scale * amplitude * gamma(half() + &inverse)?), &gamma(inverse)?)
 }
 
-/// A linear force with a function of letters as its stiffness; a single term: a power with its
-/// sign, a sine or a hyperbolic sine.
+/// Exact results for a linear force whose stiffness is a function of parameters, or for a single
+/// term: a power with its sign, a sine or a hyperbolic sine.
 fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<ForceProperties>, Refusal> {
     let coordinate = oscillator.coordinate;
     if is_free_and_linear(oscillator)? {
@@ -387,7 +388,7 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<ForceProp
         let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
         return Ok(Some(ForceProperties::form(by_elliptic(&scale, squared)?, Some(motion))));
     }
-    // A power that is not a number.
+    // A power whose exponent is a symbol.
     let mut power = Power::one();
     if inside.iter().all(|factor| power.absorb(factor, coordinate))
         && power.exponent.as_number().is_none()

@@ -1,6 +1,6 @@
 //! The exact motion of the method `exact`, by quadratures of its own: the period and the harmonics
-//! of a motion between two turning points. With the judge it shares only what is integrated
-//! ([`crate::numeric::ode::energy`]), not the integral.
+//! of a motion between two turning points. With verification it shares only the integrand
+//! ([`crate::numeric::ode::energy`]), not the quadrature.
 
 use crate::conservative::force::CentredForce as RestForce;
 use crate::numeric::ode::energy::{PeriodError, PiecewiseForce, TimePerAngle, turning_point};
@@ -36,8 +36,8 @@ pub(super) fn cosines(place: &dyn Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// The period of a motion where the energy is `M x'^2/2 + U`, released at rest from `start`, and
-/// the coefficients of `cos(k theta)`: `force` is `U'` and `weight` the root of `M`, by which every
-/// instant takes longer.
+/// the coefficients of `cos(k theta)`: `force` is `U'`, and `weight` is the root of `M`, the factor
+/// by which time is stretched at each position.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -203,7 +203,7 @@ fn period_by_pieces(rates: &TimePerAngle) -> Result<f64, PeriodError> {
             })
         };
         let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance(piece)) {
-            // Below the rounding of the force no panel gets.
+            // No panel can be more accurate than the rounding of the force.
             Err(QuadratureError::NotConverged { value, error_estimate, .. }) => {
                 (value, error_estimate)
             }

@@ -64,7 +64,7 @@ impl ExactSeries {
 /// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta`
 /// marks the order of each term of the result, `inverse_slope` is as for
 /// [`expand_from_root`](super::secular::expand_from_root), and no name in `taken` is used for
-/// anything new. Of the frequency alone, motion and steps are empty.
+/// anything new. If the frequency alone is asked for, motion and steps are empty.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -170,6 +170,14 @@ fn over_denominator<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polyn
     }
 }
 
+/// Returns a series over whole coefficients with polynomials over fractions instead.
+pub(super) fn to_fractions(
+    series: &FourierSeries<Polynomials<Integers>>,
+) -> FourierSeries<Polynomials> {
+    let convert = over_denominator::<Polynomial<Integer>>(series.mean().1);
+    series.map(POLYNOMIALS, |numerator, _| convert(numerator))
+}
+
 fn force_terms<R: Ring>(
     terms: &[Term],
     coefficients: impl Iterator<Item = FourierSeries<R>>,
@@ -185,7 +193,7 @@ fn force_terms<R: Ring>(
 }
 
 /// A polynomial as whole coefficients over one denominator.
-fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>> {
+pub(super) fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>> {
     let common = polynomial
         .terms()
         .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));

@@ -47,7 +47,7 @@ pub(super) fn solve(
     order: u32,
 ) -> Result<Option<Solution>, Refusal> {
     let of_position = parts.of_position_alone();
-    // That the rest is linear and restores is for the expansion to say.
+    // The expansion tells whether the rest is linear and restoring.
     let linear = oscillator.expand(SmallParameter::Parameter(small), 0).is_ok();
     let Some(force) = truncated(oscillator, small).filter(|_| of_position && linear) else {
         return Ok(None);
@@ -56,8 +56,8 @@ pub(super) fn solve(
         return Ok(None);
     };
     if order > 1 {
-        // Of the whole force: what stands at a higher power of `small` may be what no polynomial
-        // is.
+        // The whole force is searched, because the term at a higher power of `small` may be the one
+        // that is not a polynomial.
         let force = &oscillator.force;
         let perturbation = (force - &force.substitute(small, &Expr::zero())?).expand()?;
         return Err(not_polynomial(

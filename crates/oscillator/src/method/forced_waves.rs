@@ -28,7 +28,7 @@ use crate::oscillator::{Oscillator, SmallParameter};
 use crate::solution::{Definition, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
-/// A drive far from resonance, and the letters of the motion that it holds.
+/// A drive far from resonance, and the symbols of its forced motion.
 struct Forced {
     wave: HarmonicExcitation,
     /// `Lambda`.
@@ -38,8 +38,8 @@ struct Forced {
     letters: [Symbol; 3],
 }
 
-/// The answer to the first order in a small letter; `None` if no such letter is there, where a
-/// drive acts on more than the place alone, or if the frequencies that are numbers are near another
+/// The answer to the first order in a small parameter; `None` if there is no such parameter, if a
+/// drive is not a force free of the motion, or if the frequencies that are numbers are near another
 /// resonance.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let by_scales = options.method.is_none_or(|method| method == Method::MultipleScales);
@@ -73,7 +73,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     let (kept, others): (Vec<HarmonicExcitation>, Vec<HarmonicExcitation>) = waves
         .into_iter()
         .partition(|wave| number_between(&wave.rate, &near).is_some_and(|number| number.is_one()));
-    // Waves of other frequencies that have ratios among them act together.
+    // Waves whose frequencies have a rational ratio act together, and are not averaged apart.
     let alone = |(k, wave): (usize, &HarmonicExcitation)| {
         let mut rest = kept.iter().chain(&others[k + 1..]);
         !rest.any(|other| number_between(&wave.rate, &other.rate).is_some())
@@ -89,7 +89,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     for name in [small, velocity] {
         still = still.substitute(name, &Expr::zero()).ok()?;
     }
-    // Beside a force that is not small the others shift the linear frequency itself.
+    // With a nonlinear force that is not small the other drives would shift the linear frequency
+    // itself.
     if !is_linear(&still.expand().ok()?) {
         return None;
     }
@@ -146,7 +147,7 @@ fn as_free_force(term: &Expr, oscillator: &Oscillator) -> Option<HarmonicExcitat
 }
 
 /// The frequency that is taken to be near the linear one: the nearest, where all are numbers; else
-/// that of the drive which the small letter makes as small as the damping; else the first.
+/// that of the drive which the small parameter makes as small as the damping; else the first.
 fn nearest(waves: &[HarmonicExcitation], small: Symbol, stiffness: &Expr) -> Expr {
     let distances: Option<Vec<f64>> = waves
         .iter()
@@ -164,7 +165,7 @@ fn nearest(waves: &[HarmonicExcitation], small: Symbol, stiffness: &Expr) -> Exp
 /// Whether a frequency is not known to be near one at which a cubic or a quadratic force would be
 /// in resonance.
 fn is_far(rate: &Expr, stiffness: &Expr) -> bool {
-    /// A part of the frequency as large as a detuning.
+    /// Largest detuning, relative to the frequency, that still counts as near.
     const NEAR: f64 = 0.1;
     let is_near =
         |ratio: f64, (p, q): (u32, u32)| (ratio * f64::from(q) / f64::from(p) - 1.0).abs() < NEAR;
@@ -183,7 +184,7 @@ fn carrier(wave: &HarmonicExcitation) -> Option<[Expr; 2]> {
     Some([angle.cos().ok()?, angle.sin().ok()?])
 }
 
-/// The term of the left side.
+/// The drive as a term of the left side.
 fn wave_term(wave: &HarmonicExcitation) -> Option<Expr> {
     let [cosine, sine] = carrier(wave)?;
     Some(match wave.quadrature {

@@ -8,10 +8,11 @@
 //! both zero, and cos^2 + sin^2 = 1:   P^2 + Q^2 = S^2 for one wave of size S
 //! ```
 //!
-//! Beyond the order of the waves that lead, cosine and sine follow in powers of what is small, and
-//! the relation is cut where the equations are: multiples of the phase may stand in them, which
-//! from the third order on they do, and of the steady motions that truncated equations have far
-//! from what is small most are gone.
+//! Beyond the leading order of the waves, cosine and sine of the phase are found in powers of the
+//! small parameter, and the relation is truncated at the order of the equations. These may then
+//! contain multiples of the phase, as they do from the third order on; and the truncation removes
+//! most of the spurious steady motions that the equations have where the small parameter is not
+//! small.
 
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ impl FrequencyResponse {
     ) -> Self {
         let minus = |polynomial: &Polynomial| polynomial.map(|number| -number);
         let square = |polynomial: &Polynomial| polynomial.product(polynomial);
-        // One wave of the phase alone: its size is all that matters.
+        // If both rates contain the same wave of the phase, only its size matters.
         let one_wave = phase_sin == rate_cos && *phase_cos == minus(rate_sin)
             || *phase_sin == minus(rate_cos) && phase_cos == rate_sin;
         let (drive, relation) = match one_wave {
@@ -61,12 +62,12 @@ impl FrequencyResponse {
             }
         };
         if rate.is_zero() && phase.is_zero() {
-            // Nothing holds the wave at this order.
+            // At this order no term balances the wave.
             return Self::of_relation(None, a);
         }
         let relation = without_common_powers(&relation);
-        // sigma = centre + and - the root of the square of a width, where the wave is free of it
-        // and the rest linear in it.
+        // sigma = centre + and - the root of the square of a width, if the wave does not contain it
+        // and the rest is linear in it.
         let by_sigma = Monomial::power_of(sigma, 1).product(&Monomial::power_of(a, 1));
         let weight = phase.coefficient(&by_sigma);
         let mut centre = phase.clone();
@@ -88,7 +89,7 @@ impl FrequencyResponse {
         Self { relation: Some(relation), branches, peak, folds, jumps }
     }
 
-    /// With a relation that is cut at the order of the rates, where there is one.
+    /// Replaces the relation by `relation`, truncated at the order of the rates, if that is given.
     pub(super) fn cut(self, relation: Option<Polynomial>, a: Symbol) -> Self {
         match relation {
             None => self,
@@ -98,7 +99,7 @@ impl FrequencyResponse {
         }
     }
 
-    /// Takes a relation alone.
+    /// A response that consists of its relation alone.
     pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
         let relation = relation.map(|relation| without_common_powers(&relation));
         let (folds, jumps) =
@@ -107,7 +108,7 @@ impl FrequencyResponse {
     }
 }
 
-/// A rate as waves of the phase, by its multiple: what stands before the cosine and the sine.
+/// A rate as waves of the phase: the coefficients of cosine and sine, by the multiple of the phase.
 pub(super) type PhaseWaves = BTreeMap<u32, [Polynomial; 2]>;
 
 /// The coefficients of the cosine and the sine of the phase itself.
@@ -117,8 +118,9 @@ pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
 }
 
 /// The relation between amplitude and detuning of two rates with multiples of the phase, in powers
-/// of a marker up to the order of the rates; `None` if multiples stand beside what leads, something
-/// comes before it, or nothing beside or after it.
+/// of a marker up to the order of the rates; `None` unless the waves of the phase itself lead and
+/// determine its cosine and sine, all multiples are of higher order, and the rates have an order
+/// above the leading one.
 ///
 /// ```text
 /// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
@@ -184,7 +186,7 @@ pub(super) fn eliminated(
     let squares = cosine.product(&cosine) + sine.product(&sine);
     let mut relation = squares.truncated(marker, highest + behind);
     relation.add_term(Monomial::one(), ratio(-1, 1));
-    // Times the determinant until it divides nothing.
+    // The relation is multiplied by the determinant until no denominator is left.
     let most = relation.exponent_range(inverse)?.1;
     let mut whole = Polynomial::zero();
     for (monomial, number) in relation.terms() {
@@ -192,7 +194,7 @@ pub(super) fn eliminated(
         let term = Polynomial::term(monomial.without(inverse), number.clone());
         whole.accumulate(&term.product(&times));
     }
-    // Of one wave of size S the determinant is S^2: once is enough for P^2 + Q^2 = S^2.
+    // For one wave of size S the determinant is S^2: one factor suffices for P^2 + Q^2 = S^2.
     Some(match determinant.map(|number| number.abs()).power(1 - most) {
         Some(less) => whole.product(&less),
         None => whole,
@@ -222,8 +224,8 @@ fn without_common_powers(relation: &Polynomial) -> Polynomial {
     })
 }
 
-/// The largest amplitude, where `P^2 = S^2` with `P` in one power of the amplitude, or in that
-/// itself and a constant that drain both, and `S` in none. Symbols count as positive.
+/// The largest amplitude, where `P^2 = S^2` where `P` is one power of the amplitude, or linear
+/// damping plus dry friction, and `S` does not contain it. Symbols count as positive.
 fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
     if drive.symbols().contains(&a) {
         return None;
@@ -308,7 +310,7 @@ fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
     }
 }
 
-/// A polynomial as the square of a single term and what stays under the root.
+/// A polynomial as the square of a single term times the rest, which stays under the root.
 fn squares_apart(polynomial: &Polynomial) -> Option<(Polynomial, Polynomial)> {
     let mut outside = Monomial::one();
     for name in polynomial.symbols() {

@@ -44,8 +44,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     first_order_only(options, METHOD)?;
     let force = conservative_force(oscillator, options, METHOD)?;
     let amplitude = Expr::symbol("A");
-    // The derivative of an arc's edge cancels, but leaves its traces: arcs are differentiated under
-    // the integral.
+    // The derivatives of the ends of an arc cancel, but not visibly in the closed form: arcs are
+    // differentiated under the integral.
     let has_arcs = force.contains_function(Function::Step);
     let mean_of = |potential: &Expr| {
         let twice = cosine_coefficient(potential, oscillator.coordinate, &amplitude, 0)?;

@@ -41,7 +41,7 @@ use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
 
-/// The most harmonics.
+/// The largest number of harmonics that may be balanced.
 pub const MOST_HARMONICS: u32 = 100;
 
 /// The longest system that is written out, in terms: fifteen harmonics of a cubic force. A longer
@@ -177,7 +177,7 @@ fn equations(
     };
     let mut equations = Vec::new();
     if let Some(coefficients) = polynomial_coefficients(oscillator, force)? {
-        // Roughly the number of products of a power of this many harmonics.
+        // Roughly the number of terms in this power of a sum of so many harmonics.
         let degree = coefficients.len().saturating_sub(1) as u32;
         if harmonics.len().saturating_pow(degree) > MOST_TERMS {
             return Ok(None);

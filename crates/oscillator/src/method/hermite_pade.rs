@@ -63,7 +63,8 @@ const LARGEST_DEGREE: u32 = 40;
 const DEFAULTS: [Degrees; 3] =
     [Degrees::Quadratic(1, 1, 1), Degrees::Quadratic(2, 2, 2), Degrees::Quadratic(3, 3, 3)];
 
-/// The approximant of the degrees in the options; by default `[1/1/1]`, or the next that there is.
+/// The approximant of the degrees in the options; by default `[1/1/1]`, or the next of the defaults
+/// that exists.
 ///
 /// # Errors
 /// As for the method of Lindstedt and Poincare; degrees without an approximant, and one whose root
@@ -104,7 +105,7 @@ fn of_degrees(
     }
     let (variable, mut numbers) =
         series.in_one_variable().ok_or_else(|| Reason::SeveralVariables.to(METHOD))?;
-    // f begins with one; what it is a multiple of stands before the law.
+    // f begins with one; the first coefficient c_0 is a factor of the law.
     let first = numbers[0].clone();
     numbers.iter_mut().for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
@@ -201,7 +202,7 @@ impl Quadratic {
         sum
     }
 
-    /// The root on these sides of zero; `None` if its way cannot be told.
+    /// The root on these sides of zero; `None` if it cannot be followed with certainty.
     fn followed(&self, sides: &[i64]) -> Option<RootCourse> {
         let mut followed = RootCourse {
             crossings: vec![],
@@ -216,7 +217,8 @@ impl Quadratic {
 
     /// The root on one side of zero.
     fn follow(&self, side: i64, followed: &mut RootCourse) -> Option<()> {
-        /// Roots whose crossing is this close, over the place, cross; what is less close is an end.
+        /// Largest distance, relative to their position, of two zeros of D that count as a
+        /// crossing; zeros farther apart are ends.
         const CROSSES: f64 = 0.01;
         let degree: usize = self.lists.iter().map(Vec::len).sum();
         let bits = 512 + 16 * degree;
@@ -289,7 +291,7 @@ impl Quadratic {
     }
 }
 
-/// The names with which it is written.
+/// The symbols with which the approximant is written.
 struct ApproximantNames {
     /// The letters of P, Q, R, and of the sign.
     letters: [Symbol; 4],
@@ -309,7 +311,7 @@ impl ApproximantNames {
         }
     }
 
-    /// f by the letters, and what they stand for; the first three are P, Q and R.
+    /// f in terms of the symbols, and their definitions; the first three are P, Q and R.
     fn law(
         &self,
         quadratic: &Quadratic,
@@ -331,8 +333,8 @@ impl ApproximantNames {
             false => &s * &square,
         };
         let value = match (quadratic.lists[1][0].is_positive(), root.indeterminate) {
-            // Of the two forms the one in which nothing cancels at rest, if both have a value all
-            // the way.
+            // If both forms have a value all the way, the one in which no terms cancel at rest is
+            // used.
             (false, [false, _]) | (true, [false, true]) => {
                 Expr::divide(&(&upper - &q), &(&two * &r))?
             }
@@ -476,7 +478,8 @@ impl ApproximantNames {
     }
 }
 
-/// A short fraction so near to a place that no value is on the wrong side of it but by rounding.
+/// A short fraction so near to `place` that only a value within rounding of it can lie on the wrong
+/// side.
 fn short(place: &Rational) -> Rational {
     let tolerance =
         place.abs() * Rational::new(Integer::one(), Integer::from(10_000_000_000_000_i64));

@@ -28,12 +28,13 @@
 
 use num_traits::{One, ToPrimitive};
 
-use super::one_term::{conservative_force, cosine, unsolved};
+use super::expansion::{over_integers, to_fractions};
+use super::one_term::{conservative_force, unsolved};
 use super::secular::SecularError;
 use super::{Options, Reason, Refusal};
 use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
-use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
+use crate::exact::{Integers, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Node};
 use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
@@ -51,8 +52,8 @@ const HIGHEST: u32 = 20;
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
 
-/// Above this power of the force, coefficients have hundreds of digits and are counted: this many
-/// products of them are the most.
+/// Above this power of the force, coefficients have hundreds of digits, and the number of their
+/// products is limited.
 const HIGH_POWER: u32 = 30;
 const MOST_PRODUCTS: usize = 1_000_000;
 
@@ -93,9 +94,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         },
     };
     let series = expand(&force, order as usize, hbar, &mut solution)?;
-    let sum = |series: &[FourierSeries<Polynomials>]| {
+    let sum = |series: &[FourierSeries<Symbols>]| {
         let terms: Vec<_> = series.iter().map(|term| (1, term)).collect();
-        linear_combination(&POLYNOMIALS, &terms)
+        to_fractions(&linear_combination(&SYMBOLS, &terms))
     };
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
@@ -110,9 +111,14 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
+/// The ring of the derivation: polynomials with whole coefficients, over the one denominator of a
+/// series, so that sums of fractions are sums of integers.
+type Symbols = Polynomials<Integers>;
+const SYMBOLS: Symbols = Polynomials(Integers);
+
 struct HomotopySeries {
-    frequency: Vec<FourierSeries<Polynomials>>,
-    displacement: Vec<FourierSeries<Polynomials>>,
+    frequency: Vec<FourierSeries<Symbols>>,
+    displacement: Vec<FourierSeries<Symbols>>,
 }
 
 fn expand(
@@ -136,21 +142,21 @@ fn expand(
     Ok(expansion.series)
 }
 
-/// The series as far as they are known, and what their next order is made of.
+/// The series as far as they are known, and the quantities from which their next order follows.
 struct HomotopyExpansion<'a> {
     force: &'a PerturbedForce,
     solution: &'a mut Solution,
     series: HomotopySeries,
     /// The second derivatives of the displacement.
-    accelerations: Vec<FourierSeries<Polynomials>>,
+    accelerations: Vec<FourierSeries<Symbols>>,
     /// The powers of the displacement that stand in the force.
-    products: Convolutions<Polynomials>,
+    products: Convolutions<Symbols>,
     motion: convolution::SeriesNode,
     powers: Vec<convolution::SeriesNode>,
     squares: Squares,
-    hbar: FourierSeries<Polynomials>,
+    hbar: FourierSeries<Symbols>,
     /// `1/w_0`.
-    inverse: FourierSeries<Polynomials>,
+    inverse: FourierSeries<Symbols>,
     /// The linear stiffness, with `w_0` in place of what cancels.
     linear: Polynomial,
     lines: Vec<DerivationLine>,
@@ -158,10 +164,6 @@ struct HomotopyExpansion<'a> {
     letters: [String; 3],
     /// The name of `w_0`.
     first_frequency_name: Symbol,
-}
-
-fn constant_series(value: Polynomial) -> FourierSeries<Polynomials> {
-    FourierSeries::constant(POLYNOMIALS, value)
 }
 
 fn numbered(letter: &str, number: usize) -> Symbol {
@@ -175,8 +177,9 @@ impl<'a> HomotopyExpansion<'a> {
         hbar: Polynomial,
         solution: &'a mut Solution,
     ) -> Self {
-        let start = cosine(Polynomial::symbol(Symbol::new("A")));
-        let mut products = Convolutions::new(POLYNOMIALS);
+        let amplitude = over_integers(&Polynomial::symbol(Symbol::new("A")));
+        let start = amplitude.product(&FourierSeries::cos(SYMBOLS, 1));
+        let mut products = Convolutions::new(SYMBOLS);
         let motion = products.leaf();
         let terms = force.terms.iter();
         let powers: Vec<convolution::SeriesNode> =
@@ -191,10 +194,10 @@ impl<'a> HomotopyExpansion<'a> {
             powers,
             squares: Squares::new(order - 1),
             accelerations: vec![],
-            hbar: constant_series(hbar),
-            inverse: FourierSeries::zero(POLYNOMIALS),
+            hbar: over_integers(&hbar),
+            inverse: FourierSeries::zero(SYMBOLS),
             linear: force.linear.clone(),
-            lines: vec![DerivationLine::equation(numbered(&letters[0], 0), start.clone())],
+            lines: vec![DerivationLine::equation(numbered(&letters[0], 0), to_fractions(&start))],
             series: HomotopySeries { frequency: vec![], displacement: vec![start] },
             first_frequency_name: numbered(&letters[1], 0),
             letters,
@@ -203,7 +206,7 @@ impl<'a> HomotopyExpansion<'a> {
     }
 
     /// `R_m` without the frequency that it fixes.
-    fn residual(&mut self, m: usize) -> Result<FourierSeries<Polynomials>, Refusal> {
+    fn residual(&mut self, m: usize) -> Result<FourierSeries<Symbols>, Refusal> {
         let force = self.force;
         let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
         let displacement = &self.series.displacement;
@@ -211,14 +214,14 @@ impl<'a> HomotopyExpansion<'a> {
         self.products.push(self.motion, displacement[m - 1].clone());
         self.products.advance(m - 1);
         self.accelerations.push(displacement[m - 1].derivative().derivative());
-        let linear = constant_series(self.linear.clone());
+        let linear = over_integers(&self.linear);
         let mut terms = vec![(1, &linear, &displacement[m - 1])];
-        let coefficients = force.terms.iter().map(|term| constant_series(term.coefficient.clone()));
-        let coefficients: Vec<_> = coefficients.collect();
+        let coefficients: Vec<_> =
+            force.terms.iter().map(|term| over_integers(&term.coefficient)).collect();
         let known = self.powers.iter().map(|&power| self.products.order(power, m - 1));
         let powers = coefficients.iter().zip(known);
         terms.extend(powers.filter_map(|(c, power)| Some((1, c, power?))));
-        let residual = sum_of_products(&POLYNOMIALS, &terms);
+        let residual = sum_of_products(&SYMBOLS, &terms);
         Ok(match m {
             1 => residual,
             _ => residual.sum(&self.squares.inertia_without_last(&self.accelerations, m - 1)),
@@ -228,10 +231,11 @@ impl<'a> HomotopyExpansion<'a> {
     /// `w_0^2 A = c_1`, and `R_1` with it.
     fn first_frequency(
         &mut self,
-        residual: FourierSeries<Polynomials>,
-    ) -> Result<FourierSeries<Polynomials>, Refusal> {
+        residual: FourierSeries<Symbols>,
+    ) -> Result<FourierSeries<Symbols>, Refusal> {
         let by_amplitude = Monomial::power_of(Symbol::new("A"), -1);
-        let squared = residual.cosine(1).constant_term().times_monomial(&by_amplitude);
+        let squared =
+            to_fractions(&residual.cosine(1)).constant_term().times_monomial(&by_amplitude);
         let first = linear_frequency(&squared, self.solution);
         // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by
         // term.
@@ -240,8 +244,8 @@ impl<'a> HomotopyExpansion<'a> {
         self.linear.accumulate(&self.force.linear);
         self.linear.accumulate(&first.product(&first));
         self.inverse = first.inverse().map_or_else(
-            || FourierSeries::zero(POLYNOMIALS),
-            |(unit, integer)| constant_series(unit).divided_by(integer.to_i64().unwrap_or(1)),
+            || FourierSeries::zero(SYMBOLS),
+            |(unit, integer)| over_integers(&unit).divided_by(integer.to_i64().unwrap_or(1)),
         );
         let defined =
             |name: &Symbol| self.solution.definitions.iter().any(|entry| entry.symbol == *name);
@@ -252,46 +256,42 @@ impl<'a> HomotopyExpansion<'a> {
         }
         let name = self.first_frequency_name;
         let start = self.series.displacement[0].times(-1);
-        let inertia = |square: Polynomial| start.product(&constant_series(square));
-        let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
+        let inertia = |square: &Polynomial| start.product(&over_integers(square));
+        let unknown = inertia(&Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
         self.lines.extend(secular_lines(
             numbered(&self.letters[2], 1),
             &residual.sum(&unknown),
             Expr::from(name).integer_power(2)?,
             &squared,
         ));
-        let residual = residual.sum(&inertia(first.product(&first)));
-        self.push_frequency(constant_series(first));
+        let residual = residual.sum(&inertia(&first.product(&first)));
+        self.push_frequency(over_integers(&first));
         Ok(residual)
     }
 
     /// `-2 w_0 w_(m-1) A + r = 0`, where `r` is the first harmonic of `R_m`.
-    fn correction(
-        &mut self,
-        m: usize,
-        residual: FourierSeries<Polynomials>,
-    ) -> FourierSeries<Polynomials> {
+    fn correction(&mut self, m: usize, residual: FourierSeries<Symbols>) -> FourierSeries<Symbols> {
         let by_amplitude =
             Polynomial::term(Monomial::power_of(Symbol::new("A"), -1), Rational::one());
-        let by_amplitude = constant_series(by_amplitude);
+        let by_amplitude = over_integers(&by_amplitude);
         let first_harmonic = residual.cosine(1).product(&self.inverse);
         let next = first_harmonic.product(&by_amplitude).divided_by(2);
         let name = numbered(&self.letters[1], m - 1);
         let unknown = self.series.frequency[0]
             .product(&self.series.displacement[0])
-            .product(&constant_series(Polynomial::symbol(name)))
+            .product(&over_integers(&Polynomial::symbol(name)))
             .times(-2);
         self.lines.extend(secular_lines(
             numbered(&self.letters[2], m),
             &residual.sum(&unknown),
             name.into(),
-            &next.constant_term(),
+            &to_fractions(&next).constant_term(),
         ));
         self.push_frequency(next);
         residual
     }
 
-    fn push_frequency(&mut self, next: FourierSeries<Polynomials>) {
+    fn push_frequency(&mut self, next: FourierSeries<Symbols>) {
         self.squares.push(self.series.frequency.len(), next.clone());
         self.series.frequency.push(next);
     }
@@ -300,17 +300,17 @@ impl<'a> HomotopyExpansion<'a> {
     fn next_displacement(
         &mut self,
         m: usize,
-        residual: &FourierSeries<Polynomials>,
+        residual: &FourierSeries<Symbols>,
     ) -> Result<(), Refusal> {
         // The remaining first harmonic has been removed by w_(m-1).
         let (particular, _) = residual.solve_oscillator();
         let scaled = particular.product(&self.hbar).product(&self.inverse).product(&self.inverse);
         let mut next =
-            scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(POLYNOMIALS, 1)));
+            scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(SYMBOLS, 1)));
         if m > 1 {
             next = next.sum(&self.series.displacement[m - 1]);
         }
-        let longest = next.harmonics().iter().map(|entry| entry.1.terms().len()).max();
+        let longest = next.numerators().map(|numerator| numerator.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Reason::TooLong(MOST_TERMS).into());
         }
@@ -318,7 +318,7 @@ impl<'a> HomotopyExpansion<'a> {
         let (name, before, residual) = (numbered(u, m), numbered(u, m - 1), numbered(r, m));
         let (control, first_frequency) =
             (convergence_control(self.solution), self.first_frequency_name);
-        let driven = next.sum(&next.derivative().derivative());
+        let driven = to_fractions(&next.sum(&next.derivative().derivative()));
         let left = DerivationFormula::Oscillator { of: name, square: Expr::one() };
         let change = format!("{control}*{residual}/{first_frequency}^2");
         self.lines.push(DerivationLine::equal([left, driven.into()]).because(match m {
@@ -327,7 +327,7 @@ impl<'a> HomotopyExpansion<'a> {
         }));
         let start = |derivatives| DerivationFormula::AtZero { of: name, derivatives };
         self.lines.push(DerivationLine::equal([start(0), start(1), Expr::zero().into()]));
-        self.lines.push(DerivationLine::equation(name, next.clone()));
+        self.lines.push(DerivationLine::equation(name, to_fractions(&next)));
         self.series.displacement.push(next);
         Ok(())
     }
@@ -336,10 +336,11 @@ impl<'a> HomotopyExpansion<'a> {
 /// `R_m` with the unknown frequency in it, and the condition that fixes that.
 fn secular_lines(
     name: Symbol,
-    residual: &FourierSeries<Polynomials>,
+    residual: &FourierSeries<Symbols>,
     unknown: Expr,
     value: &Polynomial,
 ) -> Vec<DerivationLine> {
+    let residual = to_fractions(residual);
     let secular = residual.cosine(1).constant_term();
     vec![
         DerivationLine::equation(name, residual.clone()),
@@ -348,20 +349,20 @@ fn secular_lines(
     ]
 }
 
-/// An error if order `k` of the powers of `u` would take far more algebra than anyone waits for.
+/// An error if order `k` of the powers of `u` would take far too much algebra.
 ///
-/// Counted are the products of terms with which each power follows from the one before; of the
-/// powers that the force does not need the size is that of the others.
+/// The count is that of the products of terms with which each power follows from the one before;
+/// powers that are not stored are taken to be as long as the others.
 fn within_reach(
-    products: &Convolutions<Polynomials>,
-    displacement: &[FourierSeries<Polynomials>],
+    products: &Convolutions<Symbols>,
+    displacement: &[FourierSeries<Symbols>],
     k: usize,
     highest: u32,
 ) -> Result<(), SecularError> {
     if highest <= HIGH_POWER {
         return Ok(());
     }
-    let size = |series: &FourierSeries<Polynomials>| {
+    let size = |series: &FourierSeries<Symbols>| {
         series.numerators().map(|c| c.terms().len()).sum::<usize>()
     };
     let of_order =
@@ -378,14 +379,14 @@ fn within_reach(
 
 /// `w^2` order by order: each order but the last of `w`, which is not known yet.
 struct Squares {
-    products: Convolutions<Polynomials>,
+    products: Convolutions<Symbols>,
     frequency: convolution::SeriesNode,
     square: convolution::SeriesNode,
 }
 
 impl Squares {
     fn new(highest: usize) -> Self {
-        let mut products = Convolutions::new(POLYNOMIALS);
+        let mut products = Convolutions::new(SYMBOLS);
         let frequency = products.leaf();
         let square = products.product(frequency, frequency);
         products.require(square, highest);
@@ -393,7 +394,7 @@ impl Squares {
     }
 
     /// Supplies the next `w_k`.
-    fn push(&mut self, k: usize, series: FourierSeries<Polynomials>) {
+    fn push(&mut self, k: usize, series: FourierSeries<Symbols>) {
         self.products.push(self.frequency, series);
         self.products.advance(k);
     }
@@ -402,17 +403,17 @@ impl Squares {
     /// are those of `u`.
     fn inertia_without_last(
         &self,
-        accelerations: &[FourierSeries<Polynomials>],
+        accelerations: &[FourierSeries<Symbols>],
         k: usize,
-    ) -> FourierSeries<Polynomials> {
+    ) -> FourierSeries<Symbols> {
         let w = |i: usize| self.products.order(self.frequency, i);
         let known: Vec<_> = (1..k).filter_map(|i| Some((1, w(i)?, w(k - i)?))).collect();
-        let last = sum_of_products(&POLYNOMIALS, &known);
+        let last = sum_of_products(&SYMBOLS, &known);
         let mut terms = vec![(1, &last, &accelerations[0])];
         terms.extend((0..k).filter_map(|n| {
             Some((1, self.products.order(self.square, n)?, &accelerations[k - n]))
         }));
-        sum_of_products(&POLYNOMIALS, &terms)
+        sum_of_products(&SYMBOLS, &terms)
     }
 }
 

@@ -5,8 +5,8 @@
 //! (11).
 //!
 //! ```text
-//! x'' + omega^2 x + p [(omega0^2 - omega^2) x + N(x)] = 0,    x = x_0 + p x_1 + ...,   x_0 = A cos(omega t)
-//! omega0^2 = omega^2 + p a_1 + p^2 a_2 + ...,                 x_k(0) = x_k'(0) = 0
+//! x'' + omega0^2 x + p N(x) = 0,               x = x_0 + p x_1 + ...,   x_0 = A cos(omega t)
+//! omega0^2 = omega^2 + p a_1 + p^2 a_2 + ...,   x_k(0) = x_k'(0) = 0
 //! omega^2 (x_n'' + x_n) = - sum_(i=1..n) a_i x_(n-i) - N_(n-1),   no secular term fixes a_n
 //! ```
 //!
@@ -54,8 +54,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     with_stiffness(oscillator, options, true)
 }
 
-/// As [`solve`], where the linear force may be missing: `0 = omega^2 + p a_1 + ...`. What parameter
-/// expansion allows.
+/// Does the work of [`solve`] for a force whose linear part may be missing, `0 = omega^2 + p a_1 +
+/// ...`, as parameter expansion allows.
 pub(super) fn solve_without_linear_part(
     oscillator: &Oscillator,
     options: &Options,
@@ -83,8 +83,8 @@ fn with_stiffness(
     };
     let force = oscillator
         .expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
-    // Through an unstable equilibrium, which is answered for where it is asked for, omega0^2 is
-    // negative: the recursion does not mind.
+    // For motions through an unstable equilibrium that was asked for, omega0^2 is negative; the
+    // recursion holds for either sign.
     let passed = oscillator.about.is_some() && !force.linear.is_zero();
     let force = match needed && !passed {
         true => oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?,
@@ -155,7 +155,7 @@ fn with_stiffness(
     })
 }
 
-/// The terms of the force under the embedding: everything beside the linear one stands at `p^1`, in
+/// The terms of the force under the embedding: every term but the linear one has the factor `p`, in
 /// units of `omega^2`.
 fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
     let term = |term: &Term| {
@@ -178,8 +178,7 @@ fn explicit_terms(series: &Polynomial, linear: &Polynomial, omega: Symbol) -> Po
     explicit
 }
 
-/// `omega^2 - explicit = 0` in whole powers of `omega`: what stands below the line is multiplied
-/// out.
+/// `omega^2 - explicit = 0` in whole powers of `omega`: denominators are multiplied out.
 fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
     let mut relation = explicit.clone();
     relation.negate();

@@ -56,7 +56,7 @@ use crate::solution::{
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
 
-/// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
+/// The two functions of `x'' + g x'^2 + h = 0`, and the mass `M` of the energy.
 pub(super) struct VariableMass {
     growth: Expr,
     force: Expr,
@@ -94,7 +94,7 @@ impl VariableMass {
     /// zero there.
     fn has_value_at_rest(&self, oscillator: &Oscillator) -> bool {
         let x = oscillator.coordinate;
-        // Of a quotient such as sin(x)/x the first coefficient of its series.
+        // The value at rest of a quotient such as sin(x)/x is the first coefficient of its series.
         let at_rest = |function: &Expr| {
             let value = function.substitute(x, &Expr::zero()).ok();
             value.or_else(|| taylor(function, &[(x, Rational::zero())], 0).ok()?.first().cloned())
@@ -116,8 +116,8 @@ impl VariableMass {
         (self.mass.as_ref()? * &self.force).expand().ok()
     }
 
-    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium, in steps that
-    /// are a part of the amplitude: what asks for it integrates over it in turn.
+    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium, stored at
+    /// steps of a fraction of the amplitude, because the callers integrate over it in turn.
     fn mass_at(
         &self,
         oscillator: &Oscillator,
@@ -125,7 +125,7 @@ impl VariableMass {
         amplitude: f64,
     ) -> Option<Box<dyn Fn(f64) -> f64>> {
         const STEPS: f64 = 16.0;
-        /// Number of steps beyond which nothing oscillates.
+        /// Number of steps beyond which a position counts as out of reach.
         const FURTHEST: f64 = 1e5;
         if let Some(mass) = &self.mass {
             return Some(Box::new(compiled(oscillator, mass, numbers)?));
@@ -204,7 +204,7 @@ pub(super) const ENERGY_BALANCE: Approach =
 /// The mean Hamiltonian.
 pub(super) const HAMILTONIAN: Approach = Approach { solve: hamiltonian, numbers: hamiltonian_at };
 
-/// Harmonics of the equation as typed.
+/// The harmonics of the equation as typed, balanced.
 pub(super) const HARMONIC_BALANCE: Approach =
     Approach { solve: harmonic_balance, numbers: harmonic_balance_at };
 
@@ -234,7 +234,8 @@ pub(super) fn solve(
     (approach.solve)(&moving, oscillator, options).map(Some)
 }
 
-/// The name of something in a derivation: `M`, `U`, ..., or what is free of the equation's names.
+/// The name of something in a derivation: `M`, `U`, ..., or another name where the equation uses
+/// this one.
 fn named(wanted: &str, oscillator: &Oscillator) -> Symbol {
     fresh(wanted, &oscillator.names())
 }
@@ -411,7 +412,7 @@ fn hamiltonian(
         let rest = amplitude.integer_power(2).ok()? - Expr::from(x).integer_power(2).ok()?;
         let kinetic = mean(&(mass * &rest * &half))?;
         let potential = mean(&potential(&weighted, x)?)?;
-        // Both slopes are odd in A: the common factor goes.
+        // Both slopes are odd in A: the common factor A is divided out.
         let slope = |of: &Expr| {
             Expr::divide(&of.differentiate("A".into()).ok()?, &amplitude).ok()?.expand().ok()
         };
@@ -614,13 +615,13 @@ fn projections(
 }
 
 /// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out;
-/// `None` if the law is explicit, or there are none.
+/// `None` if the law is explicit, or if there is no such solution.
 pub(super) fn at_numbers(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<AtNumbers> {
-    // Seen from the equilibrium, as the formulas are.
+    // The coordinate is measured from the equilibrium, as in the formulas.
     let equilibrium = solution.equilibrium.clone();
     let moved = &Expr::from(oscillator.coordinate) + &equilibrium;
     let mut centred = oscillator.clone();
@@ -644,7 +645,7 @@ pub(super) fn at_numbers(
     })
 }
 
-/// An equation at numbers, seen from its equilibrium.
+/// An equation at numbers, in the distance from its equilibrium.
 struct EquationAtNumbers<'a> {
     moving: &'a VariableMass,
     oscillator: &'a Oscillator,

@@ -42,7 +42,7 @@ use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::IterationPerturbation;
 
-/// The most passes: the number of harmonics grows with their power.
+/// The largest number of passes, with which the number of harmonics grows exponentially.
 const MOST_PASSES: u32 = 3;
 
 /// The most harmonics after the last pass of a polynomial force.
@@ -201,7 +201,8 @@ impl IterationPass {
         Ok(Self { right_side: squared.difference(&factor).product(motion), factor })
     }
 
-    /// The pass on paper; `next` is the motion it gives, where another pass follows.
+    /// The pass as lines of a derivation; `next` is the name of the motion that it gives, if
+    /// another pass follows.
     fn lines(
         &self,
         oscillator: &Oscillator,

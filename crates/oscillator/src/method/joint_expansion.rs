@@ -9,8 +9,8 @@
 //! x'' + x - (1 - x^2) x'/10 = 0               x'' + x - delta (1 - x^2) x' = 0, expanded in delta; delta = 1/10
 //! ```
 //!
-//! Nothing is neglected by that: it says which terms count as equally small, and where parameters
-//! are small in other proportions the terms of the result are still right, each by itself.
+//! This neglects no term: it only states which terms count as equally small. If the parameters are
+//! small in other proportions, each term of the result is still correct.
 
 use std::collections::BTreeMap;
 
@@ -66,7 +66,7 @@ pub(super) fn expand_jointly(
             (oscillator.force.substitute_all(&scaled).ok()?, None)
         }
         false => {
-            // The number before the first damping term is the small factor, if no letter is.
+            // The coefficient of the first damping term is the small factor, if no parameter is.
             let value = match asked.is_empty() {
                 true => parts.damping.terms().first()?.factors().0.abs(),
                 false => Rational::one(),
@@ -96,7 +96,7 @@ pub(super) fn expand_jointly(
 }
 
 /// Completes `parameters` to a set whose vanishing leaves the linear terms alone, where there is
-/// one: always the one next that takes most of what is left with it.
+/// one: each step adds the parameter whose vanishing removes most of the remaining terms.
 fn small_parameters(
     linear: &[Expr],
     others: &[Expr],
@@ -112,7 +112,7 @@ fn small_parameters(
         let free = oscillator.parameters.iter().copied();
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));
         let taken = |name: Symbol| left.iter().filter(|term| vanishes(term, name)).count();
-        // Of equally good ones the first in the alphabet.
+        // Among equally good ones the first in alphabetical order is chosen.
         let Some(best) = candidates.max_by_key(|&name| (taken(name), std::cmp::Reverse(name)))
         else {
             return false;

@@ -2,20 +2,20 @@
 //!
 //! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, sections 3.1 and 5.1.
 //!
-//! To first order the amplitude drifts as the secular sine does. In units of the linear frequency,
-//! with `z = a^2` and the terms `C_j` of the method of Lindstedt and Poincare,
+//! To first order the secular sine determines the rate of the amplitude. In units of the linear
+//! frequency, with `z = a^2` and the terms `C_j` of the method of Lindstedt and Poincare,
 //!
 //! ```text
 //! a' = delta a g(a^2)/2,      g(z) = sum_j c_j omega0^(q-2) [cos^p (-sin)^q]_sin z^((p+q-1)/2)
 //! ```
 //!
-//! A positive root of `g` is the square of the amplitude of a limit cycle; it attracts where
-//! `delta g' < 0`, and a root where `g'` vanishes too begins no expansion. At the orders above, the
-//! amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
+//! A positive root of `g` is the square of the amplitude of a limit cycle; it attracts where `delta
+//! g' < 0`, and no expansion starts from a root at which `g'` vanishes too. At the orders above,
+//! the amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
 //!
-//! An amplitude that is not a fraction and no product of parameters enters as a symbol `a0`. Where
-//! `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay exact:
-//! powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
+//! An amplitude that is neither a fraction nor a product of parameters enters as a symbol `a0`.
+//! Where `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay
+//! exact: powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -38,7 +38,7 @@ use crate::symbol::{Symbol, fresh};
 pub(super) struct AmplitudeEquation {
     /// Greatest common divisor of all coefficients, with every symbol in it.
     factor: Monomial,
-    /// The power of `z` that stands before the rest.
+    /// The power of `z` that multiplies the rest.
     lowest: i32,
     /// The coefficients of the rest, lowest power first; the first is not zero.
     rest: Vec<Polynomial>,
@@ -82,7 +82,7 @@ impl AmplitudeEquation {
         Some(Self { factor, lowest: lowest as i32, rest: rest.collect() })
     }
 
-    /// Whether nothing can balance: the equation has no root but zero.
+    /// Whether the equation is a single term, so that it has no root but zero.
     pub fn is_single_term(&self) -> bool {
         self.rest.len() < 2
     }
@@ -233,7 +233,7 @@ impl AmplitudeEquation {
         let single = |polynomial: &Polynomial| {
             polynomial.single_term().map(|(monomial, number)| (monomial.clone(), number.clone()))
         };
-        // z h'(z) = m h_m z^m = -m h_0: of the two the one whose sign a single term shows.
+        // z h'(z) = m h_m z^m = -m h_0: the form is used whose sign is that of a single term.
         let (direction, factor_of_slope, exponent) = match (single(low), single(high)) {
             (_, Some((monomial, number))) => {
                 ((monomial, -number), times(high, -2 * i64::from(m)), self.lowest + m)
@@ -293,7 +293,7 @@ impl AmplitudeEquation {
 }
 
 impl Cycle {
-    /// A polynomial with the powers of `a0` that can be expressed by lower ones so expressed.
+    /// A polynomial in which high powers of `a0` are replaced by lower ones.
     pub fn reduced(&self, polynomial: &Polynomial) -> Polynomial {
         let Some(PowerRelation { symbol, degree, value }) = &self.relation else {
             return polynomial.clone();
@@ -389,7 +389,7 @@ impl FrequencyUnits {
 /// small positive parameters, else the smallest.
 ///
 /// # Errors
-/// `none` where there is no cycle, and a number that is too large.
+/// The error `none` if there is no cycle; a number that is too large.
 pub(super) fn chosen(
     cycles: &[Cycle],
     asked: Option<u32>,

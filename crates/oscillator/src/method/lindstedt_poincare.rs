@@ -7,7 +7,7 @@
 //! ```text
 //! x'' + omega0^2 x + sum_j delta^(a_j) c_j x^p x'^q = 0,      theta = omega t
 //! x = A (y_0 + delta y_1 + ...),  omega^2 = omega0^2 (1 + delta W_1 + ...),  y_0 = cos theta
-//! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
+//! (omega/omega0)^2 y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
 //! ```
 //!
 //! The expansion itself is [`secular::expand`](super::secular::expand), over whole numbers if every
@@ -115,7 +115,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
     let amplitude = match extent {
         ExpansionScope::Motion => amplitude_of(&displacement, convention),
-        // To leading order: the rest of it belongs to the motion.
+        // Without the motion the amplitude is known to leading order only.
         ExpansionScope::Frequency => in_numbers(unit.clone()),
     };
     let limit_cycle =
@@ -166,11 +166,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 
 /// The linear part of a force, and the names that it brings with it.
 pub(super) struct LinearPart {
-    /// `omega0`, or what it is a name of.
+    /// The linear frequency: `omega0`, or its value if it needs no name.
     pub(super) frequency: Polynomial,
     /// The definition of `omega0`, if it is not a polynomial.
     pub(super) root: Option<Definition>,
-    /// That, and the constants of the other terms.
+    /// The definition of `omega0`, and the constants of the other terms.
     pub(super) definitions: Vec<Definition>,
     /// The names of the equation and of the definitions.
     pub(super) taken: Vec<Symbol>,
@@ -210,7 +210,7 @@ impl SelfExcitation {
         &self.cycles[self.number - 1]
     }
 
-    /// The answer's part of it; `small` is the small parameter of the answer.
+    /// The limit cycle as the answer states it; `small` is the small parameter of the answer.
     fn limit_cycle(
         &self,
         perturbation: &Perturbation,
@@ -266,7 +266,8 @@ fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial
     cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
 }
 
-/// A polynomial in lowest powers of what the amplitude of the cycle is a root of.
+/// A polynomial with the powers of the amplitude of the cycle reduced by the equation that it
+/// solves.
 fn reduced(cycle: Option<&Cycle>, polynomial: Polynomial) -> Polynomial {
     match cycle {
         Some(cycle) => cycle.reduced(&polynomial),
@@ -334,7 +335,7 @@ fn expanded(
 }
 
 /// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2,
-/// `1/sqrt(2)^3` as half of `1/sqrt(2)`. What cancels between the powers does so exactly.
+/// `1/sqrt(2)^3` as half of `1/sqrt(2)`. Terms that cancel between the powers then cancel exactly.
 pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Rational) -> Polynomial {
     let mut written = Polynomial::zero();
     for (monomial, number) in polynomial.terms() {
@@ -392,8 +393,8 @@ fn in_a_parameter(
     }
 }
 
-/// The force in powers of the small parameter; of a self-excited equation that has none, in powers
-/// of one that marks all terms but the linear one.
+/// The force in powers of the small parameter; a self-excited equation without one is expanded in a
+/// bookkeeping parameter of all terms but the linear one.
 fn perturbation(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -489,7 +490,8 @@ fn has_drift(force: &PerturbedForce) -> bool {
     drift(&together).is_some()
 }
 
-/// Whether terms feed energy at some amplitudes that others drain, or may do so.
+/// Whether the energy that some terms feed may balance the energy that others dissipate at some
+/// amplitude.
 pub(super) fn may_balance(force: &PerturbedForce) -> bool {
     drift(force).is_some_and(|equation| !equation.is_single_term())
 }
@@ -502,8 +504,8 @@ fn damped(parts: &Parts) -> Refusal {
     Refusal::damping(first_term(&parts.damping), Refuser::Expansion)
 }
 
-/// A term that feeds energy for some motions and drains it for others is no mere damping; which it
-/// is, the sign cannot tell.
+/// The refusal of terms odd in the velocity. A single one damps, or excites, at all amplitudes;
+/// several may feed energy for some motions and dissipate it for others.
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
         [_] => damped(parts),

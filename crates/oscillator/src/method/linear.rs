@@ -55,8 +55,8 @@ pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusa
 }
 
 impl Linear {
-    /// `None` if a term is not linear, or a coefficient or a drive is no constant and no wave; and
-    /// where nothing drives or damps.
+    /// `None` if a term is not linear, a coefficient is not constant, a drive is not a wave, or no
+    /// term drives or damps.
     ///
     /// # Errors
     /// The equation cannot be taken apart.
@@ -88,7 +88,7 @@ impl Linear {
     /// The exact answer.
     ///
     /// # Errors
-    /// The amplitude is asked for by another convention than the one that suits.
+    /// The amplitude is asked for by a convention that does not apply.
     pub(super) fn solve(
         &self,
         oscillator: &Oscillator,
@@ -98,7 +98,7 @@ impl Linear {
         let square = (&self.stiffness - &(&rate * &rate)).expand()?;
         let sign = match square.is_zero() {
             true => 0.0,
-            // Letters are taken to leave a motion that swings.
+            // With parameters the motion is taken to be underdamped.
             false => square.evaluate(&BTreeMap::new()).map_or(1.0, f64::signum),
         };
         let mut solution = unsolved(oscillator, options, Method::Exact, 0);
@@ -116,7 +116,7 @@ impl Linear {
         }
     }
 
-    /// A free motion that swings: amplitude and phase.
+    /// The slow equations of an underdamped free motion: amplitude and phase.
     fn decay(
         &self,
         oscillator: &Oscillator,
@@ -251,7 +251,7 @@ impl Linear {
         Expr::divide(&size, &(&spring * &spring + &drag * &drag).sqrt()?)
     }
 
-    /// The particular solution of a wave, and what is to be said of it.
+    /// The particular solution of a wave, and a note on it.
     fn forced_by(&self, wave: &HarmonicExcitation) -> Result<(Expr, Option<Note>), Refusal> {
         let size = -&wave.factor;
         let time = Expr::symbol("t");
@@ -305,7 +305,7 @@ fn law(frequency: &Expr) -> Result<Law, ExprError> {
     })
 }
 
-/// A value, by a name where it is more than a number or a symbol.
+/// A value, replaced by a name if it is more than a number or a symbol.
 fn named(
     wanted: &str,
     value: Expr,

@@ -137,7 +137,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// The most places where `f(x)/x` turns back that are written out.
+/// Largest number of extrema of `f(x)/x` that are written out.
 const MOST_PIECES: usize = 4;
 
 /// Extrema of `f(x)/x` for `x > 0` with their values, up to the end of the well; `None` if they
@@ -147,12 +147,12 @@ fn turning_backs(
     quotient: &Expr,
     force: &Expr,
 ) -> Option<Vec<(f64, f64)>> {
-    /// The search goes through the decades of what a number can be in SI units, this many points in
-    /// each.
+    /// The search covers so many decades on either side of 1, more than any quantity in SI units
+    /// needs, with so many points in each.
     const DECADES: i32 = 24;
     const POINTS: i32 = 48;
     let coordinate = oscillator.coordinate;
-    // A single power changes one way only.
+    // A single power is monotonic.
     let varying = quotient.terms().iter().filter(|term| term.contains(coordinate));
     let powers: Vec<bool> = varying.map(|term| is_power(term, coordinate)).collect();
     if powers == [true] || powers.is_empty() {
@@ -165,7 +165,7 @@ fn turning_backs(
     let slope = compiled(oscillator, &quotient.differentiate(coordinate).ok()?, &BTreeMap::new())?;
     let place = |k: i32| 10_f64.powf(f64::from(k) / f64::from(POINTS));
     let mut places: Vec<f64> = (-DECADES * POINTS..=DECADES * POINTS).map(place).collect();
-    // Narrow places slip through any grid: they get points of their own.
+    // A grid may miss narrow features: they get points of their own.
     let features = Features::new(force, coordinate, &BTreeMap::new());
     let decades = (-DECADES..DECADES).map(|k| [place(k * POINTS), place((k + 1) * POINTS)]);
     for feature in decades.flat_map(|[low, high]| features.between(low, high)) {
@@ -301,7 +301,7 @@ fn quotient_of(above: &Expr, below: &Expr) -> Option<Expr> {
         return None;
     }
     let quotient = Expr::divide(above, below).ok()?;
-    // Sums that are multiples of one another leave a number.
+    // The quotient of two sums that are multiples of one another is a number.
     match (above.terms(), below.terms()) {
         ([_], [_]) => quotient.expand().ok(),
         _ => Some(quotient),

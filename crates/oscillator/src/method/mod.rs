@@ -1,10 +1,10 @@
 //! The methods: each takes an [`Oscillator`] and options, and gives a [`Solution`] or a
 //! [`Refusal`].
 //!
-//! In comes the equation with its [`Options`]; [`solve`] looks at it from its equilibrium and asks
-//! the method of the table. Out goes a law and a motion with exact coefficients, the notes on where
-//! they hold and the derivation; or the [`Reason`] why not, with the term in the way and advice on
-//! what to try. At numbers, [`numbers`] gives the frequency and the motion of any answer.
+//! In comes the equation with its [`Options`]; [`solve`] moves the origin to its equilibrium and
+//! calls the method of the table. Out goes a law and a motion with exact coefficients, the notes on
+//! where they hold and the derivation; or the [`Reason`] why not, with the term in the way and
+//! advice on what to try. At numbers, [`numbers`] gives the frequency and the motion of any answer.
 //!
 //! One file per method, each opening with its reference and equations. To add one: write its file
 //! with a function `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in
@@ -14,6 +14,7 @@ pub(crate) mod amplitude_frequency;
 pub mod averaging;
 pub(crate) mod balance;
 mod base_motion;
+mod convergence_control;
 mod default_method;
 mod drive;
 mod driven_answer;
@@ -134,8 +135,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether it is said what is small, or how far to go in it: by an option, or by a letter that
-    /// is called `eps`.
+    /// Whether the small parameter or the order is given: by an option, or by a parameter named
+    /// `eps`.
     fn say_what_is_small(&self, oscillator: &Oscillator) -> bool {
         self.small.is_some()
             || self.order.is_some()
@@ -184,7 +185,8 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
         return refusal;
     };
     let asked = oscillator.about.is_some();
-    // Two wells, say: with positive letters it pushes away here, and back elsewhere.
+    // With two wells, for example, the force repels here for positive parameters and pulls back
+    // elsewhere.
     if let (true, false, Some(unstable)) =
         (force.has_leading_minus(), asked, stable_elsewhere(oscillator))
     {
@@ -236,7 +238,7 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
     }
 }
 
-/// Solves without another coordinate in view.
+/// Solves in the coordinate of the equation, without trying a relative one.
 fn solve_in_its_coordinate(
     oscillator: &Oscillator,
     options: &Options,
@@ -275,10 +277,10 @@ fn solve_by(
 ) -> Result<Solution, Refusal> {
     let entry = MethodEntry::for_method(method);
     refuse_what_it_does_not_take(entry, options)?;
-    // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
-    // moved back.
+    // Every method works about x = 0: the origin is moved to the equilibrium, and the answer moved
+    // back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    // The formulas of a driven motion have a letter for an equilibrium that is not a fraction.
+    // The formulas of a driven motion have a symbol for an equilibrium that is not a fraction.
     let driven = oscillator.force.contains(Symbol::new("t"));
     let degree = (entry.rounded_degree)(options, polynomial).filter(|_| !(driven && polynomial));
     let centred = centred(oscillator, degree)?;
@@ -344,8 +346,8 @@ fn refuse_what_it_does_not_take(entry: &MethodEntry, options: &Options) -> Resul
     }
 }
 
-/// A parameter that moves the equilibrium is no small one, unless it is asked for: the amplitude
-/// is.
+/// The options with the amplitude as the small parameter, if the default one would be a parameter
+/// that moves the equilibrium.
 fn about_a_load(centred: &Centred, options: &Options) -> Options {
     let small = centred.oscillator.small_parameter(options.small.as_deref());
     let moves = |name: Symbol| centred.position.contains(name);
@@ -367,7 +369,7 @@ fn move_back(
     let written = centred.written.to_polynomial(&mut |_| None)?;
     // An equilibrium that is not a polynomial has a symbol.
     let position = written.unwrap_or_else(Polynomial::zero);
-    // A motion known by numbers alone is left to them.
+    // A motion that is only evaluated numerically has no displacement to move.
     if !solution.displacement.is_zero() {
         let position = FourierSeries::constant(POLYNOMIALS, position);
         solution.displacement = solution.displacement.sum(&position);
@@ -408,7 +410,8 @@ fn has_corners(force: &Expr) -> bool {
     corners.into_iter().any(|function| force.contains_function(function))
 }
 
-/// The refusal of a force that is not a polynomial in the coordinate, by the terms that are none.
+/// The refusal of a force that is not a polynomial in the coordinate, which names the terms that
+/// are not.
 fn not_polynomial(force: &Expr, coordinate: Symbol, method: Method) -> Refusal {
     let constant = fresh("c", &[coordinate]);
     let is_none = |term: &Expr, constants: bool| {
@@ -422,7 +425,8 @@ fn not_polynomial(force: &Expr, coordinate: Symbol, method: Method) -> Refusal {
         }
     };
     let expanded = force.expand().unwrap_or_else(|_| force.clone());
-    // A constant such as sqrt(k) is in the way of some methods, and named where nothing else is.
+    // A constant such as sqrt(k) is an obstacle to some methods, and is named if no other term is
+    // one.
     let found = [true, false].map(|constants| {
         let terms = expanded.terms().iter().filter(|term| is_none(term, constants));
         Expr::sum(terms.cloned())

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
+use super::convergence_control::FormulaInHbar;
 use super::exact_motion::{cosines, motion_about};
 use super::table::{Choice, MethodEntry, MotionEvaluation};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
@@ -18,7 +19,6 @@ use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, Rounded};
 use crate::numeric::ode::energy::PeriodError;
-use crate::numeric::ode::root::find_minimum;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Branch, Counts, Method, Solution};
@@ -61,11 +61,13 @@ pub struct SymbolValues {
 }
 
 /// Results shared between amplitudes, all else being the same: a balance continues from its last
-/// solution, and the force at rest is analysed once.
+/// solution, the force at rest is analysed once, and the fractions of a formula in hbar are converted
+/// once.
 #[derive(Default)]
 pub struct NumbersCache {
     balance: balance::Continuation,
     force: OnceCell<Option<CentredForce>>,
+    formula: OnceCell<Option<FormulaInHbar>>,
 }
 
 impl NumbersCache {
@@ -954,7 +956,7 @@ fn harmonics_of_closed_form(
     cosine.iter().all(|value| value.is_finite()).then_some(cosine)
 }
 
-/// The hbar between -2 and 0 at which the squared residual of the original equation is least.
+/// The hbar at which the squared residual of the original equation is least.
 fn best_hbar(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -962,14 +964,9 @@ fn best_hbar(
     hbar: Symbol,
     known: &NumbersCache,
 ) -> Result<f64, NoNumbers> {
-    const TRIALS: usize = 40;
-    const SAMPLES: usize = 64;
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    // Definitions that do not depend on hbar are computed once.
     let mut numbers = numbers.clone();
-    let fixed =
-        solution.definitions.iter().take_while(|definition| !definition.meaning.contains(hbar));
-    for definition in fixed {
+    for definition in &solution.definitions {
         // Without a first frequency there is none for any hbar.
         let undefined = |error| match error {
             EvaluationError::MissingSymbol(_) => NoNumbers::NoValue,
@@ -983,30 +980,10 @@ fn best_hbar(
         let value = definition.meaning.evaluate(&numbers).map_err(undefined)?;
         numbers.insert(definition.symbol, value);
     }
-    let circle: [(f64, f64); SAMPLES] = std::array::from_fn(|k| {
-        let theta = std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64;
-        (theta.cos(), theta.sin())
-    });
-    let squared_residual = |value: f64| {
-        let mut numbers = numbers.clone();
-        numbers.insert(hbar, value);
-        let squared = frequency_squared(oscillator, solution, &numbers, known)
-            .map_or(f64::NAN, |found| found.0);
-        let Some(motion) = formula_motion(oscillator, solution, &numbers, squared) else {
-            return f64::INFINITY;
-        };
-        let acceleration = motion.derivative().derivative();
-        let defect = |(cosine, sine): &(f64, f64)| {
-            let distance = motion.evaluate_at(*cosine, *sine) - force.equilibrium();
-            squared * acceleration.evaluate_at(*cosine, *sine) + force.value(distance)
-        };
-        let sum: f64 = circle.iter().map(|point| defect(point).powi(2)).sum();
-        if sum.is_finite() { sum } else { f64::INFINITY }
-    };
-    let place = |k: usize| -2.0 * k as f64 / TRIALS as f64;
-    let best = (1..=TRIALS)
-        .min_by(|&a, &b| squared_residual(place(a)).total_cmp(&squared_residual(place(b))));
-    let best = best.ok_or(NoNumbers::NoValue)?;
-    let (value, least) = find_minimum(squared_residual, place(best + 1), place(best - 1));
-    least.is_finite().then_some(value).ok_or(NoNumbers::NoValue)
+    numbers.insert(Symbol::new("pi"), std::f64::consts::PI);
+    let formula = known.formula.get_or_init(|| FormulaInHbar::new(solution, hbar));
+    let best = formula
+        .as_ref()
+        .and_then(|formula| formula.least_residual(&force, |symbol| numbers.get(&symbol).copied()));
+    best.ok_or(NoNumbers::NoValue)
 }

@@ -10,8 +10,8 @@
 //! omega^2 = c_1/A = (2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta
 //! ```
 //!
-//! Even terms of the force contribute nothing to `c_1`: the drift they cause is left out, and the
-//! answer says so.
+//! Even terms of the force contribute nothing to `c_1`: the drift that they cause is left out, and
+//! a note of the answer says so.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -113,7 +113,7 @@ pub(super) fn unsolved(
         parameters: oscillator.parameters.clone(),
         definitions: vec![],
         equilibrium: Expr::zero(),
-        // Every method puts its own in place of this.
+        // Every method replaces this placeholder by its own law.
         law: Law::Quadrature(vec![]),
         displacement: cosine(Polynomial::symbol(amplitude)),
         limit_cycle: None,
@@ -212,8 +212,8 @@ pub(super) fn first_projection(
     })
 }
 
-/// The condition that the force along the motion has no more of `cos(theta)` than the acceleration,
-/// and what it gives.
+/// The condition that the `cos(theta)` of the force balances that of the acceleration, and the law
+/// that follows.
 pub(super) fn integral_law(
     oscillator: &Oscillator,
     force: &Expr,
@@ -234,8 +234,8 @@ pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
     })
 }
 
-/// `c_1/A` of a force by numbers, with a bound of its error, relative: what defines the methods
-/// whose law is the shared integral.
+/// `c_1/A` of a force by quadrature, which is omega^2 for the methods whose law is the shared
+/// integral, with a bound of its relative error.
 pub(super) fn first_projection_over_amplitude(
     force: &CentredForce,
     amplitude: f64,
@@ -244,9 +244,9 @@ pub(super) fn first_projection_over_amplitude(
     Some((projection / amplitude, error / projection.abs()))
 }
 
-/// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its
-/// error: the midpoint rule in theta, which converges geometrically for smooth forces and like a
-/// power at corners.
+/// `c_k` of a force by quadrature, and the change at the last doubling of the points, which bounds
+/// its error: the midpoint rule in theta, which converges geometrically for smooth forces and like
+/// a power at corners.
 pub(crate) fn coefficient_by_quadrature(
     force: &dyn Fn(f64) -> f64,
     amplitude: f64,
@@ -278,8 +278,8 @@ pub(crate) fn coefficient_by_quadrature(
     }
 }
 
-/// `c_k` of a force about its equilibrium, and a bound of its error: between corners and narrow
-/// places by Gauss's rule, as fine as it has to be, where there are any.
+/// `c_k` of a force about its equilibrium, and a bound of its error: by adaptive Gauss quadrature
+/// between corners and narrow features, if the force has any.
 pub(crate) fn coefficient(force: &CentredForce, amplitude: f64, k: usize) -> (f64, f64) {
     const TOLERANCE: f64 = 1e-14;
     let cuts = force.cuts(-amplitude.abs(), amplitude.abs());

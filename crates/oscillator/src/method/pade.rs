@@ -46,11 +46,12 @@ const METHOD: Method = Method::Pade;
 /// The largest degree, of numerator and denominator.
 const LARGEST_DEGREE: u32 = 60;
 
-/// Degree of the denominator beyond which fractions are long, and primes faster.
+/// Degree of the denominator beyond which elimination modulo primes is faster than with long
+/// fractions.
 const LARGEST_BY_FRACTIONS: usize = 12;
 
-/// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums
-/// of `2^degree` products of polynomials.
+/// The largest degree of a denominator with symbols that cannot be scaled away: its cofactors are
+/// sums of `2^degree` products of polynomials.
 const LARGEST_WITH_SYMBOLS: usize = 9;
 
 /// The approximant of the degrees in the options, `[2/1]` by default.
@@ -95,7 +96,7 @@ struct Quotient {
     below: Vec<Polynomial>,
 }
 
-/// The quotient of these degrees that agrees with a series, or why there is none.
+/// The quotient of these degrees that agrees with a series, or the reason why there is none.
 fn quotient(
     series: &PowerSeries,
     (numerator_degree, denominator_degree): (u32, u32),
@@ -209,7 +210,8 @@ fn linear_system(
     lines
 }
 
-/// `q_0, ..., q_m`, the first of them one where it is a single term; or why there are none.
+/// `q_0, ..., q_m`, the first of them one where it is a single term; or the reason why there are
+/// none.
 fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial>, &'static str> {
     if m > 0 && series.iter().skip(1).all(Polynomial::is_zero) {
         return Err(CONSTANT);
@@ -318,8 +320,8 @@ fn poles(below: &Polynomial) -> Poles {
     let coefficients: Vec<f64> = exact.iter().map(to_f64).collect();
     let mut places: Vec<f64> = real_roots(&coefficients);
     if exact.len() > LARGEST_BY_FRACTIONS + 1 {
-        // Roots of so many in doubles are taken for what they are where the exact polynomial
-        // changes its sign.
+        // Roots of such a high degree in doubles are kept only where the exact polynomial changes
+        // its sign.
         let floats: Vec<BigFloat> =
             exact.iter().map(|value| BigFloat::of_fraction(value, BITS)).collect();
         places.retain(|place| changes_sign(&floats, *place));
@@ -329,10 +331,10 @@ fn poles(below: &Polynomial) -> Poles {
     Poles::At { name, places }
 }
 
-/// Binary digits in which the sign of a long polynomial is right.
+/// Number of bits that suffice for the sign of a long polynomial.
 const BITS: usize = 1024;
 
-/// Whether a polynomial has another sign on the other side of a place.
+/// Whether a polynomial changes its sign close to `place`.
 fn changes_sign(polynomial: &[BigFloat], place: f64) -> bool {
     const BESIDE: f64 = 1e-6;
     let zero = BigFloat::zero(BITS);

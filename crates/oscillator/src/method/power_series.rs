@@ -1,5 +1,5 @@
-//! omega^2 as a power series in one variable, with what its symbols have in common taken out; and
-//! what the methods share that sum it up in another way.
+//! omega^2 as a power series in one variable, its symbols combined into that variable as far as
+//! they scale with it; and the parts that the methods share that resum it.
 
 use num_traits::{One, Zero};
 
@@ -21,7 +21,7 @@ pub struct PowerSeries {
     pub law: Polynomial,
     /// The small parameter.
     pub small: Symbol,
-    /// The power of the small parameter that `s` is.
+    /// The exponent of the small parameter in `s`: 1 or 2.
     pub step: i32,
 }
 
@@ -56,8 +56,8 @@ impl PowerSeries {
     }
 
     /// The series in one variable, where all other symbols enter in step with `s`: the variable,
-    /// `s` times a unit of theirs, and the coefficients in it over the first, as many as the law
-    /// has powers.
+    /// `s` times a product of the others, and the coefficients divided by the first, one for each
+    /// power of the law. `None` if a symbol does not scale with `s`.
     pub fn in_one_variable(&self) -> Option<(Monomial, Vec<Rational>)> {
         let (_, highest) = self.law.exponent_range(self.small)?;
         let coefficients: Vec<Polynomial> =
@@ -98,7 +98,7 @@ pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)>
     Some((unit, numbers?))
 }
 
-/// The series to this many powers, and the answer that it belongs to.
+/// A series truncated at some power, and the solution that it belongs to.
 pub(crate) struct Resummed {
     pub series: PowerSeries,
     solution: Solution,
@@ -140,7 +140,7 @@ impl Resummed {
         else {
             return Ok(None);
         };
-        // The frequency of a limit cycle is mostly the same for both signs of what is small.
+        // The frequency of a limit cycle is mostly even in the small parameter.
         let of_cycle = solution.limit_cycle.is_some() && order > 0;
         // Quadratic approximants of an even series are not unique in the parameter itself.
         let even = method == Method::HermitePade
@@ -166,7 +166,7 @@ impl Resummed {
         Ok(Some(Self { series, solution, order, long }))
     }
 
-    /// The names that mean something already.
+    /// The names that are in use already.
     pub fn names(&self) -> Vec<Symbol> {
         self.solution.names()
     }
@@ -193,8 +193,7 @@ impl Resummed {
         }
     }
 
-    /// The answer with another value for omega^2, what is to be said of that, and how it comes
-    /// about.
+    /// The answer with another value for omega^2, the notes on it, and its derivation.
     pub fn answer(
         self,
         degrees: Degrees,
@@ -232,6 +231,6 @@ fn first_correction(
 /// overflow.
 pub(crate) fn has_values(value: &Expr) -> bool {
     let at = |place: f64| value.symbols().into_iter().map(|symbol| (symbol, place)).collect();
-    // One of the places may be a pole.
+    // One of the two points may be a pole.
     [1.0, 0.5].iter().any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
 }

@@ -13,7 +13,7 @@ use crate::expr::{Expr, ExprError, Quotation};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::TaylorError;
 
-/// A refusal whose term is quoted as it was typed, where it can be told which that was.
+/// A refusal whose term is quoted as it was typed, if it is known which typed term that was.
 pub(super) fn as_typed(
     mut refusal: Refusal,
     oscillator: &Oscillator,
@@ -30,7 +30,7 @@ pub(super) fn as_typed(
             }
             if let Some(found) = typed_around(term.expression(), oscillator, centred) {
                 *term = found;
-                // The force was expanded as it is seen from the equilibrium.
+                // The force was expanded about the equilibrium.
                 let place =
                     point.iter_mut().find(|(variable, _)| *variable == oscillator.coordinate);
                 if let Some((_, centre)) = place.filter(|(_, centre)| centre.is_zero()) {
@@ -46,8 +46,8 @@ pub(super) fn as_typed(
         _ => refusal.quoted.as_deref_mut(),
     };
     let found = term.and_then(|term| Some((typed_terms(term, oscillator, centred)?, term)));
-    // It may be the factor of the acceleration that brings the velocity in: then the term is shown
-    // over that.
+    // The velocity may come from the coefficient of the acceleration; then the term is shown
+    // divided by that.
     let shows_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
     if let Some((found, term)) = found.filter(|(found, _)| !of_velocity || shows_velocity(found)) {
         *term = found;
@@ -77,7 +77,7 @@ fn typed_terms(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> O
     };
     let mut numbers = numbers_where(&parts, comes_from);
     if numbers.is_empty() {
-        // Of a series the term that has all its symbols, where there is but one.
+        // A series is attributed to the one typed term that contains all its symbols.
         let symbols = sum.symbols();
         numbers = numbers_where(&parts, |part| symbols.is_subset(&part.symbols()));
         numbers = if numbers.len() == 1 { numbers } else { vec![] };
@@ -97,7 +97,7 @@ fn typed_around(inner: &Expr, oscillator: &Oscillator, centred: &Centred) -> Opt
     };
     let number = numbers_where(&parts, occurs).into_iter().next()?;
     let part = parts.get(number)?.clone()?;
-    // Of `1/x`, from `x*x'' + 1`, the typed term `1` shows nothing.
+    // In `x*x'' + 1` the force `1/x` comes from the typed term `1`, which does not show it.
     let divided = oscillator.velocity().derivative();
     let own_mass =
         oscillator.residual.differentiate(divided).is_ok_and(|mass| mass.symbols().is_empty());

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::HIGHEST_ORDER;
 use super::secular::SecularError;
-use super::table::{Choice, that_take};
+use super::table::{Choice, MethodEntry, that_take};
 use crate::exact::Polynomial;
 use crate::expr::{Expr, ExprError, Node, Quotation};
 use crate::oscillator::OscillatorError;
@@ -454,12 +454,33 @@ impl Refusal {
                     Some(Refuser::Method(Method::LindstedtPoincare)) => {
                         of_order(1).then(", which takes this force as it is")
                     }
-                    _ => of_order(1).then(", which takes any force, or ").choose(Setting::Taylor),
+                    refuser => {
+                        let as_it_is = ", which takes a force as it is where its first harmonic has a closed form";
+                        match refuser.is_some_and(takes_taylor) && self.quoted.as_deref().is_some_and(is_smooth) {
+                            true => of_order(1).then(as_it_is).then(", or ").choose(Setting::Taylor),
+                            false => of_order(1).then(as_it_is),
+                        }
+                    }
                 },
             ),
         };
         (text, Some(help))
     }
+}
+
+/// Whether a Taylor polynomial may stand for the force in a method.
+fn takes_taylor(refuser: Refuser) -> bool {
+    match refuser {
+        Refuser::Method(method) => MethodEntry::for_method(method).takes(Choice::Taylor),
+        Refuser::Expansion | Refuser::FirstOrder => false,
+    }
+}
+
+/// Whether a term has no corner.
+fn is_smooth(term: &Quotation) -> bool {
+    use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
+    let corners = [Absolute, Maximum, Minimum, Sign, Step];
+    !corners.into_iter().any(|corner| term.expression().contains_function(corner))
 }
 
 /// Whether a function in a term depends on a coordinate and its velocity both.

@@ -1,4 +1,5 @@
-//! Resonances of a driven motion: which are known, and which is nearest to frequencies in numbers.
+//! Resonances of a driven motion: the list of the known ones, and the one nearest to numerical
+//! frequencies.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use crate::values::Values;
 /// The resonances that are tried, Omega : omega0.
 pub(super) const RESONANCES: [(u32, u32); 5] = [(1, 1), (2, 1), (1, 2), (3, 1), (1, 3)];
 
-/// The largest of either number that is asked for: the motion needs as many harmonics.
+/// The largest value of either number that may be asked for: the motion needs as many harmonics.
 pub(super) const LARGEST: u32 = 9;
 
 /// Whether it is a ratio of frequencies that may be asked for.
@@ -35,7 +36,7 @@ pub(super) fn by_distance(mut resonances: Vec<(u32, u32)>, ratio: f64) -> Vec<(u
 }
 
 /// An error if a ratio of frequencies is far from the resonance that is nearest to it: the
-/// detuning, which is to be small, is more than half of the linear frequency beside.
+/// detuning, which is to be small, is more than half of the linear frequency.
 pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<(), Refusal> {
     const FAR: f64 = 0.5;
     let nearest = (p, q);

@@ -1,7 +1,7 @@
 //! The table of methods: a row each, with what the rest of the program needs to know of it.
 //!
-//! In: a [`Method`]. Out: its [`MethodEntry`]: the function that solves, the options it takes, what
-//! it sees of a force.
+//! In: a [`Method`]. Out: its [`MethodEntry`]: the function that solves, the options it takes, the
+//! representation of the force it uses.
 
 use super::{
     Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula,
@@ -13,8 +13,9 @@ use crate::conservative::force::CentredForce;
 use crate::oscillator::Oscillator;
 use crate::solution::{Degrees, Method, Solution};
 
-/// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the
-/// equilibrium and the size of the amplitude. With a bound of its error, relative.
+/// The definition of omega^2 for a motion `A cos(theta)`, evaluated numerically: takes the force
+/// about the equilibrium and the absolute value of the amplitude, and returns omega^2 and a bound
+/// of its relative error.
 pub type Definition = fn(&CentredForce, f64) -> Option<(f64, f64)>;
 
 /// A row of [`METHODS`].
@@ -34,7 +35,7 @@ pub struct MethodEntry {
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
     /// The definition of the frequency of a method of one term.
     pub definition: Option<Definition>,
-    /// Whether its law knows the sign of the amplitude; one that does not is written for positive
+    /// Whether its law holds for either sign of the amplitude; otherwise it is written for positive
     /// ones.
     pub signed: bool,
     /// The way in which its motion is evaluated numerically.
@@ -261,7 +262,8 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
 impl MethodEntry {
     /// The row of a method.
     pub fn for_method(method: Method) -> &'static Self {
-        // The order is that of `Method::ALL`, which is that of the variants; a test holds it.
+        // The rows are in the order of `Method::ALL`, which is that of the variants; a test checks
+        // this.
         &METHODS[method as usize]
     }
 
@@ -270,7 +272,7 @@ impl MethodEntry {
         self.takes.contains(&choice)
     }
 
-    /// Whether it sees of the force only its derivatives at the equilibrium.
+    /// Whether the method uses only the derivatives of the force at the equilibrium.
     pub fn expands(&self) -> bool {
         matches!(
             self.sees,

@@ -13,8 +13,8 @@
 //! psi' = sum d_k a^k       by  (a^j)'/j = sum c_i a^(n_i + j - 1)  and  (log a)' = sum c_i a^(n_i - 1)
 //! ```
 //!
-//! Letters count as positive: they decide where a motion ends and which form of the same solution
-//! is written.
+//! Parameters count as positive: their signs decide where a motion ends and which form of a
+//! solution is written.
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
@@ -28,8 +28,8 @@ use crate::solution::{Definition, LeadingCycle};
 use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
 
-/// The motion of slow equations from where it is released, with names for what is more than a
-/// symbol there: `a0` and `psi0`, beside those that are taken.
+/// The motion of slow equations from where it is released, with the names `a0` and `psi0`, or
+/// others where these are taken, for initial values that are more than a symbol.
 pub(crate) fn from_release(
     a: Symbol,
     [rate, phase_rate]: [&Expr; 2],
@@ -87,9 +87,9 @@ fn merge_exponentials(expression: &Expr) -> Option<Expr> {
     tidied.ok()
 }
 
-/// The amplitudes that stay, each with its stability: the one at which the two terms of a rate
-/// balance, where letters or numbers make it positive, or those of a rate that is not a sum of
-/// powers, found by numbers where only a factor and a scale of the amplitude are letters.
+/// The steady amplitudes, each with its stability: the one at which the two terms of a rate
+/// balance, where it is positive; or, for a rate that is not a sum of powers, those found
+/// numerically, where parameters enter only as a factor and as a scale of the amplitude.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
         let law = PowerLaw::from_rate(rate, a)?;
@@ -101,13 +101,13 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
         let (lower, power) = if lower_is_first { (c, q - p) } else { (d, p - q) };
         let other = if lower_is_first { d } else { c };
         let size = (-&Expr::divide(lower, other).ok()?).expand().ok()?;
-        // Whether a sum is positive is for the letters in it.
+        // The sign of a sum depends on the values of its parameters.
         let is_sum = size.terms().len() > 1;
         if size.has_leading_minus() && !is_sum {
             return None;
         }
         let amplitude = Expr::power(&size, &Expr::divide(&Expr::one(), &power).ok()?).ok()?;
-        // If the leading term feeds the motion, the term that overtakes it drains it.
+        // If the leading term feeds energy, the higher one, which overtakes it, dissipates it.
         let feeds = if is_sum { -other } else { lower.clone() };
         let (number, factors) = feeds.factors();
         let sign = Expr::number(number.signum());
@@ -120,10 +120,10 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     }
 }
 
-/// The zeros of a rate `letters * scale^n * g(a/scale)`, `g` in numbers alone: `None` for any
-/// other.
+/// The zeros of a rate `factor * scale^n * g(a/scale)`, where `g` contains no parameter; `None` for
+/// any other.
 fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
-    /// The amplitudes looked at, in scales: ten to the power of these parts of a hundred.
+    /// Hundredths of the decimal logarithms of the amplitudes searched, in units of the scale.
     const GRID: std::ops::RangeInclusive<i32> = -300..=300;
     const PER_DECADE: f64 = 100.0;
     let letters: Vec<Symbol> = rate.symbols().into_iter().filter(|name| *name != a).collect();
@@ -174,7 +174,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
     })
 }
 
-/// A sum of powers of the amplitude: exponents, and what stands before.
+/// A sum of powers of the amplitude: the exponents and their coefficients.
 struct PowerLaw(Vec<(Expr, Expr)>);
 
 impl PowerLaw {
@@ -223,7 +223,8 @@ impl PowerLaw {
         let mut sum = Vec::new();
         for (k, coefficient) in &parts.0 {
             let integral = self.integral(k, amplitude, start)?;
-            // A sum would be spread over the terms, and what cancels at the start would not show.
+            // A product with a sum is not expanded: the terms that cancel at the start stay
+            // together.
             sum.push(coefficient * &integral);
         }
         Some(Expr::sum(sum))
@@ -254,7 +255,8 @@ impl PowerLaw {
                     true => ([(p, &first.1), (q, &second.1)], p),
                     false => ([(q, &second.1), (p, &first.1)], q),
                 };
-                // The power above by the one below, down to one that is known.
+                // The integral of a power is reduced to that of a lower one, down to one that is
+                // known.
                 let j = k - highest + Rational::one();
                 if j.is_negative() {
                     return None;
@@ -339,7 +341,7 @@ fn bernoulli(c: &Expr, m: &Expr, d: &Expr, start: &Expr) -> Option<(Expr, Option
     let pace = (&excess * c).expand().ok()?;
     let size = Expr::power(start, &excess).ok()?;
     if !c.has_leading_minus() && quotient.has_leading_minus() {
-        // It comes to the amplitude at which both balance.
+        // The motion tends to the amplitude at which both terms balance.
         let steady = inverse(&-&quotient)?;
         let fades = (Expr::divide(&steady, &size).ok()? - Expr::one()) * exponential(&-&pace)?;
         let below = Expr::power(&(Expr::one() + fades), &root).ok()?;

@@ -1,19 +1,19 @@
-//! Corners whose side at rest is decided by the sign of a letter: `max(0, d + x)`, a contact
+//! Corners whose side at rest is decided by the sign of a parameter: `max(0, d + x)`, a contact
 //! pressed together by `d`, and `H(x - xc)`, a barrier that is `xc` away.
 //!
 //! ```text
 //! w(x) = w_0 + ...,  w_0 one term in letters:   for w_0 > 0 near rest   H(w) = 1, sgn(w) = 1, abs(w) = w, max(0, w) = w
 //! ```
 //!
-//! In: a force. Out: the force as it is near rest where the letters are positive, and what was
-//! taken for that, which whoever uses it has to say.
+//! In: a force. Out: the force near rest if the parameters are positive, and the sides that this
+//! assumes, which the caller has to report.
 
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::solution::note::CornerSide;
 use crate::symbol::Symbol;
 
-/// A force with the side of each of these corners in its place, and the corners; those that no
-/// letter decides stay.
+/// The force with each such corner replaced by its side at rest, and the list of these; corners
+/// that no parameter decides stay.
 ///
 /// # Errors
 /// A step of algebra failed.
@@ -42,8 +42,8 @@ pub(crate) fn beside_corners(
     Ok((beside, sides))
 }
 
-/// The force as an expansion about rest takes it: with the sides of its corners, where letters
-/// decide them and where something acts on that side.
+/// The force as an expansion about rest takes it: with the sides of its corners if parameters
+/// decide them, and none of these sides is zero.
 ///
 /// # Errors
 /// As [`beside_corners`].
@@ -60,7 +60,7 @@ pub(crate) fn near_rest(
     }
 }
 
-/// The side of a corner at rest, where one term in letters decides it.
+/// The side of a corner at rest, if one term in the parameters decides it.
 fn side(corner: &Expr, own: [Symbol; 2]) -> Result<Option<CornerSide>, ExprError> {
     let Node::Function(function, arguments) = corner.node() else {
         return Ok(None);

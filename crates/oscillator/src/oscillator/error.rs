@@ -1,4 +1,4 @@
-//! Why an equation is no oscillator, and what to do about it.
+//! Errors of an equation that is not an oscillator, with advice.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Method, Setting};
 use crate::symbol::Symbol;
 
-/// Why an equation is no oscillator, or not one that can be expanded.
+/// The reason why an equation is not an oscillator, or not one that can be expanded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OscillatorError {
@@ -34,7 +34,7 @@ pub enum OscillatorError {
     /// There is a force at rest, and nowhere near a stable equilibrium.
     #[error("the force at rest is `{0}`, not zero, and no stable equilibrium was found")]
     NoEquilibrium(String),
-    /// The force is infinite at zero, and pulls there without a motion that would pass.
+    /// The force is infinite at zero and attracts so strongly that no motion passes.
     #[error(
         "the force `{force}` pulls towards {coordinate} = 0 {}",
         if *uneven {
@@ -72,7 +72,7 @@ pub enum OscillatorError {
     Unstable {
         /// The coordinate.
         coordinate: Symbol,
-        /// Those that are stable.
+        /// The stable equilibria.
         stable: Equilibria,
         /// Whether motions run through it, over the wells on both sides.
         passed: bool,
@@ -91,17 +91,18 @@ pub enum OscillatorError {
         term: String,
         /// The force to write instead of the root, for a force that pulls back on both sides.
         odd: String,
-        /// For one that is zero where the root has no value, where another term pulls back there.
+        /// The force to write if it shall be zero where the root has no value; `None` unless
+        /// another term pulls back there.
         zero: Option<String>,
     },
-    /// What was asked for is no stable equilibrium.
+    /// The requested position is not a stable equilibrium.
     #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
     NoSuchEquilibrium {
         /// The coordinate.
         coordinate: Symbol,
-        /// What was asked for.
+        /// The requested position.
         asked: Expr,
-        /// Those that are stable.
+        /// The stable equilibria.
         stable: Equilibria,
     },
     /// No linear restoring force.
@@ -134,13 +135,13 @@ pub enum OscillatorError {
 /// The stable equilibria of a force, as many as a message names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibria {
-    /// Where they are; those without a short closed form by their numbers.
+    /// Their positions; those without a short closed form as numbers.
     pub positions: Vec<Position>,
-    /// Where there are others.
+    /// The location of further ones; `None` if there are none.
     pub others: Option<FurtherEquilibria>,
 }
 
-/// Where there are more equilibria than a message names.
+/// The location of equilibria beyond those that a message names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FurtherEquilibria {
     /// Again after each period of the force.
@@ -181,7 +182,7 @@ impl From<ParseError> for OscillatorError {
 }
 
 impl OscillatorError {
-    /// The term that it names, where it names one of the equation.
+    /// The term of the equation that the message names; `None` if it names none.
     pub fn term(&self) -> Option<&str> {
         match self {
             Self::NotSmall { term, .. }
@@ -192,7 +193,7 @@ impl OscillatorError {
         }
     }
 
-    /// What to try, where something is worth trying.
+    /// Advice on what to try; `None` if there is none.
     pub fn help(&self) -> Option<Advice> {
         let either = |words: &str, [first, second]: [Method; 2]| {
             let first = Advice::words(words).choose(Setting::Method(first));
@@ -229,6 +230,9 @@ impl OscillatorError {
                     _ => either("take the force as it is: `", by_energy),
                 }
             }
+            Self::NotPolynomial(_) => Advice::words("its first order is averaged as it is: `")
+                .choose(Setting::Method(Method::Averaging))
+                .then("`"),
             Self::NoRestoringForce(force) if force.is_zero() => either(
                 "methods that need no linear part: `",
                 [Method::ParameterExpansion, Method::HarmonicBalance],

@@ -163,8 +163,8 @@ fn merged(terms: Vec<Term>) -> Vec<Term> {
     merged
 }
 
-/// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where no way
-/// to write it out says so, tried with numbers for its letters.
+/// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where
+/// expanding it does not show that, numbers for its parameters are tried.
 fn vanishes_identically(constant: &Expr) -> bool {
     if constant.is_zero() || constant.expand().is_ok_and(|constant| constant.is_zero()) {
         return true;
@@ -176,7 +176,7 @@ fn vanishes_identically(constant: &Expr) -> bool {
             places.map(|(name, k)| (*name, scale / f64::from(k).sqrt())).collect();
         constant.evaluate_rounded(&|name| Some((*numbers.get(&name)?, 0.0)))
     });
-    // One try may be outside of where it has a value.
+    // Some of the values tried may lie outside its domain.
     let known = tried.into_iter().flatten().filter(|(value, _)| value.is_finite());
     let known: Vec<bool> = known.map(|(value, error)| value.abs() <= error).collect();
     !symbols.is_empty() && known.len() > 1 && known.iter().all(|zero| *zero)
@@ -248,7 +248,7 @@ impl PerturbedForce {
         }
     }
 
-    /// The parameters of a linear force that is a single product.
+    /// The parameters of a linear coefficient that is a single product.
     fn letters_under_root(&self) -> Vec<Symbol> {
         let product = self.linear.single_term();
         product.map_or_else(Vec::new, |(monomial, _)| {
@@ -272,8 +272,8 @@ impl PerturbedForce {
         written.unwrap_or(coefficient)
     }
 
-    /// Without a letter of the linear force, whose power says that of the force; `None` where
-    /// another of its letters is there more often than before.
+    /// The coefficient with `letter` eliminated in favour of the linear frequency; `None` if
+    /// another parameter of the linear coefficient would have a higher power than before.
     fn with_frequency(
         &self,
         coefficient: &Polynomial,
@@ -309,7 +309,8 @@ impl PerturbedForce {
     /// Whether the linear force is known not to restore: nothing, a negative number, or a negative
     /// multiple of one product of parameters, which are taken to be positive.
     fn lacks_restoring_force(&self) -> bool {
-        /// What a sum of constants has left of its terms where it is zero but for rounding.
+        /// The size, relative to its terms, below which a sum of constants is zero but for
+        /// rounding.
         const ROUNDING: f64 = 1e-14;
         let named = |symbol: &Symbol| self.definitions.iter().any(|entry| entry.symbol == *symbol);
         let parameters: Vec<Symbol> =

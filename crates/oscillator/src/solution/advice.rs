@@ -31,7 +31,7 @@ pub enum Setting {
     Amplitude(AmplitudeConvention),
     /// The small parameter.
     Small(Symbol),
-    /// The degree of the Taylor polynomial in place of the force, whichever.
+    /// A Taylor polynomial in place of the force, of any degree.
     Taylor,
     /// The equilibrium about which the motion swings.
     About {

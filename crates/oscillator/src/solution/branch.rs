@@ -76,8 +76,8 @@ pub(super) fn follow(terms: &[BranchTerm], amplitude: f64, precision: f64) -> Op
 }
 
 /// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
-/// pass. In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one
-/// term.
+/// pass. In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` the second coefficient is minus the
+/// omega^2 of a motion of one term.
 fn rest_is_unstable(terms: &[BranchTerm]) -> bool {
     let highest = terms.iter().map(|term| term.frequency).max().unwrap_or(0);
     let lowest = |frequency: i32| {
@@ -95,7 +95,7 @@ fn rest_is_unstable(terms: &[BranchTerm]) -> bool {
     signs.is_some_and(|(first, second)| first * second > 0.0)
 }
 
-/// As [`follow`], from small amplitudes.
+/// Does the work of [`follow`] if the branch starts at small amplitudes.
 fn follow_up(terms: &[BranchTerm], amplitude: f64, precision: f64) -> Option<Branch> {
     const LONGEST: f64 = 0.5;
     const SHORTEST: f64 = 1e-11;
@@ -143,7 +143,7 @@ struct FrequencyRelation<'a> {
 }
 
 impl FrequencyRelation<'_> {
-    /// Every term at an amplitude and `z = u 2^k`, as what stands before `u^q`, all in one unit in
+    /// The coefficient of `u^q` in every term at an amplitude, with `z = u 2^k`, all in one unit in
     /// which the largest is of order one.
     fn values(&self, amplitude: Scaled, k: i64) -> Vec<f64> {
         let value = |term: &BranchTerm| {
@@ -283,20 +283,20 @@ impl FrequencyRelation<'_> {
         Some(-above / below).filter(|slope| slope.is_finite())
     }
 
-    /// The branch through a root, straight on in the logarithms.
+    /// Extrapolates the branch from a root along its tangent in `ln A` and `ln z`.
     fn extrapolated(&self, amplitude: Scaled, z: Scaled, step: f64) -> Option<Scaled> {
         let slope = self.tangent(amplitude, z)?;
         Some(z.product(Scaled::new((slope * step).exp())))
     }
 
-    /// The root nearest to a prediction, where the way to it is short beside the distance to any
-    /// other root.
+    /// The root nearest to a prediction, if it is much closer to the prediction than to any other
+    /// root; `None` otherwise.
     fn corrected(&self, amplitude: Scaled, predicted: Scaled) -> Option<Scaled> {
         let root = self.newton(amplitude, predicted)?;
         self.is_near(amplitude, predicted, root).then_some(root)
     }
 
-    /// Whether a place is near to a root, beside the distance from there to any other root.
+    /// Whether `place` is near `root`, compared with the distance from the root to any other.
     fn is_near(&self, amplitude: Scaled, place: Scaled, root: Scaled) -> bool {
         const SHARE: f64 = 0.2;
         let mut polynomial = self.polynomial(&self.values(amplitude, root.exponent));

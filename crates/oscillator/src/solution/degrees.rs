@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// As many as the approximant has polynomials.
+/// The degrees of an approximant, one for each of its polynomials.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -30,7 +30,7 @@ impl Degrees {
         }
     }
 
-    /// All of them.
+    /// All degrees, in their order.
     pub fn list(self) -> Vec<u32> {
         match self {
             Self::Quotient(numerator, denominator) => vec![numerator, denominator],
@@ -43,7 +43,7 @@ impl Degrees {
         self.list().into_iter().fold(0, u32::saturating_add)
     }
 
-    /// As options have them: `2,1`.
+    /// The degrees as they are typed in an option: `2,1`.
     pub fn separated(self) -> String {
         self.joined(",")
     }

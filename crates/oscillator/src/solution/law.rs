@@ -71,7 +71,7 @@ impl Law {
         Self::Series { squared: value, frequency: None }
     }
 
-    /// omega, where the law gives it as a polynomial.
+    /// omega, if the law gives it as a polynomial; `None` otherwise.
     pub fn frequency(&self) -> Option<&Polynomial> {
         match self {
             Self::Series { frequency, .. } => frequency.as_ref(),
@@ -80,7 +80,7 @@ impl Law {
         }
     }
 
-    /// omega^2, likewise.
+    /// omega^2, if the law gives it as a polynomial; `None` otherwise.
     pub fn frequency_squared(&self) -> Option<&Polynomial> {
         match self {
             Self::Series { squared, .. } => Some(squared),
@@ -208,7 +208,7 @@ pub enum DisplayedLaw<'a> {
     Closed(&'a ClosedForm),
     /// Integrals.
     Quadrature(&'a [DerivationLine]),
-    /// Equations for numbers.
+    /// Equations that are solved numerically.
     System(&'a AlgebraicSystem),
 }
 
@@ -249,7 +249,7 @@ impl Law {
 }
 
 impl DisplayedLaw<'_> {
-    /// The symbols of a formula, those of its integrals included; of a system of equations none.
+    /// The symbols of a formula, those of its integrals included; empty for a system of equations.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
             Self::Squared(law) | Self::Frequency(law) | Self::Relation(law) => {

@@ -42,8 +42,8 @@ pub struct Modulation {
     pub release: Option<Release>,
     /// The motion from a start in closed form, where there is one.
     pub transient: Option<Transient>,
-    /// The amplitudes other than zero that stay, smallest first, each with its stability, where
-    /// they can be written down.
+    /// The steady amplitudes other than zero, smallest first, each with its stability; empty if
+    /// they have no closed form.
     pub steady: Vec<LeadingCycle>,
     /// The motion in the amplitude, if the displacement of the solution is that on a limit cycle.
     pub motion: Option<FourierSeries<Polynomials>>,
@@ -93,7 +93,7 @@ impl Release {
         Self { amplitude: Expr::from(AmplitudeConvention::Initial.symbol()), phase: Expr::zero() }
     }
 
-    /// Whether it is that.
+    /// Whether the initial values are those [to leading order](Self::at_start).
     pub fn is_at_start(&self) -> bool {
         *self == Self::at_start()
     }
@@ -109,15 +109,15 @@ impl Modulation {
         }
     }
 
-    /// Whether nothing drains or feeds energy at this order: the amplitude stays as it is.
+    /// Whether no term dissipates or feeds energy at this order, so that the amplitude is constant.
     pub fn is_conservative(&self) -> bool {
         self.amplitude_rate.is_zero()
     }
 }
 
 impl Solution {
-    /// The motion from a start, where this is that on the limit cycle on which it may end; `None`
-    /// for any other.
+    /// The motion on its way to the limit cycle, if this solution describes the motion on that
+    /// cycle; `None` otherwise.
     pub fn off_cycle(&self) -> Option<Self> {
         self.limit_cycle.as_ref()?;
         let modulation = self.modulation.as_ref()?;
@@ -132,8 +132,8 @@ impl Solution {
         })
     }
 
-    /// The periodic motion at an amplitude that stays: the smallest that attracts for small
-    /// positive parameters, else the smallest; `None` if none is known.
+    /// The periodic motion at a steady amplitude: the smallest that attracts for small positive
+    /// parameters, else the smallest; `None` if none is known.
     pub fn on_cycle(&self) -> Option<Self> {
         let modulation =
             self.modulation.as_ref().filter(|modulation| modulation.resonance.is_none())?;

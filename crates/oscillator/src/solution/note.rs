@@ -20,8 +20,8 @@ pub enum Note {
     FirstStep(ExactFirstStep),
     /// A one-term motion whose equation is met at one instant.
     Collocated(CollocationInstant),
-    /// A letter that the answer writes otherwise than usual, since the equation has the usual one
-    /// for something of its own.
+    /// A symbol that the answer writes with another letter than usual, because the equation uses
+    /// the usual one.
     OtherLetter {
         /// The usual letter: `A`, `a` or `omega`.
         usual: Symbol,
@@ -49,7 +49,7 @@ pub enum Note {
         /// The small parameter.
         small: Symbol,
     },
-    /// The parameter that controls the convergence is open.
+    /// The convergence-control parameter has no value yet.
     ConvergenceControl(Symbol),
     /// The force entered as a polynomial.
     TaylorPolynomial {
@@ -111,7 +111,7 @@ pub enum Note {
     MotionOfSeries,
     /// The motion is written by elliptic functions.
     EllipticFunctions,
-    /// The law is that of the true motion.
+    /// The law is exact.
     Exact(ExactBy),
     /// Whether the limit cycle attracts.
     Stability(LeadingCycle),
@@ -161,7 +161,7 @@ pub enum Note {
         /// Whether it is the pendulum, whose action is known.
         pendulum: bool,
     },
-    /// Dry friction on a motion in such a force.
+    /// Dry friction on a motion in a force that is not linear.
     HalfSwings {
         /// The potential energy at a turning point less that at the next.
         lost: Expr,
@@ -174,7 +174,7 @@ pub enum Note {
         /// The last harmonic that is written.
         harmonic: usize,
     },
-    /// A motion that nothing drains.
+    /// A motion whose amplitude grows, because no term dissipates energy.
     Grows,
     /// The motion relative to a base that moves.
     RelativeCoordinate {
@@ -208,23 +208,23 @@ pub enum Note {
         /// The reason why it does not answer.
         reason: String,
     },
-    /// An expansion in the amplitude where letters might have been small, for what quadratic terms
-    /// do.
+    /// The expansion runs in the amplitude although a parameter might have been small, so that it
+    /// contains the effect of quadratic terms.
     QuadraticTerms,
-    /// A first order without what quadratic terms do.
+    /// A first order, which does not contain the effect of quadratic terms.
     QuadraticTermsLeftOut,
-    /// A driven motion to an order at which no nonlinear term has come yet.
+    /// A driven motion to an order too low for any nonlinear term.
     NonlinearTermsLeftOut,
     /// The expansion was stopped before the order asked for.
     Stopped {
         /// The order asked for.
         asked: u32,
     },
-    /// A meaning that is taken to be positive.
+    /// A definition whose value is taken to be positive.
     Positive(Definition),
     /// An expansion of a force with corners.
     Corners,
-    /// The sides of corners at rest that letters decide.
+    /// The sides of corners at rest that depend on the sign of a parameter.
     CornerSides(Vec<CornerSide>),
     /// A force that is infinite at rest, as `1/x`, with a potential that is minus infinity there.
     EndlessPotential {
@@ -242,7 +242,7 @@ pub enum Note {
     CrossWell(CrossWell),
     /// The coefficients are rounded to fifteen digits.
     RoundedCoefficients,
-    /// As a document states it.
+    /// A sentence taken from a document.
     Stated(String),
 }
 
@@ -374,14 +374,14 @@ pub enum ExactBy {
     EnergyQuadrature,
     /// Quadrature, for want of a closed form.
     Quadrature,
-    /// As the motion of a linear equation.
+    /// Solution of a linear equation.
     Linear,
 }
 
-/// A corner of a force whose side at rest the sign of a letter decides.
+/// A corner of a force whose side at rest depends on the sign of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerSide {
-    /// The letter or expression that is taken to be positive.
+    /// The parameter or expression that is taken to be positive.
     pub positive: Expr,
     /// The function with the corner: `max(0, d + x)`.
     pub corner: Expr,
@@ -407,24 +407,24 @@ pub struct CrossWell {
     pub coordinate: Symbol,
     /// The unstable equilibrium.
     pub equilibrium: Expr,
-    /// The amplitude that they exceed; `None` if it has no closed form in the letters.
+    /// The amplitude that they exceed; `None` if it has no closed form in the parameters.
     pub from: Option<Position>,
     /// The end of the range of amplitudes.
     pub to: CrossWellEnd,
     /// Whether there are others farther out, over hilltops between other wells.
     pub others: bool,
-    /// The letters that are taken to be positive.
+    /// The parameters that are taken to be positive.
     pub positive: Vec<Symbol>,
 }
 
 /// The end of the range of motions over several wells.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CrossWellEnd {
-    /// They do not end.
+    /// The range does not end.
     Never,
     /// The end at this amplitude.
     At(Position),
-    /// Somewhere, as values of letters decide.
+    /// The range ends at an amplitude that depends on the values of parameters.
     Somewhere,
 }
 
@@ -963,7 +963,7 @@ impl fmt::Display for FollowedRoot {
 }
 
 impl Position {
-    /// Whether a minus stands before it.
+    /// Whether it is printed with a minus sign.
     pub fn is_negative(&self) -> bool {
         match self {
             Self::Exact(position) | Self::WhereReal(position) => position.has_leading_minus(),

@@ -107,8 +107,8 @@ impl PlanePolynomial {
     }
 }
 
-/// A polynomial in the amplitude, the constant first, and the same with the sizes of all that was
-/// added up.
+/// A polynomial in the amplitude, the constant first, and the polynomial of the sums of absolute
+/// values from which its coefficients were added up.
 #[derive(Clone, Default)]
 struct AmplitudePolynomial {
     coefficients: Vec<f64>,
@@ -125,7 +125,7 @@ impl AmplitudePolynomial {
         self.sizes[power] += value.abs();
     }
 
-    /// Without what rounding leaves of terms that cancel.
+    /// Sets coefficients to zero that are only the rounding error of terms that cancel.
     fn without_rounding_noise(mut self) -> Self {
         const ROUNDING: f64 = 1e-13;
         for (value, size) in self.coefficients.iter_mut().zip(&self.sizes) {
@@ -215,8 +215,8 @@ impl PlaneField {
         both
     }
 
-    /// Every place other than the origin where both rates vanish; one of those that a symmetry of
-    /// the plane makes of it.
+    /// Every place other than the origin where both rates vanish; of those that a rotational
+    /// symmetry maps onto one another only one.
     pub(super) fn places_of_rest(&self) -> Vec<[f64; 2]> {
         let mut found = match self.on_one_wave() {
             Some(found) => found,
@@ -268,7 +268,7 @@ impl PlaneField {
     }
 
     /// The places by one polynomial in the amplitude; `None` if the rates have more than one wave
-    /// of the phase, or one that tells nothing of it.
+    /// of the phase, or one that does not determine the phase.
     fn on_one_wave(&self) -> Option<Vec<[f64; 2]>> {
         let mut harmonics = self.harmonics();
         harmonics.retain(|m, rates| {
@@ -309,7 +309,7 @@ impl PlaneField {
         Some(places)
     }
 
-    /// Keeps a place that is near a radius and none of the known ones.
+    /// Adds a place to `known` if it is near this radius and not known yet.
     fn keep(&self, place: Option<[f64; 2]>, radius: f64, known: &mut Vec<[f64; 2]>) {
         const NEAR: f64 = 1e-4;
         const SAME: f64 = 1e-8;
@@ -329,10 +329,12 @@ impl PlaneField {
         }
     }
 
-    /// Newton's steps from a place to one where both rates vanish.
+    /// Newton's iteration from `start` to a place where both rates vanish; `None` if it does not
+    /// converge.
     fn settled_from(&self, start: [f64; 2]) -> Option<[f64; 2]> {
         const STEPS: usize = 40;
-        /// A step that rounding leaves, also where two steady motions meet.
+        /// Largest step, relative to the place, that may be due to rounding, even where two steady
+        /// motions meet.
         const SETTLED: f64 = 1e-6;
         let mut place = start;
         let (mut radius, mut moved) = (start[0].hypot(start[1]), f64::INFINITY);
@@ -353,7 +355,8 @@ impl PlaneField {
     /// vanish nowhere on it.
     fn outer_radius(&self) -> f64 {
         const ANGLES: usize = 72;
-        /// The least part of their sizes that counts where they almost vanish.
+        /// Least value of the terms of the highest degree, as a fraction of the sum of their sizes,
+        /// that is used where they almost vanish.
         const LEAST: f64 = 1e-2;
         let degree = self.rates.iter().map(PlanePolynomial::degree).max().unwrap_or(0);
         let size = |wanted: &dyn Fn(i32) -> bool, radius: f64| -> f64 {
@@ -386,10 +389,11 @@ impl PlaneField {
 
     /// All places by dividing squares of the plane.
     fn in_squares(&self) -> Vec<[f64; 2]> {
-        /// Squares that are looked at, and halvings of one.
+        /// Largest numbers of squares examined, and of halvings of one.
         const MOST: usize = 40_000;
         const DEEPEST: u32 = 40;
-        /// Parts of the largest square within which a place is the origin, up to rounding.
+        /// Distance from the origin, as a fraction of the largest square, below which a place is
+        /// the origin up to rounding.
         const ORIGIN: f64 = 1e-10;
         let mut places: Vec<[f64; 2]> = vec![];
         let half = self.outer_radius();

@@ -87,7 +87,7 @@ impl PolarRates {
         })
     }
 
-    /// Three phases tell a wave.
+    /// The values at three phases determine mean, cosine and sine.
     fn waves(&self, amplitude: f64) -> WaveCoefficients {
         let wave = |of: &dyn Fn(f64) -> f64| {
             let [ahead, across, behind] = [0.0, 0.5, 1.0].map(|part| of(part * PI));
@@ -107,7 +107,7 @@ impl PolarRates {
         (rest - drive) / (rest + drive)
     }
 
-    /// The amplitudes, looked for from far below to far above any that is meant.
+    /// The steady amplitudes, searched over a range wider than any intended amplitude.
     fn amplitudes(&self) -> Vec<f64> {
         const DECADES: f64 = 16.0;
         const PER_DECADE: usize = 500;
@@ -123,7 +123,7 @@ impl PolarRates {
             if before.1 * now.1 < 0.0 {
                 between(before.0, now.0);
             } else if first.1 * before.1 > 0.0 && before.1.abs() < first.1.abs().min(now.1.abs()) {
-                // Two that are nearer to each other than these steps.
+                // Two zeros may lie closer together than the steps of the search.
                 let sign = before.1.signum();
                 let (lowest, least) = find_minimum(|a| sign * self.excess(a), first.0, now.0);
                 if least < 0.0 {
@@ -147,8 +147,8 @@ impl PolarRates {
         known.then_some(SteadyState { amplitude, phase: wrapped(phase), eigenvalues })
     }
 
-    /// The motion without a part of its own, where no force drives it, or dry friction drains more
-    /// than a force feeds: about it `B' = lambda B + mu B*`.
+    /// The state of zero amplitude, where no force drives the motion or dry friction dissipates
+    /// more than a force feeds: about it `B' = lambda B + mu B*`.
     fn rest(&self) -> Option<SteadyState> {
         /// An amplitude near zero at which rounding does not count yet.
         const NEAR: f64 = 1e-7;
@@ -165,7 +165,7 @@ impl PolarRates {
             true => [(rate + under.sqrt(), 0.0), (rate - under.sqrt(), 0.0)],
             false => [(rate, (-under).sqrt()), (rate, -(-under).sqrt())],
         };
-        // A drive or damping that acts at rest leaves no rest.
+        // With a drive or a damping that acts at rest this is no steady state.
         (rate.is_finite() && rate < 1e3).then_some(SteadyState {
             amplitude: 0.0,
             phase: 0.0,

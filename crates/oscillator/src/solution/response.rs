@@ -121,7 +121,7 @@ pub struct Plane {
 /// A steady motion at numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteadyState {
-    /// The amplitude; zero for the motion without a part of its own.
+    /// The amplitude; zero if the motion has no resonant part.
     pub amplitude: f64,
     /// The phase of the slow equations, from -pi to pi.
     pub phase: f64,
@@ -213,7 +213,7 @@ impl Solution {
         if field.rates_at([0.0, 0.0]).iter().all(|rate| rate.abs() < 1e-300) {
             states.push(state([0.0, 0.0]));
         }
-        // Of one amplitude up to rounding they keep the order of their phases.
+        // States whose amplitudes agree up to rounding keep the order of their phases.
         let size = |state: &SteadyState| (1e9 * state.amplitude.ln()).round();
         states.sort_by(|a, b| size(b).total_cmp(&size(a)));
         Some(states)

@@ -8,8 +8,8 @@
 //! The series is of use as long as each order is much smaller than the one before. Where the last
 //! one is more than half of that, a steady motion balances what was kept against what was left out,
 //! and says nothing of the equation. The degrees nought and one are there at every amplitude, such
-//! as a shift of the linear frequency, and do not count. That no true motion is near such a steady
-//! motion is for the judge to find.
+//! as a shift of the linear frequency, and do not count. Whether a true motion is near such a
+//! steady motion is for verification to find out.
 
 use super::Solution;
 use super::plane::PlanePolynomial;

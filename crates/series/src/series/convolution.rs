@@ -1,9 +1,9 @@
 //! Products of series in a small parameter, order by order, none computed twice.
 //!
 //! With `u = u_0 + delta u_1 + ...` and `v` likewise, order `n` of the product is
-//! `sum_i u_i v_(n-i)`. A [`Convolutions`] holds the products an equation asks for (`x^2`, `x^3`,
-//! `x x'^2`, ...) as a graph on its leaves and computes one order of each when that order of the
-//! leaves is known, only as far as it is needed.
+//! `sum_i u_i v_(n-i)`. A [`Convolutions`] holds the products that an equation needs (`x^2`, `x^3`,
+//! `x x'^2`, ...) as a graph on its leaves. It computes one order of each product when that order
+//! of the leaves is known, and only as far as it is needed.
 
 use std::collections::HashMap;
 
@@ -16,11 +16,11 @@ pub struct SeriesNode(usize);
 
 #[derive(Debug)]
 struct Orders<R: Ring> {
-    /// `None` for a leaf.
+    /// The two factors; `None` for a leaf.
     factors: Option<(SeriesNode, SeriesNode)>,
     /// The orders known so far.
     known: Vec<FourierSeries<R>>,
-    /// The highest order anyone asked for.
+    /// The highest order that was required; `None` if none was.
     needed: Option<usize>,
 }
 
@@ -33,7 +33,7 @@ pub struct Convolutions<R: Ring> {
 }
 
 impl<R: Ring> Convolutions<R> {
-    /// A graph without series; those to come are over `ring`.
+    /// A graph without series; all series added later are over `ring`.
     pub fn new(ring: R) -> Self {
         Self { ring, nodes: vec![], products: HashMap::new() }
     }
@@ -65,7 +65,7 @@ impl<R: Ring> Convolutions<R> {
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square))
     }
 
-    /// Asks for `node` up to `order`, and with it for its factors.
+    /// Requires `node` up to `order`, and with it its factors.
     pub fn require(&mut self, node: SeriesNode, order: usize) {
         let entry = &mut self.nodes[node.0];
         if entry.needed.is_some_and(|needed| needed >= order) {
@@ -83,7 +83,7 @@ impl<R: Ring> Convolutions<R> {
         self.nodes[leaf.0].known.push(series);
     }
 
-    /// Order `order` of a series, where it is known.
+    /// Order `order` of a series; `None` if it is not known.
     pub fn order(&self, node: SeriesNode, order: usize) -> Option<&FourierSeries<R>> {
         self.nodes[node.0].known.get(order)
     }
@@ -123,7 +123,7 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero
-    /// for products that were not asked for.
+    /// for products that were not required.
     pub fn variations(
         &self,
         of_leaves: &HashMap<SeriesNode, FourierSeries<R>>,
@@ -151,7 +151,7 @@ impl<R: Ring> Convolutions<R> {
         variations
     }
 
-    /// Adds `factor` times the variation of each series to its order `order`, where that order is
+    /// Adds `factor` times the variation of each series to its order `order`, if that order is
     /// already known.
     pub fn correct(
         &mut self,

@@ -1,16 +1,16 @@
 //! Short Fourier series: numerators of two machine words over one denominator, without symbols and
-//! without memory for each number.
+//! without heap memory for each number.
 //!
-//! The growth of an operation is bounded before it is done, from the largest numerators of its
-//! arguments. If the bound is more than two words, there is no result, so that none is ever wrong,
-//! and no addition or multiplication has to look for overflow.
+//! The size of a result is bounded beforehand from the largest numerators of the arguments. If the
+//! bound exceeds two words, the operation returns `None`: no result is ever wrong, and no addition
+//! or multiplication has to check for overflow.
 
 use num_integer::Integer as _;
 
 use super::waves::Wave;
 
-/// Numerators and all sums on the way to them stay below this. Half of what fits is room enough for
-/// the rounding of what they can grow to.
+/// Bound of numerators and of all intermediate sums. It is half of what fits, which leaves room for
+/// rounding errors in the estimates of the sizes.
 const BOUND: f64 = (1_u128 << 126) as f64;
 
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
@@ -21,7 +21,7 @@ pub struct ShortSeries {
     harmonics: HarmonicParity,
     denominator: i128,
     numerators: Vec<i128>,
-    /// The largest numerator, without its sign, rounded.
+    /// The largest absolute value of a numerator, rounded.
     largest: f64,
 }
 
@@ -46,7 +46,7 @@ impl HarmonicParity {
         }
     }
 
-    /// The harmonics of a product.
+    /// The harmonics of a product of two series.
     pub fn times(self, other: Self) -> Self {
         match (self, other) {
             (Self::All, _) | (_, Self::All) => Self::All,
@@ -75,7 +75,7 @@ impl ShortSeries {
         })
     }
 
-    /// A number; `harmonics` are all or the even ones.
+    /// A constant series; `harmonics` must be all or the even ones.
     pub fn constant(harmonics: HarmonicParity, numerator: i128, denominator: i128) -> Option<Self> {
         Self::new(Wave::Cosine, harmonics, denominator, vec![numerator])
     }
@@ -105,7 +105,7 @@ impl ShortSeries {
         self.largest == 0.0
     }
 
-    /// The number at a place as a constant series.
+    /// The coefficient at a place as a constant series.
     pub fn coefficient(&self, index: usize) -> Option<Self> {
         let harmonics = match self.harmonics {
             HarmonicParity::All => HarmonicParity::All,
@@ -114,13 +114,13 @@ impl ShortSeries {
         Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
     }
 
-    /// Minus it.
+    /// Returns the negative series.
     pub fn negative(mut self) -> Self {
         self.numerators.iter_mut().for_each(|numerator| *numerator = -*numerator);
         self
     }
 
-    /// With another numerator at a place.
+    /// Returns the series with another numerator at a place; `None` if it is too long.
     pub fn with_numerator(mut self, index: usize, numerator: i128) -> Option<Self> {
         if self.numerators.len() <= index {
             self.numerators.resize(index + 1, 0);
@@ -129,9 +129,9 @@ impl ShortSeries {
         Self::new(self.wave, self.harmonics, self.denominator, self.numerators)
     }
 
-    /// In lowest terms.
+    /// Returns the series in lowest terms.
     pub fn reduced(mut self) -> Self {
-        // Halvings first: mostly nothing else is left to look for.
+        // Powers of two are cancelled first; mostly no other common factor is left.
         let all = self.numerators.iter().fold(0, |all, numerator| all | numerator);
         let halvings = self.denominator.trailing_zeros();
         let mut odd = self.denominator >> halvings;
@@ -174,13 +174,15 @@ impl ShortSeries {
         Self::new(wave, self.harmonics, self.denominator, numerators)
     }
 
-    /// The solution of `u'' + u = self` without first harmonic: every number over `1 - k^2`.
+    /// The solution of `u'' + u = self` without first harmonic: every coefficient divided by
+    /// `1 - k^2`.
     pub fn without_resonance_over_divisors(&self) -> Option<Self> {
         let divisor = |index: usize| {
             let harmonic = i128::from(u32::try_from(self.harmonics.harmonic(index)).ok()?);
             Some(harmonic * harmonic - 1)
         };
-        // The rest of each divisor after its numerator has been reduced by it.
+        // The remaining factor of each divisor after its common factor with the numerator is
+        // cancelled.
         let mut left = Vec::with_capacity(self.numerators.len());
         let mut numerators = Vec::with_capacity(self.numerators.len());
         let mut common = 1_i128;
@@ -191,7 +193,7 @@ impl ShortSeries {
                 left.push(1);
                 continue;
             }
-            // Of the zeroth harmonic it is minus one.
+            // The divisor of the zeroth harmonic is minus one, hence the absolute value.
             let shared = greatest_common_divisor(divisor.abs(), numerator);
             let rest = exact_quotient(divisor.abs(), shared);
             numerators.push(exact_quotient(numerator, shared) * -divisor.signum());
@@ -209,13 +211,13 @@ impl ShortSeries {
     }
 }
 
-/// Whether a positive number is one.
+/// Whether a positive number is a power of two.
 fn is_power_of_two(number: i128) -> bool {
     number & (number - 1) == 0
 }
 
-/// A quotient without remainder by a positive divisor; most are powers of two, and most of the
-/// others words.
+/// Returns a quotient without remainder by a positive divisor. Most divisors are powers of two, and
+/// most of the others fit one word.
 fn exact_quotient(number: i128, divisor: i128) -> i128 {
     if is_power_of_two(divisor) {
         return number >> divisor.trailing_zeros();
@@ -233,7 +235,7 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     }
     match (i64::try_from(left), i64::try_from(right)) {
         (Ok(left), Ok(right)) if right != i64::MIN => left.gcd(&right).into(),
-        // A divisor of one word: one division leaves words.
+        // If the positive number fits one word, a single division leaves two words.
         (Ok(left), _) => match i64::try_from(right % i128::from(left)) {
             Ok(rest) => left.gcd(&rest).into(),
             Err(_) => i128::from(left).gcd(&right),
@@ -253,7 +255,7 @@ fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     exact_quotient(left, greatest_common_divisor(left, right)).checked_mul(right)
 }
 
-/// `sum of (numerator / denominator) series`, all of the same waves.
+/// `sum of (numerator / denominator) series`; all series must have the same kind of waves.
 pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> {
     let first = terms.first()?.2;
     let mut common = 1;
@@ -278,7 +280,8 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
     ShortSeries::new(first.wave, first.harmonics, common, sums)
 }
 
-/// `sum_i left_i right_(n-i)` over two lists of the same length, all products of the same waves.
+/// `sum_i left_i right_(n-i)` over two lists of the same length; all products must have the same
+/// kind of waves.
 pub fn convolution(left: &[ShortSeries], right: &[ShortSeries]) -> Option<ShortSeries> {
     let last = right.len().checked_sub(1)?;
     let terms = left.iter().enumerate().map(|(i, left)| (1, left, &right[last - i]));
@@ -293,7 +296,7 @@ pub fn square(series: &[ShortSeries]) -> Option<ShortSeries> {
     sum_of_products(terms)
 }
 
-/// `sum of weight left right`, all products of the same waves.
+/// `sum of weight left right`; all products must have the same kind of waves.
 fn sum_of_products<'a>(
     terms: impl Iterator<Item = (i128, &'a ShortSeries, &'a ShortSeries)> + Clone,
 ) -> Option<ShortSeries> {
@@ -313,17 +316,18 @@ fn sum_of_products<'a>(
             weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
         let shorter = left.numerators.len().min(right.numerators.len());
         let scaled = (factor as f64).abs() * left.largest;
-        // A sum is met once by sums of harmonics and twice by their differences.
+        // Every harmonic of the result gets at most one term from sums of harmonics and two from
+        // differences per coefficient of the shorter factor.
         bound += scaled * right.largest * (3 * shorter) as f64;
         if bound >= BOUND {
             return None;
         }
-        // The odd harmonics first.
+        // The factor with odd harmonics comes first.
         let (first, second) = match (left.harmonics, right.harmonics) {
             (HarmonicParity::Even, HarmonicParity::Odd) => (right, left),
             _ => (left, right),
         };
-        // If both factors are words, their product is a single instruction.
+        // If both factors fit one word, their product is a single instruction.
         let largest = (factor as f64).abs() * first.largest;
         let words = largest.max(second.largest) < (1_u64 << 62) as f64;
         let sums = &mut sums[..];
@@ -343,7 +347,8 @@ fn sum_of_products<'a>(
     ShortSeries::new(kind.0, kind.1, common.checked_mul(2)?, sums)
 }
 
-/// `2 cos i cos j = cos(i+j) + cos(i-j)` and its likes, at the places of the harmonics.
+/// Adds twice a product by `2 cos i cos j = cos(i+j) + cos(i-j)` and the similar formulas with
+/// sines.
 fn add_doubled_product(
     sums: &mut [i128],
     factor: i128,
@@ -353,7 +358,7 @@ fn add_doubled_product(
     let both_odd = left.harmonics == HarmonicParity::Odd && right.harmonics == HarmonicParity::Odd;
     let apart = usize::from(left.harmonics != right.harmonics);
     let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
-    // Of the sine of a difference, the sign of the difference.
+    // The sine of a difference takes the sign of that difference.
     let (mixed, sine_is_left) = (left.wave != right.wave, left.wave == Wave::Sine);
     let signed = |negative: bool, product: i128| {
         if negative { product.wrapping_neg() } else { product }

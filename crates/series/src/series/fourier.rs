@@ -1,15 +1,15 @@
 //! Fourier series in `theta = omega t`, over any coefficient ring.
 //!
 //! `u(theta) = c_0 + c_1 cos theta + s_1 sin theta + c_2 cos 2 theta + ...`, a finite sum. A series
-//! holds its ring and one denominator for all its coefficients, which stays one where the ring
-//! divides by itself (see [`Ring::FIELD`]).
+//! holds its ring and one denominator for all its coefficients, which stays one if the ring can
+//! divide (see [`Ring::FIELD`]).
 //!
-//! The three operations that perturbation methods live on: the product
-//! `2 cos i cos j = cos(i+j) + cos(i-j)`, the derivative, and the solution of `u'' + u = r`, whose
-//! resonant part `r_1 cos theta + q_1 sin theta` no periodic `u` can balance and which is handed
-//! back to the caller.
+//! Perturbation methods need three operations: the product `2 cos i cos j = cos(i+j) + cos(i-j)`,
+//! the derivative, and the solution of `u'' + u = r`, whose resonant part
+//! `r_1 cos theta + q_1 sin theta` no periodic `u` can balance, so that it is returned to the
+//! caller.
 //!
-//! Two series that meet in an operation are over the same ring: the same prime, the same precision.
+//! The series in one operation must be over the same ring: the same prime, the same precision.
 
 use std::borrow::Cow;
 
@@ -19,13 +19,13 @@ use num_traits::{One, Signed, Zero};
 use crate::exact::ring::{Doubles, NotInvertible, Ring};
 use crate::exact::{Integer, Polynomial, Polynomials, Rational};
 
-/// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation
-/// here ends with.
+/// A finite Fourier series. Every operation reduces its result to lowest terms, so that equal
+/// functions are equal values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierSeries<R: Ring> {
     ring: R,
-    /// Common denominator of all coefficients, positive; one over a field, but for what that cannot
-    /// divide by.
+    /// Common denominator of all coefficients, positive; over a field one, or the product of the
+    /// divisors that have no inverse.
     denominator: Integer,
     /// Numerators of `cos k theta`, `k = 0, 1, ...`.
     cosine: Vec<R::Element>,
@@ -106,7 +106,7 @@ impl<R: Ring> FourierSeries<R> {
         &self.ring
     }
 
-    /// Whether no term is left.
+    /// Whether the series has no terms.
     pub fn is_zero(&self) -> bool {
         self.cosine.is_empty() && self.sine.is_empty()
     }
@@ -121,7 +121,7 @@ impl<R: Ring> FourierSeries<R> {
     /// is left.
     ///
     /// # Errors
-    /// The divisors that remain, as one product.
+    /// [`NotInvertible`] with the product of the divisors that remain.
     pub fn divided(&self) -> Result<(), NotInvertible> {
         match R::FIELD && !self.denominator.is_one() {
             true => self.ring.divide(std::iter::empty(), &self.denominator),
@@ -204,8 +204,7 @@ impl<R: Ring> FourierSeries<R> {
         self.over(&divisor.into())
     }
 
-    /// As [`FourierSeries::divided_by`], for a divisor of any length: the fraction whose numerator
-    /// this is.
+    /// The quotient by a non-zero integer of any length.
     ///
     /// # Panics
     /// If `denominator` is zero.
@@ -220,8 +219,8 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
-    /// The quotient of two constant series, where the divisor is a unit of the ring times an
-    /// integer; `None` otherwise.
+    /// The quotient of two constant series; `None` unless the divisor is a unit of the ring times
+    /// an integer.
     pub fn divided_by_constant(&self, divisor: &Self) -> Option<Self> {
         let (numerator, denominator) = divisor.mean();
         let (unit, integer) = self.ring.inverse(&numerator)?;
@@ -250,8 +249,8 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
-    /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left
-    /// over: `u_k = r_k / (1 - k^2)` for `k != 1`.
+    /// The periodic solution of `u'' + u = self` without first harmonic, `u_k = r_k / (1 - k^2)`
+    /// for `k != 1`, and the remaining resonant part.
     pub fn solve_oscillator(&self) -> (Self, ResonantPart<R>) {
         let resonance = ResonantPart { cosine: self.cosine(1), sine: self.sine(1) };
         let mut solution = self.clone();
@@ -260,7 +259,7 @@ impl<R: Ring> FourierSeries<R> {
                 *resonant = self.ring.zero();
             }
         }
-        // The divisors that the ring cannot take: the denominator becomes a multiple of each.
+        // The divisors by which the ring cannot divide: the denominator becomes a multiple of each.
         let mut left = Vec::new();
         for k in 2..=self.highest_harmonic() {
             let parts = [&mut solution.cosine, &mut solution.sine];
@@ -330,7 +329,7 @@ impl<R: Ring> FourierSeries<R> {
         }
     }
 
-    /// The product with `factor`, which most often is one, as it stands: out of lowest terms.
+    /// The product with `factor`, which most often is one; it is not reduced to lowest terms.
     fn scaled(&self, factor: &Factor) -> Cow<'_, Self> {
         if factor.is_one() {
             return Cow::Borrowed(self);
@@ -351,9 +350,9 @@ impl<R: Ring> FourierSeries<R> {
         }
     }
 
-    /// Lowest terms: trailing zeros dropped and, where the ring cannot divide, the common factor of
-    /// all numerators and the denominator taken out. The only place where a greatest common divisor
-    /// is computed.
+    /// Reduces to lowest terms: drops trailing zeros and, if a denominator is left, cancels the
+    /// common factor of all numerators and the denominator. No greatest common divisor is computed
+    /// anywhere else.
     fn reduce(&mut self) {
         for part in [&mut self.cosine, &mut self.sine] {
             let last = part.iter().rposition(|c| !self.ring.is_certainly_zero(c));
@@ -368,7 +367,7 @@ impl<R: Ring> FourierSeries<R> {
 
 /// The factor that brings one term of a sum to the common denominator of all, times its weight.
 enum Factor {
-    /// The weight alone, where the term stands over the common denominator already.
+    /// The weight itself, for a term that already has the common denominator.
     Small(i64),
     Large(Integer),
 }
@@ -420,13 +419,13 @@ pub fn linear_combination<R: Ring>(
         add_scaled(ring, &mut result.cosine, &series.cosine, &factor);
         add_scaled(ring, &mut result.sine, &series.sine, &factor);
     }
-    // Every term stands over this already: there is nothing to divide.
+    // Every term has been brought to this denominator: there is nothing to divide.
     result.denominator = common;
     result.reduce();
     result
 }
 
-/// `sum of weight * left * right`, over one common denominator: one order of a running convolution.
+/// `sum of weight * left * right`, over one common denominator: one order of a convolution.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -556,7 +555,8 @@ impl FourierSeries<Polynomials> {
 }
 
 impl FourierSeries<Doubles> {
-    /// Every coefficient changed by a function of its harmonic.
+    /// Returns the series with every coefficient changed by a function of its harmonic and its
+    /// value.
     pub fn by_harmonic(&self, change: impl Fn(usize, f64) -> f64) -> Self {
         let all =
             |part: &[f64]| part.iter().enumerate().map(|(k, &value)| change(k, value)).collect();
@@ -569,8 +569,8 @@ impl FourierSeries<Doubles> {
         self.evaluate_at(cosine, sine)
     }
 
-    /// The value where `cos(theta)` and `sin(theta)` are these, without further sines: harmonic by
-    /// harmonic the point turns on.
+    /// The value at the angle with this cosine and sine. No further sines are computed: those of
+    /// the multiples follow by the addition theorems.
     pub fn evaluate_at(&self, cosine: f64, sine: f64) -> f64 {
         let (mut c, mut s, mut sum) = (1.0, 0.0, 0.0);
         for k in 0..self.cosine.len().max(self.sine.len()) {

@@ -4,27 +4,27 @@
 //! sgn(c u) = sgn(c) sgn(u)        u - x - d,   x + d - u,   k*(u - x) - k*d    are one guard
 //! ```
 //!
-//! A contact of two bodies stands in the equations of both, with either sign, and in what a
-//! derivative makes of it: if its occurrences were switched one after the other, rounding could
-//! leave some of them behind.
+//! The contact of two bodies occurs in the equations of both, with opposite signs, and in
+//! derivatives of these: if the occurrences were switched one by one, rounding could leave some of
+//! them on the wrong side.
 
 use std::collections::BTreeMap;
 
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
-/// An argument as a sum of numbers times expressions, so that its multiples are recognized.
+/// An argument, kept as a sum of numbers times expressions so that its multiples are recognized.
 #[derive(Clone, Debug)]
 pub struct Guard {
     terms: BTreeMap<Expr, f64>,
 }
 
 impl Guard {
-    /// Takes an argument apart; a symbol with a value is a number.
+    /// Splits an argument into its terms; a symbol with a value counts as a number.
     pub fn new(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Self {
         let is_number = |expr: &Expr| expr.symbols().iter().all(|name| values.contains_key(name));
         let number = |expr: &Expr| expr.evaluate(values).ok().filter(|value| value.is_finite());
-        // An argument too long to be written out is compared as it stands.
+        // An argument too long to be expanded is compared as it is.
         let written_out = argument.expand().unwrap_or_else(|_| argument.clone());
         let mut terms = BTreeMap::new();
         for term in written_out.terms() {
@@ -43,8 +43,8 @@ impl Guard {
         Self { terms }
     }
 
-    /// The number that this guard is times another; `None` if they are not in proportion, or one of
-    /// them is zero.
+    /// The ratio of this guard to another; `None` if they are not proportional, or one of them is
+    /// zero.
     pub fn ratio_to(&self, other: &Self) -> Option<f64> {
         /// The relative difference that rounding leaves between ratios that are equal.
         const ROUNDING: f64 = 1e-14;
@@ -61,31 +61,31 @@ impl Guard {
     }
 }
 
-/// The guards of several expressions, each once.
+/// The distinct guards of several expressions.
 #[derive(Clone, Debug)]
 pub struct Guards {
     values: BTreeMap<Symbol, f64>,
     known: Vec<Guard>,
 }
 
-/// A guard among others, as an argument meets it.
+/// The guard of an argument, as found in a list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardUse {
-    /// The number of the guard, counted from 0.
+    /// The index of the guard in the list.
     pub index: usize,
-    /// Whether no earlier argument had it: the sign of the guard is that of this argument.
+    /// Whether no earlier argument has this guard, so that its sign is that of this argument.
     pub is_new: bool,
-    /// Whether the argument has the sign of the guard, not the other.
+    /// Whether the argument has the same sign as the guard, and not the opposite one.
     pub is_aligned: bool,
 }
 
 impl Guards {
-    /// A list without guards; `values` are those of the symbols that count as numbers.
+    /// An empty list; `values` are the values of the symbols that count as numbers.
     pub fn new(values: &BTreeMap<Symbol, f64>) -> Self {
         Self { values: values.clone(), known: vec![] }
     }
 
-    /// The guard of an argument.
+    /// Finds the guard of an argument, or adds a new one.
     pub fn find_or_add(&mut self, argument: &Expr) -> GuardUse {
         let guard = Guard::new(argument, &self.values);
         let mut ratios = self.known.iter().enumerate();

@@ -1,5 +1,5 @@
-//! Hermite-Padé approximants: polynomials that make a combination of power series vanish to an
-//! order as high as their number of coefficients allows.
+//! Hermite-Padé approximants: polynomials for which a combination of power series vanishes to the
+//! highest order that their number of coefficients allows.
 //!
 //! References: B. Beckermann, G. Labahn, *A uniform approach for the fast computation of
 //! matrix-type Padé approximants*, SIAM J. Matrix Anal. Appl. 15 (1994) 804-823; G. A. Baker, P.
@@ -10,14 +10,14 @@
 //! Padé: f, -1      quadratic: 1, f, f^2      differential: 1, f, f'
 //! ```
 //!
-//! One more power of `s` at a time: of `m` combinations that vanish to an order, one loses its next
-//! power by a factor `s`, and the others by subtracting a multiple of that one. The one that has
-//! most room below its degrees is taken. What comes out on the way are the approximants to all
-//! lower orders. Cost: `3 m n^2/2` products.
+//! The order is raised by one at a time. Of `m` combinations that vanish to an order, the pivot
+//! loses its next power by a factor `s`, and the others by subtracting a multiple of the pivot,
+//! which is the combination with most room below its degrees. The approximants to all lower orders
+//! arise on the way. Cost: `3 m n^2/2` products.
 
 pub mod by_primes;
 
-/// Numbers that divide: residues modulo a prime, or floats of many digits.
+/// A field of numbers: residues modulo a prime, or floating-point numbers of many digits.
 pub(crate) trait Field {
     /// A number.
     type Element: Clone;
@@ -30,22 +30,22 @@ pub(crate) trait Field {
     fn quotient(&self, numerator: &Self::Element, denominator: &Self::Element) -> Self::Element;
     /// `number -= factor other`.
     fn subtract(&self, number: &mut Self::Element, factor: &Self::Element, other: &Self::Element);
-    /// The binary exponent of the size; `None` for zero. Where sizes mean nothing the same for all
-    /// others.
+    /// The binary exponent of the absolute value; `None` for zero. It is the same for all other
+    /// numbers in a field without absolute values.
     fn exponent(&self, number: &Self::Element) -> Option<i64>;
-    /// Number of binary digits by which a number must be smaller than its terms to be taken for
-    /// zero; `None` for exact numbers.
+    /// Number of binary digits by which a number must be smaller than its terms to count as zero;
+    /// `None` for exact numbers.
     fn noise(&self) -> Option<i64>;
 }
 
-/// One combination of the series.
+/// A linear combination of the series with polynomial factors.
 #[derive(Clone, Debug)]
 pub(crate) struct Combination<E> {
     /// The polynomial factor of each of the series, the lowest power first.
     pub factors: Vec<Vec<E>>,
-    /// The sum, the lowest power first; what has vanished is left out.
+    /// The sum, the lowest power first, without the powers that have vanished.
     remainder: Vec<E>,
-    /// Number of powers of `s` that fit below the degrees.
+    /// Number of further factors `s` that the degrees allow.
     pub room: i64,
 }
 
@@ -57,7 +57,7 @@ pub(crate) struct HermitePade<F: Field> {
 }
 
 impl<F: Field> HermitePade<F> {
-    /// The series, all of the same length, each with the degree of its factor.
+    /// Starts with the series, all of the same length, each with the largest degree of its factor.
     pub fn new(field: F, series: Vec<(Vec<F::Element>, usize)>) -> Self {
         let count = series.len();
         let combination = |(own, (remainder, degree)): (usize, (Vec<F::Element>, usize))| {
@@ -77,13 +77,13 @@ impl<F: Field> HermitePade<F> {
         self.order
     }
 
-    /// The combination with most room.
+    /// Returns the combination with most room below its degrees.
     pub fn best(&self) -> &Combination<F::Element> {
         let best = self.combinations.iter().rev().max_by_key(|combination| combination.room);
         best.expect("a series at least")
     }
 
-    /// One order more; nothing where the series have no further coefficient.
+    /// Makes all combinations vanish to one more order.
     pub fn advance(&mut self) {
         let leading: Vec<Option<i64>> =
             self.combinations.iter().map(|own| self.leading(own)).collect();
@@ -119,7 +119,8 @@ impl<F: Field> HermitePade<F> {
             }
             combination.remainder.remove(0);
         }
-        // The factor s moves the remainder up by one place, and the order has moved with it.
+        // The factor s shifts the remainder up by one power, as the order does: only its last
+        // coefficient is dropped.
         chosen.remainder.pop();
         for factor in chosen.factors.iter_mut().filter(|factor| !factor.is_empty()) {
             factor.insert(0, self.field.zero());

@@ -1,11 +1,11 @@
-//! Series with exact coefficients: Taylor's of a function ([`taylor()`]), [`FourierSeries`] in
-//! `theta = omega t`, and running [`Convolutions`] of powers, order by order; with floating-point
-//! ones by recurrence ([`numeric_taylor`]). What long ones say of the function behind them: its
-//! nearest [singularity].
+//! Series with exact coefficients: the Taylor series of a function ([`taylor()`]),
+//! [`FourierSeries`] in `theta = omega t`, and [`Convolutions`] of powers, order by order; Taylor
+//! series with floating-point coefficients by recurrence ([`numeric_taylor`]); and the nearest
+//! [singularity] of the function behind a long series.
 //!
 //! In come expressions and a point, or series with coefficients in any
-//! [`Ring`](crate::exact::Ring); out go series of the order asked for, or a [`TaylorError`] with
-//! the term that has none there. Nothing here knows a method or an equation of motion.
+//! [`Ring`](crate::exact::Ring); out go series of the given order, or a [`TaylorError`] with the
+//! term that has no series there. Nothing here depends on a method or an equation of motion.
 
 pub mod convolution;
 pub mod fixed_width;

@@ -1,8 +1,9 @@
-//! An expression as a list of recurrences for its Taylor coefficients, each part once.
+//! An expression as a list of recurrences for its Taylor coefficients, in which every part occurs
+//! once.
 //!
 //! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`]
-//! that computes the series of each expression, and of variables whose rates are among them; or, by
-//! [`numeric_taylor`], the series in one variable.
+//! that computes the series of each expression, and of variables whose rates are among the
+//! expressions; or, by [`numeric_taylor`], the series in one variable.
 //!
 //! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13;
 //! E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
@@ -24,18 +25,18 @@ use super::tape::{Operation, Program, Tape};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecurrenceError {
-    /// A name without a value.
+    /// A name is neither a variable nor has a value.
     #[error("`{0}` is neither a variable nor a number")]
     Unknown(Symbol),
-    /// A function of answers, without a recurrence.
+    /// A function that occurs only in answers has no recurrence.
     #[error("`{0}` cannot be part of an equation: it occurs in answers alone")]
     Function(&'static str),
 }
 
-/// A tape in the making.
+/// A builder of a [`Tape`].
 ///
-/// A series is named by its place: the variables come first, in their order; [`add`](Self::add)
-/// says where the others are.
+/// A series is identified by its place, an index: the variables come first, in their order;
+/// [`add`](Self::add) returns the places of the others.
 #[derive(Clone, Debug)]
 pub struct Recurrences {
     program: Program,
@@ -45,13 +46,15 @@ pub struct Recurrences {
     products: HashMap<(usize, usize), usize>,
     slopes: HashMap<usize, usize>,
     outputs: Vec<usize>,
-    /// Sine and cosine of a series, or their hyperbolic sisters: who has one has the other.
+    /// The places of sine and cosine of a series, or of the hyperbolic pair, which are computed
+    /// together.
     waves: HashMap<(usize, bool), [usize; 2]>,
     /// The guards of the corners of the tape, in their order.
     guards: Guards,
 }
 
-/// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
+/// The real root of odd degree to an odd power, which keeps the sign of the base; [`even_root`] is
+/// for an even power.
 fn odd_root(base: f64, exponent: f64) -> f64 {
     base.abs().powf(exponent).copysign(base)
 }
@@ -61,8 +64,9 @@ fn even_root(base: f64, exponent: f64) -> f64 {
 }
 
 impl Recurrences {
-    /// Series up to `s^degree` in these variables, each with the order beyond which it is zero, if
-    /// it is: 0 for a parameter, 1 for time. `numbers` has the value of every other symbol.
+    /// Series up to `s^degree` in these variables, each given with the order beyond which its
+    /// series is zero: 0 for a parameter, 1 for time, `None` for any other. `numbers` has the value
+    /// of every other symbol.
     pub fn new(
         variables: &[(Symbol, Option<usize>)],
         numbers: &BTreeMap<Symbol, f64>,
@@ -85,10 +89,10 @@ impl Recurrences {
         }
     }
 
-    /// Adds an expression; answers the place of its series.
+    /// Adds an expression and returns the place of its series.
     ///
     /// # Errors
-    /// A symbol without a value, a function without a recurrence.
+    /// [`RecurrenceError`] for a symbol without a value, or a function without a recurrence.
     pub fn add(&mut self, expression: &Expr) -> Result<usize, RecurrenceError> {
         let place = expression.fold(|expr, children: &[usize]| self.node(expr, children))?;
         self.outputs.push(place);
@@ -114,8 +118,8 @@ impl Recurrences {
         if let Some(place) = self.products.get(&key) {
             return *place;
         }
-        // The shorter series first, and of two long ones the one computed later: its last
-        // coefficient is needed last.
+        // The shorter series comes first; of two long ones the one computed later, whose last
+        // coefficient is then needed last.
         let (short, long) = match self.program.degree(key.0) < self.program.degree(key.1) {
             true => key,
             false => (key.1, key.0),
@@ -139,7 +143,7 @@ impl Recurrences {
     }
 
     fn slope(&mut self, mut of: usize) -> usize {
-        // A number beside it makes no difference.
+        // An added number does not change the slope.
         while let Operation::Sum(terms) = self.program.operation(of) {
             let mut changing = terms.iter().filter(|(_, place)| !self.program.is_number(*place));
             match (changing.next(), changing.next()) {
@@ -202,7 +206,8 @@ impl Recurrences {
         }
     }
 
-    /// Terms that are a number times a series are taken apart: a sum is one operation.
+    /// Adds a sum. A term that is a number times a series is merged into it, so that the sum is a
+    /// single operation.
     fn sum(&mut self, places: &[usize]) -> usize {
         let mut terms = Vec::with_capacity(places.len());
         for place in places {
@@ -211,16 +216,18 @@ impl Recurrences {
                 _ => terms.push((self.constant(1.0), *place)),
             }
         }
-        // The latest result is needed last.
+        // The terms are sorted so that the latest result is needed last.
         terms.sort_by_key(|(_, place)| *place);
         self.emit(Operation::Sum(terms.into()))
     }
 
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], places: &[usize]) -> usize {
-        // A step gates the others: where it is zero they need no value.
+        // Step functions are applied at the end as a choice: where one is zero, the other factors
+        // need no value.
         let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
         let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
-        // Numbers first and by themselves: what changes may be shared with another product.
+        // Numbers are multiplied separately, so that the product of the other factors may be
+        // shared.
         let (numbers, changing): (Vec<usize>, Vec<usize>) =
             open.map(|(_, place)| *place).partition(|place| self.program.is_number(*place));
         let mut of = |places: Vec<usize>| {
@@ -280,7 +287,7 @@ impl Recurrences {
         self.emit(Operation::Power { base, exponent: to_f64(exponent), first })
     }
 
-    /// `y' = u' g`, where `g` is the place that this many operations come behind `y`.
+    /// Adds `y' = u' g`, where `g` is the operation `behind` places after `y`.
     fn integral(&mut self, of: usize, behind: usize, first: fn(f64) -> f64) -> usize {
         let slope = self.slope(of);
         self.emit(Operation::Integral {
@@ -292,7 +299,7 @@ impl Recurrences {
         })
     }
 
-    /// `y' = u'/v`, times a sign.
+    /// Adds `y' = u'/v`, times a sign.
     fn quotient(&mut self, of: usize, over: usize, sign: f64, first: fn(f64) -> f64) -> usize {
         let slope = self.slope(of);
         let place = self.program.size();
@@ -305,7 +312,8 @@ impl Recurrences {
         self.integral(of, 0, f64::exp)
     }
 
-    /// Sine and cosine, each the rate of the other, or their hyperbolic sisters.
+    /// Adds sine and cosine, or the hyperbolic pair, each with the other in its rate; returns both
+    /// places.
     fn waves(&mut self, of: usize, hyperbolic: bool) -> [usize; 2] {
         if let Some(places) = self.waves.get(&(of, hyperbolic)) {
             return *places;
@@ -328,7 +336,7 @@ impl Recurrences {
         places
     }
 
-    /// `y' = u' (1 + sign*y^2)`: tangents.
+    /// Adds `y' = u' (1 + sign*y^2)`, the tangent or the hyperbolic tangent.
     fn tangent(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
         let (one, sign) = (self.constant(1.0), self.constant(sign));
         let tangent = self.integral(of, 2, first);
@@ -344,8 +352,8 @@ impl Recurrences {
         self.weighted(&[(1.0, one), (sign, square)])
     }
 
-    /// `y' = sign*u'/(1 + square*u^2)^(1/2)`: inverse sine and cosine, and the inverse hyperbolic
-    /// sine.
+    /// Adds `y' = sign*u'/(1 + square*u^2)^(1/2)`, the inverse sine and cosine and the inverse
+    /// hyperbolic sine.
     fn inverse_wave(
         &mut self,
         of: usize,
@@ -357,7 +365,7 @@ impl Recurrences {
         self.quotient(of, root, sign, first)
     }
 
-    /// One of two series, by the sign of an argument, whose series is at a place.
+    /// Adds the choice of one of two series by the sign of an argument, whose series is at `place`.
     fn choose(&mut self, argument: &Expr, place: usize, sides: [Option<usize>; 2]) -> usize {
         let guard = self.guards.find_or_add(argument);
         if guard.is_new {
@@ -370,8 +378,8 @@ impl Recurrences {
         self.emit(Operation::Choose { corner: guard.index, positive, negative })
     }
 
-    /// A function with a corner, by its arguments and the places of their series; `None` for any
-    /// other.
+    /// Adds a function with a corner, from its arguments and the places of their series; `None` for
+    /// any other function.
     fn corner(
         &mut self,
         function: Function,
@@ -426,9 +434,9 @@ impl Recurrences {
     }
 }
 
-/// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s`
-/// and no other symbol; `None` if it is not analytic there, contains another symbol, or a
-/// coefficient is out of range.
+/// Returns the coefficients of `s^0` to `s^degree` of an expression with
+/// `coordinate = centre + scale*s` and no other symbol; `None` if it is not analytic there,
+/// contains another symbol, or a coefficient overflows.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -452,7 +460,8 @@ pub fn numeric_taylor(
     if degree > 0 {
         tape.set(0, 1, scale);
     }
-    // The argument of one corner may depend on the side of another.
+    // The expansion is repeated because the argument of one corner may depend on the side of
+    // another.
     for _ in 0..=tape.corners().count() {
         tape.expand(&[]);
         if !tape.take_sides() {

@@ -9,19 +9,20 @@
 //! differential:  P g' + Q g + R = O(s^n)     singular where P = 0, like (s - s_0)^(-Q/P');  g = f, or g = f^(-1/2)
 //! ```
 //!
-//! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for
-//! ever, and the differential approximants take that as it is. All three kinds of approximant are
-//! made of all coefficients, and of fewer and fewer. Zeros that are no singularities of the series,
-//! and there are many, move from one to the next; one that stays is believed, and how far it moves
-//! is the estimate of its error. Which kind converges fastest is seen by that. Where several kinds
-//! have found it they must agree within their errors, or the error is what they differ by.
+//! If `f` is omega^2, `f^(-1/2)` is the period up to a factor. It has a logarithmic singularity
+//! where a motion takes for ever, and the differential approximants represent it exactly. All three
+//! kinds of approximant are made from all coefficients, and from fewer and fewer. They have many
+//! zeros that are not singularities of the series, but these move from one approximant to the next;
+//! a zero that stays is accepted, and its movement gives the estimate of its error, which also
+//! shows the kind that converges fastest. Several kinds that have found a singularity must agree
+//! within their errors, or else the error is their difference.
 //!
-//! A zero of `f` is singular for `f^(-1/2)`, with the power -1/2, -1, -3/2, ..., and not for `f`:
-//! it is left out. What is left must be what the coefficients show, `|c_k| ~ k^(-e-1)/R^k` for a
-//! power `e` on the circle `|s| = R`: one that would make them larger than they are is none, and
-//! one of them at least must make them as large as they are. Coefficients that fall
-//! [faster than the powers of any number](is_entire), or [end](last_power), belong to a function
-//! without a singularity.
+//! A zero of `f` is a singularity of `f^(-1/2)`, with the power -1/2, -1, -3/2, ..., but not of
+//! `f`: it is left out. The others must agree with the growth of the coefficients,
+//! `|c_k| ~ k^(-e-1)/R^k` for a power `e` on the circle `|s| = R`: a singularity that would make
+//! them larger than they are is rejected, and at least one must make them as large as they are.
+//! Coefficients that fall [faster than the powers of any number](is_entire), or [end](last_power),
+//! belong to a function without a singularity.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -36,7 +37,7 @@ use crate::exact::big_float::BigFloat;
 use crate::exact::{Rational, Scaled, to_f64};
 use crate::parallel::par_map;
 
-/// A number that was estimated.
+/// An estimated number with a bound of its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// The estimate, rounded to the digits that its error leaves.
@@ -48,24 +49,24 @@ pub struct Estimate {
 /// A singularity, or a pair of conjugate ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singularity {
-    /// Its distance from zero.
+    /// The distance from zero.
     pub radius: Estimate,
-    /// Its angle in the upper half plane: exactly zero on the positive axis; on the negative one
-    /// pi, with the error zero.
+    /// The angle in the upper half plane, in radians: exactly zero on the positive axis; pi with
+    /// the error zero on the negative one.
     pub angle: Estimate,
     /// Real and imaginary part.
     pub place: [Estimate; 2],
-    /// The power of the distance from it with which `f^(-1/2)` is singular there, the period for
-    /// `f` = omega^2, as far as that could be told: 1/2 for a square root, 0 for a logarithm.
+    /// The power of the distance with which `f^(-1/2)` is singular there (the period if `f` is
+    /// omega^2): 1/2 for a square root, 0 for a logarithm; `None` if it could not be determined.
     pub exponent: Option<Estimate>,
 }
 
-/// The fewest coefficients that say anything.
+/// The least power up to which a series must be known for a singularity to be found.
 pub const FEWEST: usize = 16;
 
-/// The nearest singularity of a series with these coefficients, the lowest power first; `None` if
-/// they show none: too few of them, too irregular, or several singularities that are equally far
-/// away.
+/// Returns the nearest singularity of a series with these coefficients, the lowest power first;
+/// `None` if the coefficients are too few or too irregular, if several singularities are equally
+/// far away, or if there is none.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -96,25 +97,27 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
     singularity(found, &growth, bits)
 }
 
-/// Binary digits of the calculation, and those for each coefficient: approximants lose many.
+/// Least number of binary digits of the calculation, and the number for each coefficient:
+/// approximants lose many digits.
 const BITS_AT_LEAST: usize = 256;
 const BITS_EACH: usize = 6;
 
 /// The growth of the coefficients with the order.
 struct Growth {
-    /// The radius lies about here, times `2^unit`.
+    /// The approximate radius of convergence, in units of `2^unit`.
     radius: f64,
-    /// Uncertainty of that: a factor, as a logarithm.
+    /// Uncertainty of the radius: the logarithm of a factor.
     margin: f64,
-    /// The variable is measured in `2^unit`.
+    /// The binary exponent of the unit of the variable.
     unit: i64,
-    /// The logarithms of the sizes in that unit, by the power; without those that vanish.
+    /// The powers with the logarithms of the absolute values of their coefficients, in that unit;
+    /// without coefficients that vanish.
     sizes: Vec<(usize, f64)>,
 }
 
 impl Growth {
     fn from_coefficients(coefficients: &[Rational]) -> Option<Self> {
-        /// The last coefficients, of which the largest counts.
+        /// Number of the last coefficients, of which the largest counts.
         const LAST: usize = 12;
         let highest = coefficients.len().checked_sub(1)?;
         if highest < FEWEST {
@@ -132,7 +135,8 @@ impl Growth {
         let count = highest as f64;
         Some(Self {
             radius: (root - unit * std::f64::consts::LN_2).exp(),
-            // Coefficients fall like a power of their number beside the power of the radius.
+            // Besides the power of the radius, coefficients have a power of k as a factor, hence
+            // log(k)/k.
             margin: 5.0 * count.ln() / count + 0.05,
             unit: unit as i64,
             sizes,
@@ -143,9 +147,9 @@ impl Growth {
         (size / self.radius).ln().abs() <= self.margin
     }
 
-    /// The power of `k` with which `|c_k| radius^k` grows: of a singularity like `(s - s_0)^e` on
-    /// the circle it is `-e - 1`. By the largest of the last quarter and of the quarter before, for
-    /// those of a pair go up and down.
+    /// Returns the power of `k` with which `|c_k| radius^k` grows: `-e - 1` for a singularity like
+    /// `(s - s_0)^e` on the circle. It compares the largest coefficient of the last three tenths
+    /// with that of the three tenths before, since the coefficients of a conjugate pair oscillate.
     fn power(&self, radius: f64) -> Option<f64> {
         let highest = self.sizes.last()?.0 as f64;
         let largest = |from: f64, to: f64| {
@@ -158,13 +162,13 @@ impl Growth {
     }
 }
 
-/// The logarithm of the size; `None` for zero.
+/// The natural logarithm of the absolute value; `None` for zero.
 fn logarithm(value: &Rational) -> Option<f64> {
     Some(Scaled::of_fraction(value).logarithm()).filter(|logarithm| logarithm.is_finite())
 }
 
-/// The last power of a series that ends, with as many coefficients that vanish behind it as there
-/// are up to it; `None` for all others.
+/// Returns the last power of a polynomial, which is recognized by at least as many vanishing
+/// coefficients behind it as there are up to it; `None` for any other series.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -182,11 +186,11 @@ pub fn last_power(coefficients: &[Rational]) -> Option<usize> {
 
 /// Whether the coefficients fall faster than the powers of any number: the function has no
 /// singularity then, and its series converges everywhere. The slope of `-log |c_k|` is
-/// `log R + p/k` on a circle of convergence; where there is none it grows with `log k`, by as much
-/// over one doubling of k as over the next. What is left when a sixth and a third of the
-/// coefficients are taken away must say so too.
+/// `log R + p/k` on a circle of convergence; for an entire function it grows with `log k`, by as
+/// much over one doubling of k as over the next. The test must also hold without the last sixth and
+/// without the last third of the coefficients.
 pub fn is_entire(coefficients: &[Rational]) -> bool {
-    /// The fewest coefficients that show it.
+    /// The smallest number of coefficients that can show it.
     const FEWEST: usize = 24;
     let count = coefficients.len();
     let mut lengths = [count, count - count / 6, count - count / 3].into_iter();
@@ -194,11 +198,12 @@ pub fn is_entire(coefficients: &[Rational]) -> bool {
 }
 
 fn steepens_evenly(coefficients: &[Rational]) -> bool {
-    /// Least increase of the slope over one doubling of the power: an order of two has 0.35.
+    /// Least increase of the slope over one doubling of the power; an entire function of order two
+    /// has 0.35.
     const STEEPER: f64 = 0.28;
-    /// Largest ratio of that to the doubling before.
+    /// Largest ratio of the increases over two successive doublings.
     const EVENLY: f64 = 2.0;
-    // The largest of each half: those of a pair go up and down.
+    // The largest coefficient of each half counts, since those of a conjugate pair oscillate.
     let slope = |from: usize, to: usize| {
         let middle = usize::midpoint(from, to);
         let largest = |range: std::ops::Range<usize>| {
@@ -225,7 +230,7 @@ fn steepens_evenly(coefficients: &[Rational]) -> bool {
 enum ApproximantKind {
     Quadratic,
     Differential,
-    /// Differential, of `f^(-1/2)`.
+    /// The differential approximant of `f^(-1/2)`.
     OfInverseRoot,
 }
 
@@ -302,7 +307,7 @@ impl Mul for &Complex {
     }
 }
 
-/// Floats of one precision.
+/// The field of floating-point numbers of one precision.
 struct Floats {
     bits: usize,
 }
@@ -334,13 +339,13 @@ impl Field for Floats {
 
 /// The polynomials of an approximant: one that vanishes at a singularity, and one for its exponent.
 struct Approximant {
-    /// D or P.
+    /// The polynomial D or P.
     zero: Vec<BigFloat>,
-    /// Q of a differential one.
+    /// The polynomial Q of a differential approximant; empty for a quadratic one.
     beside: Vec<BigFloat>,
 }
 
-/// The approximants to orders so far below the highest.
+/// Returns the approximants to the orders that lie `below` the highest, each with that difference.
 fn approximants(
     kind: ApproximantKind,
     coefficients: &[BigFloat],
@@ -391,8 +396,7 @@ fn approximants(
     found
 }
 
-/// `f^(-1/2)` over the root of its first coefficient:
-/// `n c_0 g_n = sum_(k=1..n) (k/2 - n) c_k g_(n-k)`.
+/// Returns the coefficients of `(f/c_0)^(-1/2)`: `n c_0 g_n = sum_(k=1..n) (k/2 - n) c_k g_(n-k)`.
 fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
     let bits = coefficients[0].bits();
     let mut root = vec![BigFloat::of_f64(1.0, bits)];
@@ -407,7 +411,7 @@ fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
     root
 }
 
-/// The product, of at most this many coefficients.
+/// The product, cut off after `most` coefficients.
 fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> {
     let Some(length) =
         (left.len() + right.len()).checked_sub(1).filter(|_| !left.is_empty() && !right.is_empty())
@@ -433,7 +437,7 @@ struct PersistentZero {
 }
 
 impl PersistentZero {
-    /// The power of the distance with which f is singular there; `None` if it is not known.
+    /// Returns the power of the distance with which f is singular there; `None` if it is not known.
     fn power_of_function(&self) -> Option<f64> {
         match (self.kind, self.exponent) {
             (ApproximantKind::Quadratic, _) => Some(0.5),
@@ -444,8 +448,8 @@ impl PersistentZero {
         }
     }
 
-    /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes
-    /// for ever, but omega^2 goes through.
+    /// Returns the order of a zero of f, at which `f^(-1/2)` has the power -1/2, -1, ...: the
+    /// period is infinite there, but omega^2 is regular. `None` if the power is another.
     fn order_of_zero(&self) -> Option<f64> {
         let (value, error) =
             self.exponent.filter(|_| self.kind == ApproximantKind::OfInverseRoot)?;
@@ -461,7 +465,7 @@ impl PersistentZero {
                 error > WORST_POWER || self.order_of_zero().is_some()
             }
             (ApproximantKind::OfInverseRoot, None) => true,
-            // The power of the zero itself; what is singular at a zero has another one.
+            // The power is that of the zero itself; a singularity at a zero has another power.
             (ApproximantKind::Differential, Some((value, _))) => {
                 let place = self.place.to_f64();
                 let here =
@@ -473,7 +477,7 @@ impl PersistentZero {
     }
 }
 
-/// Powers of the distance that are known no better say nothing of what a singularity is.
+/// Largest error of a power of the distance that still identifies a singularity.
 const WORST_POWER: f64 = 0.1;
 
 /// A zero of one approximant.
@@ -482,7 +486,7 @@ struct Zero {
     exponent: Option<Complex64>,
 }
 
-/// The zeros that all approximants share, or all but a few.
+/// Returns the zeros that all, or all but a few, of the approximants of one kind share.
 fn followed(
     kind: ApproximantKind,
     coefficients: &[BigFloat],
@@ -498,7 +502,7 @@ fn followed(
     let all = approximants(kind, coefficients, &wanted);
     let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
     let follow = |start: Complex64| -> Option<PersistentZero> {
-        /// Number of approximants one of which may lack the zero.
+        /// Number of approximants of which one may lack the zero.
         const LACKING: usize = 6;
         let mut near = Complex::from_complex64(start, coefficients[0].bits());
         let mut missed = 0;
@@ -526,7 +530,7 @@ fn followed(
                 some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
             };
             let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
-            // A slowly converging sequence is farther away than its last steps.
+            // The error of a slowly converging sequence is larger than its last steps.
             if 8.0 * recent <= before { FAST * recent } else { SLOW * recent }
         };
         let exponent = end.exponent.map(|value| {
@@ -559,17 +563,18 @@ fn followed(
     found.filter(|found| growth.allows(found.place.to_f64().norm())).collect()
 }
 
-/// The factors on the last step of a slow convergence, of which a step is an eighth of the way, and
-/// of a fast one.
+/// Ratio of the error to the last step for slow convergence, in which a step is an eighth of the
+/// way, and for fast convergence.
 const SLOW: f64 = 8.0;
 const FAST: f64 = 4.0;
 
-/// Relative change of a zero between approximants up to which it is the same.
+/// Relative change up to which zeros of two approximants count as the same.
 const MOVES: f64 = 0.05;
 
 impl Approximant {
-    /// The zero to which Newton's iteration leads from a place near to it; `None` if that moves
-    /// away, or if two zeros are next to each other, as they are where no branch point is.
+    /// Returns the zero to which Newton's iteration leads from a place near it; `None` if the
+    /// iteration moves away, or if another zero is close, which is typical of a point that is not a
+    /// branch point.
     fn zero_near(&self, start: &Complex) -> Option<Zero> {
         const ITERATIONS: usize = 60;
         const APART: f64 = 1e-3;
@@ -585,7 +590,7 @@ impl Approximant {
             }
             let step = value.divided_by(&slope);
             let length = step.squared_size().sqrt()?.to_f64();
-            // Rounding keeps the last digits moving.
+            // Rounding keeps changing the last digits: the iteration has converged.
             if length >= last && length < 1e-12 * size {
                 break;
             }
@@ -613,7 +618,7 @@ impl Approximant {
     }
 }
 
-/// A polynomial, its slope and half of its second derivative.
+/// Returns the value, the slope and half of the second derivative of a polynomial.
 fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
     let zero = Complex::from_complex64(Complex64::default(), place.re.bits());
     let mut found = [zero.clone(), zero.clone(), zero];
@@ -626,8 +631,8 @@ fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
     found
 }
 
-/// Zeros of a polynomial about the circle of convergence, in the upper half plane: where Newton's
-/// iteration leads from a lattice.
+/// Returns zeros of a polynomial near the circle of convergence in the upper half plane, by
+/// Newton's iteration from a lattice of starting points.
 fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     const RADII: usize = 15;
     const ANGLES: usize = 25;
@@ -679,9 +684,9 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     found
 }
 
-/// Whether every kind of approximant has found one place, the same within their errors, and the
-/// power there may be that of a square root, which all kinds meet; `seen` are the places and errors
-/// of those of `f^(-1/2)`, whose power may not be known yet.
+/// Whether every kind of approximant has found one place, the same within their errors, at which
+/// the power may be that of a square root, which all kinds can represent; `seen` are the places
+/// found from `f^(-1/2)` with their errors, whose power may not be known yet.
 fn all_agree(found: &[PersistentZero], seen: &[(Complex, f64)]) -> bool {
     let has = |kind: ApproximantKind| found.iter().any(|own| own.kind == kind);
     let is_root = |own: &PersistentZero| match (own.kind, own.exponent) {
@@ -700,22 +705,22 @@ fn all_agree(found: &[PersistentZero], seen: &[(Complex, f64)]) -> bool {
         && found.iter().all(|own| is_root(own) && together(own))
 }
 
-/// The nearest singularity of those that the kinds of approximants have found, with an error that
-/// covers what they differ by.
+/// Returns the nearest of the singularities that the kinds of approximants have found, with an
+/// error that covers their differences.
 fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Option<Singularity> {
-    /// An exponent with more error is not worth saying.
+    /// Largest error of an exponent that is returned.
     const WORST_EXPONENT: f64 = 0.02;
-    /// A place with more error, relatively, is none.
+    /// Largest relative error of a place.
     const WORST: f64 = 0.05;
     /// Number of coefficients that determine a singularity of unknown exponent.
     const MANY: usize = 32;
-    /// Powers of the period below this may be those of a logarithm.
+    /// Powers of the period below this may come from a logarithm.
     const SMALL_POWER: f64 = 0.2;
-    /// The factor on the error there.
+    /// The factor on the error of a singularity with such a power.
     const SLOWEST: f64 = 10.0;
     let size_of = |own: &PersistentZero| own.place.to_f64().norm();
-    // Excess of the growth of the coefficients over that by the singularity, over its uncertainty:
-    // as a power of their number.
+    // Excess of the growth of the coefficients over that due to the singularity, both as powers of
+    // k, divided by its uncertainty.
     let excess = |own: &PersistentZero| {
         let power = own.power_of_function()? + 1.0;
         Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
@@ -729,14 +734,15 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
         .collect();
     let singular =
         |own: &PersistentZero| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
-    // A zero that would make larger coefficients than there are is not a singularity.
+    // A zero that would make the coefficients larger than they are is not a singularity.
     let found: Vec<(PersistentZero, f64)> = found
         .into_iter()
         .filter(singular)
         .filter_map(|own| excess(&own).map(|excess| (own, excess)))
         .filter(|(_, excess)| *excess >= -1.0)
         .collect();
-    // Some of them must be all that the coefficients show. A nearer one may be hidden behind it.
+    // At least one must account for the size of the coefficients; otherwise a nearer singularity
+    // may be hidden.
     if !found.iter().any(|(_, excess)| *excess <= 1.0) {
         return None;
     }
@@ -752,8 +758,8 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
     };
     let exponent = exponent_by(&found, ApproximantKind::OfInverseRoot);
     let power = exponent_by(&found, ApproximantKind::Differential);
-    // A singularity other than a square root is not seen by quadratic approximants, nor a logarithm
-    // of the period by those of omega^2.
+    // Quadratic approximants cannot represent a singularity other than a square root, nor those of
+    // omega^2 a logarithm of the period.
     if [exponent, power]
         .into_iter()
         .flatten()
@@ -774,23 +780,23 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
         if same && distance > best.error + other.error {
             error = error.max(distance);
         }
-        // Two different answers that are about as good are none.
+        // Two different places with errors of a similar size are ambiguous.
         if !same && other.error < 100.0 * best.error.max(1e-6 * size) {
             return None;
         }
     }
-    // Of few coefficients a singularity of no power that could be told may be one of several,
-    // unless all kinds have found that one alone.
+    // With few coefficients a singularity of unknown power may be one of several, unless all kinds
+    // have found only this one.
     let few = growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY);
     if exponent.is_none() && few && !all_agree(&found, &seen) {
         return None;
     }
-    // Powers of a logarithm, which look like a small power, and whatever shows no power at all are
-    // met slowly.
+    // Convergence is slow towards powers of a logarithm, which look like a small power, and towards
+    // singularities without a recognizable power.
     if exponent.is_none_or(|(value, error)| value.abs() > error && value.abs() < SMALL_POWER) {
         error *= SLOWEST;
     }
-    // Rounding is far below, but an approximant that is exact does not move at all.
+    // An exact approximant does not move at all, so the error is at least a bound of rounding.
     error = error.max(size * (-(bits as f64) / 6.0).exp2());
     if error > WORST * size {
         return None;
@@ -808,7 +814,7 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
             estimate(&best.place.re, error),
             estimate(&best.place.im, if real { 0.0 } else { error }),
         ],
-        // In doubles.
+        // The exponent was computed in doubles.
         exponent: exponent.map(|(value, error)| {
             Estimate::rounded(&BigFloat::of_f64(value, 64).to_fraction(), error.max(1e-12))
         }),
@@ -816,15 +822,15 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
 }
 
 impl Singularity {
-    /// Whether it lies on the positive axis, `Greater`, or the negative one, `Less`; `None` for a
-    /// pair.
+    /// Returns `Greater` on the positive axis and `Less` on the negative one; `None` for a
+    /// conjugate pair.
     pub fn sign(&self) -> Option<Ordering> {
         let [real, imaginary] = &self.place;
         imaginary.value.is_zero().then(|| real.value.cmp(&Rational::zero()))
     }
 }
 
-/// The decimals that the error leaves, without zeros at the end.
+/// Writes the decimals that the error leaves, without trailing zeros.
 impl fmt::Display for Estimate {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&plain_decimal(&self.value, MOST_DECIMALS))
@@ -835,8 +841,8 @@ impl fmt::Display for Estimate {
 const MOST_DECIMALS: usize = 400;
 
 impl Estimate {
-    /// Rounded to the last decimal of which the error leaves anything, which adds to the error;
-    /// without an error to twenty digits.
+    /// Rounds a value to the last decimal that its error leaves, and adds the rounding to the
+    /// error; to twenty decimals if the error is zero.
     pub fn rounded(value: &Rational, error: f64) -> Self {
         let digit = match error > 0.0 {
             true => (error.log10().ceil() as i32).max(-(MOST_DECIMALS as i32)),

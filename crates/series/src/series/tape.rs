@@ -1,8 +1,8 @@
 //! Taylor coefficients of many quantities at once: a list of recurrences, computed order by order,
 //! for one motion or for several side by side.
 //!
-//! In: operations in an order in which they can be computed, and the values of the variables.
-//! Out: the coefficients of everything. With `u = u_0 + u_1 s + ...`:
+//! In: operations in an order in which they can be computed, and the values of the variables. Out:
+//! the coefficients of all series. With `u = u_0 + u_1 s + ...`:
 //!
 //! ```text
 //! (u v)_n = sum_k u_k v_(n-k)            p = u^a:   n u_0 p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)
@@ -12,12 +12,12 @@
 //! y' = F:      (n + 1) y_(n+1) = F_n
 //! ```
 //!
-//! An order costs one product sum for each product, quotient and integral: `n` multiplications, or
-//! fewer where an operand is a number or grows like time.
+//! An order costs one sum of products for each product, quotient and integral: `n` multiplications,
+//! or fewer if an operand is a number or a polynomial such as time.
 //!
 //! `L` motions go through the same operations side by side, each with its own numbers. The lanes
-//! never touch each other and no operation is fused or reordered: each gets bit for bit what it
-//! gets alone.
+//! are independent, and no operation is fused or reordered: the result of each is bit for bit the
+//! same as alone.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -30,36 +30,36 @@ use crate::symbol::Symbol;
 /// One instruction. Its operands, and its result, are series, each given by its index in the tape.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
-    /// A variable or a number: nothing to compute.
+    /// A variable or a number, for which nothing is computed.
     Given,
-    /// Some series, each times a number: the places of both.
+    /// A sum of series, each times a number: the places of number and series.
     Sum(Box<[(usize, usize)]>),
-    /// The first is zero beyond this order.
+    /// A product; the first factor is zero beyond this order.
     Multiply(usize, usize, usize),
-    /// The second is zero beyond this order.
+    /// A quotient; the divisor is zero beyond this order.
     Divide(usize, usize, usize),
     /// `s u'`: the coefficients `n u_n`.
     Slope(usize),
-    /// A power that is not a whole number, of what is not zero; its value, which is negative where
-    /// the base may be.
+    /// A power with an exponent that is not whole, of a base that is not zero; `first` computes its
+    /// value, also for a negative base if the root is odd.
     Power { base: usize, exponent: f64, first: fn(f64, f64) -> f64 },
-    /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of
-    /// its slope, which is zero beyond an order, and that of `g`.
+    /// `y' = u' g`, where `first` gives the value of `y` from that of `u`: the places of `u`, of
+    /// its slope, which is zero beyond the order `degree`, and of `g`.
     Integral { of: usize, slope: usize, degree: usize, rate: usize, first: fn(f64) -> f64 },
-    /// `y' = u'/v`, times a sign: the place of `u`, those of the slopes of `u` and of `y` itself,
-    /// and that of `v`.
+    /// `y' = u'/v`, times a sign: the places of `u`, of the slopes of `u` and of `y` itself, and of
+    /// `v`.
     Quotient { of: usize, slope: usize, own: usize, over: usize, sign: f64, first: fn(f64) -> f64 },
-    /// Sine and cosine, or their hyperbolic sisters, in this place and the next: `y' = u' z`,
+    /// Sine and cosine, or the hyperbolic pair, in this place and the next: `y' = u' z`,
     /// `z' = sign u' y`.
     Waves { of: usize, slope: usize, degree: usize, sign: f64, first: [fn(f64) -> f64; 2] },
-    /// The second of the waves in the place before.
+    /// The second series of the [`Operation::Waves`] in the place before.
     SecondWave,
-    /// One of two series, by the side of a corner; zero where there is none.
+    /// One of two series, by the side of a corner; zero if that series is `None`.
     Choose { corner: usize, positive: Option<usize>, negative: Option<usize> },
 }
 
 impl Operation {
-    /// The places that what is at this one reads.
+    /// Returns the places that the operation at `place` reads.
     fn operands(&self, place: usize) -> Vec<usize> {
         match self {
             Self::Given => vec![],
@@ -80,25 +80,25 @@ impl Operation {
     }
 }
 
-/// The instructions of a system of expressions, in an order in which they can be followed, and what
-/// they begin with.
+/// The instructions of a system of expressions, in an order in which they can be computed, and the
+/// numbers with which they begin.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
-    /// Coefficients in a series.
+    /// Number of coefficients in a series.
     length: usize,
     operations: Vec<Operation>,
-    /// The order from which a series is zero, where there is one.
+    /// The order beyond which each series is zero; `None` if there is no such order.
     degrees: Vec<Option<usize>>,
-    /// The value of each number that is given; 0 elsewhere.
+    /// The value of each number; 0 for all other operations.
     values: Vec<f64>,
-    /// Places of what changes with the order, and of what is only a number.
+    /// Places of the series with higher orders, and of those that are only a number.
     changing: Vec<usize>,
     numbers: Vec<usize>,
-    /// The place of the slope of each variable that is fed.
+    /// The place of the slope of each variable, if it is needed.
     slopes: Vec<Option<usize>>,
-    /// The arguments whose signs choose between formulas.
+    /// The places of the arguments whose signs choose between formulas.
     pub(super) corners: Vec<usize>,
-    /// The letters with a number, each with its place.
+    /// The symbols that have a number, each with its place.
     pub(super) named: Vec<(Symbol, usize)>,
 }
 
@@ -118,19 +118,20 @@ impl Program {
         }
     }
 
-    /// Adds a variable that is zero beyond this order, if it is.
+    /// Adds a variable and returns its place; `degree` is the order beyond which it is zero, if
+    /// any.
     pub(super) fn variable(&mut self, degree: Option<usize>) -> usize {
         self.push(Operation::Given, degree)
     }
 
-    /// Adds a number.
+    /// Adds a number and returns its place.
     pub(super) fn number(&mut self, value: f64) -> usize {
         let place = self.push(Operation::Given, Some(0));
         self.values[place] = value;
         place
     }
 
-    /// Adds an operation; answers its place.
+    /// Adds an operation and returns its place.
     pub(super) fn emit(&mut self, operation: Operation) -> usize {
         let degree = |place: usize| self.degrees.get(place).copied().flatten();
         let constant = |place: usize| degree(place).filter(|degree| *degree == 0);
@@ -151,7 +152,7 @@ impl Program {
         let place = self.push(operation, degree);
         match (degree, &self.operations[place]) {
             (_, Operation::SecondWave) => {}
-            // The slope of a variable comes with its rate.
+            // The slope of a variable is computed with its rate.
             (None, Operation::Slope(of)) if matches!(self.operations[*of], Operation::Given) => {
                 self.slopes[*of] = Some(place);
             }
@@ -179,23 +180,23 @@ impl Program {
         &self.operations[place]
     }
 
-    /// The order beyond which a series is zero.
+    /// Returns the order beyond which a series is zero; the largest `usize` if there is none.
     pub(super) fn degree(&self, place: usize) -> usize {
         self.degrees[place].unwrap_or(usize::MAX)
     }
 
-    /// Whether a place holds a number, the same at every order.
+    /// Whether a place holds a number: a series without higher orders.
     pub(super) fn is_number(&self, place: usize) -> bool {
         self.degrees[place] == Some(0)
     }
 
-    /// Whether a place holds the number one, given as such.
+    /// Whether a place holds the number one itself, not a computed one.
     pub(super) fn is_one(&self, place: usize) -> bool {
         let given = matches!(self.operations[place], Operation::Given);
         given && self.is_number(place) && self.values[place] == 1.0
     }
 
-    /// Leaves out what is needed neither for these places nor for a corner.
+    /// Removes the operations that are needed neither for these places nor for a corner.
     pub(super) fn keep_only(&mut self, outputs: &[usize]) {
         let mut needed = vec![false; self.operations.len()];
         let mut open: Vec<usize> = outputs.iter().chain(&self.corners).copied().collect();
@@ -213,14 +214,14 @@ impl Program {
 #[derive(Clone, Debug)]
 pub struct Tape<const L: usize = 1> {
     program: Arc<Program>,
-    /// Place by place its coefficients.
+    /// The coefficients, place by place.
     series: Vec<[f64; L]>,
-    /// The side of each corner on which the motions are taken to be.
+    /// The sign of each corner's argument that the formulas assume.
     sides: Vec<[f64; L]>,
 }
 
 impl Tape {
-    /// The variables are zero.
+    /// A tape for a program, on which the variables are zero.
     pub(super) fn new(program: Program) -> Self {
         let mut series = vec![[0.0]; program.length * program.size()];
         for (coefficients, value) in series.chunks_mut(program.length).zip(&program.values) {
@@ -234,8 +235,9 @@ impl Tape {
         self.series[place * self.program.length + order] = [value];
     }
 
-    /// Sets the numbers of letters anew; `false` where the operations may be others for these
-    /// numbers, and where one is missing. With corners the numbers say which of them are one.
+    /// Sets new numbers for the symbols. Returns `false` if the operations may differ for these
+    /// numbers, or if one is missing. With corners the operations always depend on the numbers,
+    /// which determine the arguments that share a guard.
     #[must_use]
     pub fn set_numbers(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
         for index in 0..self.program.named.len() {
@@ -243,7 +245,7 @@ impl Tape {
             let before = self.series(place)[0];
             match numbers.get(&name) {
                 Some(number) if number.to_bits() == before.to_bits() => {}
-                // A factor of one may be left out.
+                // The operations for a factor of one may differ, since it is left out.
                 Some(number) if self.sides.is_empty() && *number != 1.0 && before != 1.0 => {
                     self.set(place, 0, *number)
                 }
@@ -253,37 +255,37 @@ impl Tape {
         true
     }
 
-    /// The series at a place; what has no value is not a finite number.
+    /// The series at a place; coefficients without a value are not finite.
     pub fn series(&self, place: usize) -> &[f64] {
         self.row(place).as_flattened()
     }
 
-    /// The values of the first variables at `s`: all at once, so that each sum waits for itself
-    /// alone.
+    /// Writes the values of the first variables at `s`, by Horner's rule for all of them side by
+    /// side, so that no sum waits for another.
     pub fn values(&self, s: f64, into: &mut [f64]) {
+        let length = self.program.length;
         into.fill(0.0);
-        for order in (0..self.program.length).rev() {
-            let coefficients = self.series.iter().skip(order).step_by(self.program.length);
-            for (value, [coefficient]) in into.iter_mut().zip(coefficients) {
-                *value = *value * s + coefficient;
+        for order in (0..length).rev() {
+            for (place, value) in into.iter_mut().enumerate() {
+                *value = *value * s + self.series[place * length + order][0];
             }
         }
     }
 
-    /// The series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`), and on
-    /// which side of zero they are taken to be.
+    /// Returns the series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`),
+    /// each with the sign that is assumed.
     pub fn corners(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let arguments = self.program.corners.iter().map(|argument| self.series(*argument));
         arguments.zip(self.sides.iter().map(|[side]| *side))
     }
 
-    /// Takes the other side of a corner, by its number in [`corners`](Self::corners).
+    /// Takes the other side of a corner, given by its index in [`corners`](Self::corners).
     pub fn cross(&mut self, corner: usize) {
         self.sides[corner][0] *= -1.0;
     }
 
-    /// Takes the side of every corner on which its series lies, or to which it is going; whether
-    /// one of them is another now.
+    /// Takes the side of every corner on which its series lies, or to which it moves from zero.
+    /// Returns whether a side has changed.
     pub fn take_sides(&mut self) -> bool {
         let mut changed = false;
         for (corner, argument) in self.program.corners.iter().enumerate() {
@@ -306,15 +308,15 @@ impl Tape {
         }
     }
 
-    /// Whether the operations of another one are these, so that both may go side by side.
+    /// Whether another tape has the same operations, so that both may be computed side by side.
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.program, &other.program)
     }
 }
 
 impl<const L: usize> Tape<L> {
-    /// The motion of one lane takes its variables, numbers and sides from a tape of its own with
-    /// the same operations.
+    /// Loads the variables, numbers and sides of one lane from a tape of its own with the same
+    /// operations.
     pub fn load(&mut self, lane: usize, own: &Tape) {
         let length = self.program.length;
         let given = self.program.operations.iter().zip(self.series.chunks_mut(length));
@@ -347,15 +349,15 @@ impl<const L: usize> Tape<L> {
         &self.series[place * length..][..length]
     }
 
-    /// Computes the coefficients of everything from the values of the variables; those of the first
-    /// variables grow by the rates at these places.
+    /// Computes the coefficients of all series from the values of the variables; `rates` are the
+    /// places of the rates of the first variables.
     pub fn expand(&mut self, rates: &[usize]) {
         Arch::new().dispatch(TapeExpansion { tape: self, rates });
     }
 }
 
-/// All orders of a tape; always compiled into its caller, so that it gets the widest registers
-/// there are.
+/// The computation of all orders of a tape; it is inlined into its caller, so that it gets the
+/// widest registers of the processor.
 struct TapeExpansion<'a, const L: usize> {
     tape: &'a mut Tape<L>,
     rates: &'a [usize],
@@ -398,7 +400,7 @@ fn per_lane<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
     result
 }
 
-/// Computes the coefficient of order `n` of what is at a place; `inverse` is `1/n`.
+/// Computes the coefficient of order `n` of the series at a place; `inverse` is `1/n`.
 #[inline(always)]
 fn compute<const L: usize>(
     program: &Program,
@@ -448,8 +450,8 @@ fn compute<const L: usize>(
                     }
                 }
             }
-            // A series that vanishes identically, as behind a closed corner, has zero for its
-            // roots.
+            // The root of a series that vanishes identically, as on the zero side of a corner, is
+            // zero.
             per_lane(|lane| match vanishes[lane] {
                 true => 0.0,
                 false => sum[lane] / (n as f64 * base[0][lane]),
@@ -494,7 +496,7 @@ fn compute<const L: usize>(
             per_lane(|lane| match argument[lane].is_finite() {
                 true if side[lane] > 0.0 => positive[lane],
                 true => negative[lane],
-                // Without a value it has no side.
+                // An argument without a value has no side.
                 false => f64::NAN,
             })
         }
@@ -502,8 +504,8 @@ fn compute<const L: usize>(
     series[place * length + n] = coefficient;
 }
 
-/// `sum_k a_k b_(n-k)` over these orders. Two sums, of even and of odd k: half the waiting of one
-/// on the other.
+/// `sum_k a_k b_(n-k)` over these orders, as two independent sums of even and odd k, so that one
+/// addition need not wait for the other.
 #[inline(always)]
 fn products<const L: usize>(
     a: &[[f64; L]],
@@ -532,7 +534,7 @@ fn products<const L: usize>(
     per_lane(|lane| even[lane] + odd[lane])
 }
 
-/// As [`products`], of one series with two others.
+/// Computes [`products`] of one series with two others.
 #[inline(always)]
 fn products_with<const L: usize>(
     a: &[[f64; L]],

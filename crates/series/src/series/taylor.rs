@@ -1,7 +1,7 @@
 //! Exact Taylor expansion of an expression, in one or several variables, about a rational point.
 //!
-//! Reference: A. Griewank and A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008,
-//! section 13.2 (propagation of Taylor coefficients). With `u = u_0 + u_1 s + u_2 s^2 + ...` along the line
+//! Reference: A. Griewank and A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, section
+//! 13.2 (propagation of Taylor coefficients). With `u = u_0 + u_1 s + u_2 s^2 + ...` along the line
 //! `x = point + s * (deviation)`:
 //!
 //! ```text
@@ -12,15 +12,14 @@
 //! w = F(u)       w' = F'(u) u'      for log, asin, acos, atan, asinh, whose derivative is algebraic
 //! ```
 //!
-//! Powers of what vanishes at the point are Laurent series,
+//! Powers of a series that vanishes at the point are Laurent series,
 //! `u^-n = s^(-m n) (u_m + u_(m+1) s + ...)^-n`, and so are sums and products of them:
-//! `(1 - cos(x))/x`, whose singularity is removable, has the series of the function with its limit
-//! put in.
+//! `(1 - cos(x))/x`, whose singularity is removable, has the series of its continuous extension.
 //!
 //! Each function costs `O(degree^2)` products of coefficients. Coefficients are expressions, so
-//! `sin(1/2)`, `sqrt(k)` or `exp(eps)` stay what they are: values that no
-//! [`Ring`](crate::exact::Ring) has. What an expansion in another ring starts from is the image of
-//! these coefficients where they are fractions.
+//! `sin(1/2)`, `sqrt(k)` or `exp(eps)` stay as they are, although no [`Ring`](crate::exact::Ring)
+//! contains them. An expansion in another ring starts from the images of these coefficients, which
+//! must then be fractions.
 
 use std::cell::Cell;
 
@@ -40,9 +39,9 @@ pub enum TaylorError {
     /// The function is not analytic at the point, or its analyticity there cannot be decided.
     #[error("`{term}` has no Taylor series about {}", in_words(.point))]
     NotAnalytic {
-        /// The term that is to blame.
+        /// The term that has no Taylor series.
         term: Quotation,
-        /// The variables and where they stand.
+        /// The variables and their values at the point.
         point: Vec<(Symbol, Expr)>,
     },
     /// The degree is above [`HIGHEST_DEGREE`].
@@ -53,22 +52,22 @@ pub enum TaylorError {
     Expression(#[from] ExprError),
 }
 
-/// `x = 0, x' = 0`
+/// Writes a point as `x = 0, x' = 0`.
 fn in_words(point: &[(Symbol, Expr)]) -> String {
     let places: Vec<String> =
         point.iter().map(|(variable, centre)| format!("{variable} = {centre}")).collect();
     places.join(", ")
 }
 
-/// The Taylor expansion of `expression` about `point` up to total degree `degree`.
+/// Returns the Taylor expansion of `expression` about `point` up to total degree `degree`.
 ///
 /// Entry `k` of the result is the part that is homogeneous of degree `k` in the deviations from the
 /// point, written with the variables' own names: about `x = 0`, entry 3 of `sin(x)` is `-x^3/6`;
 /// about `x = 1`, entry 1 of `x^2` is `2*x`, where `x` now stands for the deviation `x - 1`.
 ///
 /// # Errors
-/// A term that is not analytic at the point, a degree above the limit, or a coefficient that does
-/// not exist.
+/// [`TaylorError`] for a term that is not analytic at the point, a degree above the limit, or a
+/// coefficient that is undefined.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -95,14 +94,15 @@ pub fn taylor(
     Ok(parts)
 }
 
-/// The first coefficients, so many of them. Dividing by what vanishes loses the last ones, which
-/// more at the start make up for.
+/// Returns the first `count` coefficients. A division by a series that vanishes at the point loses
+/// the last ones, so the expansion is repeated with more.
 fn known_to(
     expression: &Expr,
     point: &[(Symbol, Rational)],
     count: usize,
 ) -> Result<TruncatedSeries, TaylorError> {
-    /// More than the poles of a force have; quotients within quotients lose some at each level.
+    /// Number of attempts, enough for the poles of a force; quotients within quotients lose some
+    /// coefficients at each level.
     const ATTEMPTS: usize = 6;
     let mut length = count.max(2);
     for _ in 0..ATTEMPTS {
@@ -167,14 +167,14 @@ fn special_coefficient(function: Function, k: usize) -> Expr {
     }
 }
 
-/// A truncated power series in `s`; as many entries as the expansion is long.
+/// A truncated power series in `s`, with as many entries as the length of the expansion.
 type TruncatedSeries = Vec<Expr>;
 
 /// `s^-pole (c_0 + c_1 s + ...)`; where there is a pole, `c_0` is not zero.
 #[derive(Clone)]
 struct Laurent {
     pole: usize,
-    /// Number of known coefficients: those behind them are zeros in place of unknown ones.
+    /// Number of known coefficients; the zeros behind them stand for unknown ones.
     known: usize,
     coefficients: TruncatedSeries,
 }
@@ -182,7 +182,7 @@ struct Laurent {
 struct TaylorExpansion<'a> {
     point: &'a [(Symbol, Rational)],
     length: usize,
-    /// Whether a quotient was refused because nothing of its denominator is seen at this length.
+    /// Whether a quotient failed only because its denominator vanishes to this length.
     too_short: Cell<bool>,
 }
 
@@ -198,7 +198,7 @@ impl TaylorExpansion<'_> {
             |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
         let is_power =
             |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
-        // A base that vanishes to this length may not be a constant at a greater length.
+        // A base that vanishes to this length need not be a constant at a greater length.
         let may_vanish = is_power(expression)
             && children.first().is_some_and(|base| base.coefficients[0].is_zero());
         if known == self.length
@@ -208,7 +208,7 @@ impl TaylorExpansion<'_> {
         {
             let constants: Vec<Expr> =
                 children.iter().map(|child| child.coefficients[0].clone()).collect();
-            // sgn(0) has a value, but no series goes through it.
+            // At a corner a function may have a value, as sgn(0), but no series.
             if !self.depends_on_variables(expression)
                 || !matches!(expression.node(), Node::Function(..))
             {
@@ -280,7 +280,7 @@ impl TaylorExpansion<'_> {
         }))
     }
 
-    /// A pole that is none taken off: leading zeros.
+    /// Cancels leading zeros against the pole.
     fn reduced(&self, mut series: Laurent) -> Laurent {
         let known = &series.coefficients[..series.known];
         let zeros = known.iter().take_while(|coefficient| coefficient.is_zero()).count();
@@ -292,7 +292,8 @@ impl TaylorExpansion<'_> {
         series
     }
 
-    /// As [`TaylorExpansion::power`], of a series without a pole that does not vanish.
+    /// Raises a series without a pole to a power as [`TaylorExpansion::power`] does; fails if the
+    /// result has a pole.
     fn regular_power(
         &self,
         base: &TruncatedSeries,
@@ -321,8 +322,8 @@ impl TaylorExpansion<'_> {
             None => self.constant(itself.clone()),
             Some((_, centre)) => {
                 let mut series = self.constant(Expr::number(centre.clone()));
-                // One variable alone is put back at the end: until then `sqrt(x^4)` is the square
-                // root of a number.
+                // A single variable is inserted only at the end, so that the coefficients under a
+                // root such as `sqrt(x^4)` are numbers.
                 if let Some(first) = series.get_mut(1) {
                     *first = if self.point.len() == 1 { Expr::one() } else { itself.clone() };
                 }
@@ -347,7 +348,7 @@ impl TaylorExpansion<'_> {
         self.product(series, &self.constant(factor.clone()))
     }
 
-    /// `w' = g u'` with the constant of integration given.
+    /// Integrates `w' = g u'` with the given constant of integration.
     fn integral(
         &self,
         start: Expr,
@@ -372,8 +373,8 @@ impl TaylorExpansion<'_> {
     ) -> Result<Laurent, TaylorError> {
         let known = &base.coefficients[..base.known];
         let Some(lowest) = known.iter().position(|coefficient| !coefficient.is_zero()) else {
-            // Zero to all orders kept: a positive power of it is zero as well, anything else needs
-            // more of them.
+            // The base vanishes to all orders kept: a positive whole power vanishes as well, any
+            // other power needs more orders.
             return if base.pole == 0 && exponent.is_positive() && exponent.is_integer() {
                 Ok(self.regular(self.constant(Expr::zero()), base.known))
             } else {
@@ -398,7 +399,8 @@ impl TaylorExpansion<'_> {
             return Ok(self.regular(result, self.length));
         }
         let reduced = &known[lowest..];
-        // Divided by a sum that stays below the line, (c + s)^3 would not be 1 in its last term.
+        // If the constant term is a sum, a whole power is multiplied out: the recurrence would
+        // divide by the sum, and the last term of (c + s)^3 would not simplify to 1.
         let whole = exponent.is_positive() && exponent.is_integer() && reduced[0].terms().len() > 1;
         if let Some(times) =
             exponent.to_integer().to_usize().filter(|times| whole && *times <= self.length)
@@ -453,7 +455,7 @@ impl TaylorExpansion<'_> {
         self.integral(start, &reciprocal, of)
     }
 
-    /// Sine and cosine (`sign = -1`) or their hyperbolic sisters (`sign = 1`).
+    /// Sine and cosine (`sign = -1`) or the hyperbolic pair (`sign = 1`).
     fn sine_and_cosine(
         &self,
         of: &TruncatedSeries,
@@ -480,8 +482,8 @@ impl TaylorExpansion<'_> {
         Ok((sines, cosines))
     }
 
-    /// `w' = (1 + w^2) u'`, the tangent, or `w' = (1 - w^2) u'`, the hyperbolic one: in powers of
-    /// its own first value.
+    /// The tangent, `w' = (1 + w^2) u'`, or the hyperbolic tangent, `w' = (1 - w^2) u'`; its
+    /// coefficients are polynomials in its constant term.
     fn tangent(
         &self,
         start: Expr,
@@ -534,7 +536,8 @@ impl TaylorExpansion<'_> {
                 self.integral(start()?, &derivative, of)
             }
             Function::Absolute | Function::Sign | Function::Step => {
-                // Away from its corner each of them is a polynomial of degree one at most.
+                // Away from its corner each of these functions is linear in its arguments, or
+                // constant.
                 let sign = sign_of(&of[0])
                     .filter(|sign| sign.is_ne())
                     .ok_or_else(|| self.not_analytic(term))?;

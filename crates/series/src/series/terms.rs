@@ -1,4 +1,4 @@
-//! Sums and Fourier series put together from their terms, in whatever notation.
+//! Text of sums and Fourier series from their terms, in any notation.
 
 use num_traits::Zero;
 
@@ -9,8 +9,8 @@ use crate::symbol::Symbol;
 
 /// The notation of harmonics in a format.
 pub struct Notation {
-    /// `cos(3*theta)` from `"cos"`, 3 and the name of the phase; never asked for the zeroth
-    /// harmonic.
+    /// Writes `cos(3*theta)` from `"cos"`, 3 and the name of the phase; it is never called for the
+    /// zeroth harmonic.
     pub wave: fn(&str, usize, Symbol) -> String,
     /// The text between coefficient and harmonic.
     pub times: &'static str,
@@ -18,7 +18,7 @@ pub struct Notation {
     pub brackets: [&'static str; 2],
 }
 
-/// Terms joined by their signs; `0` where there are none.
+/// Joins terms by their signs; returns `0` if there are none.
 pub fn sum(terms: impl IntoIterator<Item = String>) -> String {
     let mut text = String::new();
     for term in terms {
@@ -41,8 +41,8 @@ pub fn in_order(
     terms
 }
 
-/// The terms of a Fourier series, a minus in front of those that have one; `law` writes a
-/// coefficient.
+/// Returns the texts of the terms of a Fourier series, each with its minus if it has one; `law`
+/// writes a coefficient.
 pub fn waves(
     series: &FourierSeries<Polynomials>,
     law: impl Fn(&Polynomial) -> String,

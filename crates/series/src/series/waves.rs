@@ -1,4 +1,5 @@
-//! Sums of waves at points, and back, over residues: products of series are products of values.
+//! Values of sums of waves at points, and their coefficients from the values, over residues: a
+//! product of series is a product of values.
 //!
 //! References: K. R. Rao and P. Yip, *Discrete Cosine Transform*, Academic Press 1990, chapter 4;
 //! B. G. Lee, *A new algorithm to compute the discrete cosine transform*, IEEE Trans. ASSP 32
@@ -13,23 +14,24 @@
 //! ```
 //!
 //! Motions with half-wave symmetry have odd harmonics only and are known by their values on a
-//! quarter of the period; the others need half of it. Cosines alone and sines alone are
-//! transformed; a series in which both stand has no use for this file. The way back is the
-//! transposed of the way there, times `2/M`. Cost: `M (leaf + log(M/leaf))` for `M` points, where
-//! the sums of `leaf` waves are formed one by one.
+//! quarter of the period; the others need half of it. Only pure sums of cosines and pure sums of
+//! sines are transformed, not series with both. The inverse transformation is `2/M` times the
+//! transpose of the transformation. Cost: `M (leaf + log(M/leaf))` for `M` points, where sums of
+//! `leaf` waves are formed directly.
 
 use pulp::NullaryFnOnce;
 
 use crate::exact::residue::sums::multiply;
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 
-/// Number of points below which the sums are as fast as another halving.
+/// Number of points below which direct sums are as fast as another halving.
 const LEAF: usize = 12;
 
-/// Number and symmetry of the points, and the transformation to them.
+/// The number and the symmetry of the points, with the structure of their transformation.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// Odd harmonics alone, at points on a quarter of the period; otherwise all, on half of it.
+    /// Whether there are only odd harmonics, with points on a quarter of the period; otherwise
+    /// there are all, with points on half of it.
     half_wave: bool,
     halvings: usize,
     leaf: usize,
@@ -50,14 +52,15 @@ impl Grid {
         self.leaf << self.halvings
     }
 
-    /// The points and their waves are roots of unity of this order, which a prime has to have.
+    /// Returns the order of the roots of unity that the points and their waves need; every prime
+    /// must have them.
     pub fn circle(&self) -> usize {
         let quarters = if self.half_wave { 8 } else { 4 };
         quarters * self.size()
     }
 
-    /// The order in which the points stand, as `k` of `phi_k`: of each half, the other is the
-    /// mirror image.
+    /// Returns the order of the points, as `k` of `phi_k`: the second half is the mirror image of
+    /// the first, at each level.
     fn points(&self) -> Vec<usize> {
         let mut points: Vec<usize> = (0..self.leaf).collect();
         for _ in 0..self.halvings {
@@ -91,9 +94,9 @@ impl Wave {
 /// The waves on a [`Grid`], eight side by side.
 pub struct Waves {
     grid: Grid,
-    /// The cosine of each part of a circle of four times the smallest size.
+    /// The cosines of the multiples of the angle `2 pi/(4 leaf)`.
     cosines: Vec<Lanes>,
-    /// `1/(2 cos phi)` of each halving, the largest first.
+    /// The factors `1/(2 cos phi)` of each halving, the largest first.
     halving: Vec<Vec<Lanes>>,
     over_cosine: Vec<Lanes>,
     over_sine: Vec<Lanes>,
@@ -103,7 +106,7 @@ pub struct Waves {
 }
 
 impl Waves {
-    /// `None` if a prime has no such roots of unity.
+    /// Prepares the transformation; `None` if a prime does not have the roots of unity.
     #[inline(always)]
     pub fn new<A: Arithmetic>(residues: &Residues<A>, grid: Grid) -> Option<Self> {
         let (size, circle) = (grid.size(), grid.circle());
@@ -112,7 +115,7 @@ impl Waves {
         let points = grid.points();
         let unit = circle / (4 * size);
         let levels: Vec<usize> = (0..grid.halvings).map(|halving| size >> halving).collect();
-        // Angles, in parts of the circle, of which twice the cosine is divided by.
+        // The angles, in parts of the circle, whose double cosines are divisors.
         let mut angles = Vec::new();
         let thetas = points.iter().map(|k| (2 * k + 1) * unit / if grid.half_wave { 2 } else { 1 });
         angles.extend(thetas.clone());
@@ -123,7 +126,7 @@ impl Waves {
         }
         let mut inverses = vec![residues.one(); angles.len() + 2];
         for (place, (inverse, angle)) in inverses.iter_mut().zip(&angles).enumerate() {
-            // Cosines of all harmonics need no such divisor, and it may be zero.
+            // Cosines of all harmonics need no divisor here, and it could be zero.
             if grid.half_wave || place >= size {
                 let angle = angle % circle;
                 *inverse = residues.sum(powers[angle], powers[(circle - angle) % circle]);
@@ -158,12 +161,12 @@ impl Waves {
         })
     }
 
-    /// `1/2`.
+    /// The residues of 1/2.
     pub fn half(&self) -> Lanes {
         self.half
     }
 
-    /// The values at all points of the sum of waves with these coefficients.
+    /// Computes the values at all points of the sum of waves with these coefficients.
     #[inline(always)]
     pub fn values<A: Arithmetic>(
         &mut self,
@@ -176,8 +179,8 @@ impl Waves {
         residues.arithmetic.vectorize(work);
     }
 
-    /// The coefficients of the first `out.len()` waves from the values at all points, which are
-    /// used up.
+    /// Computes the coefficients of the first `out.len()` waves from the values at all points,
+    /// which are overwritten.
     #[inline(always)]
     pub fn coefficients<A: Arithmetic>(
         &mut self,
@@ -190,7 +193,8 @@ impl Waves {
         residues.arithmetic.vectorize(work);
     }
 
-    /// The divisors, point by point, that leave cosines of multiples of `phi`.
+    /// Returns the inverse divisors, point by point, that reduce the waves to cosines of multiples
+    /// of `phi`; `None` if there are none.
     fn divisors(&self, wave: Wave) -> Option<&[Lanes]> {
         match (self.grid.half_wave, wave) {
             (_, Wave::Sine) => Some(&self.over_sine),
@@ -200,8 +204,8 @@ impl Waves {
     }
 }
 
-/// Two sums of values times cosines, each with the angle of its first cosine and the step to the
-/// next, in parts of the circle.
+/// Returns two sums of values times cosines; for each the angle of the first cosine and the step to
+/// the next are given in parts of the circle.
 #[inline(always)]
 fn cosine_sums<A: Arithmetic>(
     residues: &Residues<A>,
@@ -221,7 +225,7 @@ fn cosine_sums<A: Arithmetic>(
         of_right_sum = arithmetic.add_product(of_right_sum, right, &cosines[of_right]);
         (of_left, of_right) = (next(of_left, left_step), next(of_right, right_step));
     }
-    // One more may stand on the left.
+    // The left list may have one more entry.
     for left in &left[right.len().min(left.len())..] {
         of_left_sum = arithmetic.add_product(of_left_sum, left, &cosines[of_left]);
     }
@@ -240,7 +244,8 @@ impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
         let (cosines, rest) = scratch.split_at_mut(size);
-        // In cosines of multiples of phi. The one at index `size` is zero at all points.
+        // The waves are converted to cosines of multiples of phi; the cosine of index `size` is
+        // zero at all points.
         let length = (given.len() + 1).min(size);
         let (own, more) = cosines.split_at_mut(given.len().min(size));
         own.copy_from_slice(&given[..own.len()]);
@@ -280,7 +285,7 @@ impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
                 }
             }
         }
-        // Each halving brings one more wave.
+        // Each halving adds one wave.
         let used = ((length >> halvings) + 3).min(leaf);
         let (even, odd) = rest[..leaf].split_at_mut(leaf.div_ceil(2));
         let (even, odd) = (&mut even[..used.div_ceil(2)], &mut odd[..used / 2]);
@@ -289,7 +294,7 @@ impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
                 let half = if place % 2 == 0 { &mut *even } else { &mut *odd };
                 half[place / 2] = *own;
             }
-            // At the mirror image of a point the odd ones have the other sign.
+            // At the mirror image of a point the odd cosines have the opposite sign.
             for k in 0..leaf.div_ceil(2) {
                 let step = 2 * k + 1;
                 let (even, odd) = cosine_sums(

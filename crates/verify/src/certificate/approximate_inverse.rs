@@ -1,8 +1,8 @@
 //! The approximate inverse of a derivative: a matrix on the block of low harmonics, whose entries
-//! may be anything.
+//! need not be correct.
 //!
 //! In: integers that a certificate claims to be the entries. Out: images of vectors and columns,
-//! and their norms, in balls. What the inverse is beyond the block is the theorem's affair.
+//! and their norms, in balls. The theorem defines the inverse beyond the block.
 
 use crate::exact::Integer;
 use crate::exact::ball::{Ball, Balls};
@@ -10,8 +10,8 @@ use crate::exact::bound::Bound;
 
 use super::fourier_series::WORKING;
 
-/// The numbers in which the inverse is held against the derivative: only the size of their
-/// difference counts.
+/// The precision in which the product of inverse and derivative is computed: only its distance from
+/// the identity counts.
 pub(super) const SHORT: Balls = Balls { bits: 80 };
 
 /// The approximate inverse on a number and the harmonics of the block, which has the weight sigma

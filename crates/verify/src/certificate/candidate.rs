@@ -1,9 +1,9 @@
-//! The numbers of a certificate: Newton's iteration from the true motion in doubles, as far as
-//! there are digits.
+//! The numbers of a certificate: Newton's iteration from the true motion in doubles, as far as the
+//! digits suffice.
 //!
-//! In: an oscillator, an answer and values. Out: a certificate that has been checked. Nothing here
-//! is trusted by the theorem: the true motion of the judge gives the first harmonics, the inverse
-//! of the derivative in doubles the steps, and each block that does not prove the motion is
+//! In: an oscillator, an answer and values. Out: a certificate that has been checked. The theorem
+//! trusts nothing here: the numerical motion of verification gives the first harmonics, the inverse
+//! of the derivative in doubles gives the steps, and each block that does not prove the motion is
 //! followed by a larger one.
 
 use std::f64::consts::TAU;
@@ -35,12 +35,12 @@ pub(super) const BITS: usize = 112;
 /// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
-/// The reason why there is no certificate. This is no evidence against a formula, but for a motion
-/// that the judge does not find either.
+/// The reason why there is no certificate. It is no evidence against a formula, unless verification
+/// does not find the motion either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotCertified {
-    /// A force that depends on velocity or time, of a motion that is none on a limit cycle.
+    /// A force that depends on velocity or time, for a motion that is not on a limit cycle.
     #[error(
         "`{0}` depends on the velocity or on time: certificates are of limit cycles, of driven motions and of motions whose force is that of their position alone"
     )]
@@ -70,7 +70,7 @@ pub enum NotCertified {
         "at these values no steady motion of the formula has an amplitude and a true motion near"
     )]
     NoSteadyMotion,
-    /// An answer about the way to a limit cycle.
+    /// An answer about the transient to a limit cycle.
     #[error(
         "with an amplitude the formula is about the way to the limit cycle, and a certificate is of the cycle"
     )]
@@ -88,19 +88,19 @@ pub enum NotCertified {
         "x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts"
     )]
     Start(String),
-    /// A motion that the formula does not give.
+    /// The formula has no motion at these values.
     #[error(transparent)]
     Motion(#[from] NoNumbers),
-    /// A formula that cannot be held against the motion.
+    /// A formula that cannot be compared with the motion.
     #[error("the formula cannot be judged: it is {0}")]
     Formula(&'static str),
     /// A motion with sines.
     #[error("the motion of the formula is none of cosines alone")]
     Sines,
-    /// A motion that the judge does not find.
+    /// A motion that verification does not find.
     #[error(transparent)]
     Truth(#[from] VerificationError),
-    /// A force that could not be taken apart, or had no value.
+    /// A force whose terms could not be separated, or that had no value.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// A step of algebra failed.
@@ -184,8 +184,8 @@ pub fn certify(
     certified_motion(oscillator, solution, at, true)
 }
 
-/// A certificate of the motion that a formula is about, without the formula: it may have no value
-/// there.
+/// A certificate of the motion that a formula is about, without the formula: the formula may have
+/// no value there.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -229,7 +229,7 @@ fn certified_motion(
     let (mu, harmonics) = from_samples(&samples, question.odd);
     let mut certificate = question.certificate(mu, &harmonics, judged);
     certificate.well_formed_formula().map_err(NotCertified::Formula)?;
-    // Many harmonics bring it near in few steps; how many a proof needs is another question.
+    // With many harmonics few steps suffice; the number that a proof needs is found later.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
     refine(&mut certificate, Bound::ZERO)
         .map_err(|reason| not_proved(reason, certificate.block().len()))?;
@@ -254,8 +254,8 @@ pub(super) fn not_proved(reason: NotProved, harmonics: usize) -> NotCertified {
     }
 }
 
-/// The last harmonics of the blocks that are tried, all odd: about a half of those that a double
-/// sees, and more.
+/// The last harmonics of the blocks that are tried, all odd: from about half of the harmonics that
+/// are visible in double precision upwards.
 pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     let first = (seen / 2).max(5) | 1;
     let sizes = std::iter::successors(Some(first), |size| Some((size * 3 / 2) | 1));
@@ -331,13 +331,13 @@ pub(super) fn written_out(force: Expr) -> Result<Expr, ExprError> {
     Ok(written.as_ref().map_or(force, Expr::from))
 }
 
-/// The nearest number of units of `2^-bits`, or below it.
+/// A double as an integer number of units of `2^-bits`.
 pub(super) fn units(value: f64, bits: usize) -> Integer {
     from_f64(value).map_or_else(Integer::zero, |value| Balls { bits }.fraction(&value).middle)
 }
 
-/// The formula with its numbers; nothing is claimed yet. Where it is one of cosines alone it has no
-/// sines.
+/// The formula with its numbers; nothing is claimed yet. A motion of cosines alone has an empty
+/// list of sines.
 pub(super) fn judged(
     solution: &Solution,
     at: &Values,
@@ -399,7 +399,7 @@ fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Vec<f64>) {
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
     let mut harmonics =
         Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2)).cosines;
-    // Of the constant twice the mean.
+    // The coefficient of the constant was twice the mean.
     harmonics[0] /= 2.0;
     if odd {
         harmonics.iter_mut().step_by(2).for_each(|even| *even = 0.0);
@@ -411,7 +411,7 @@ fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Vec<f64>) {
     ((period / TAU).powi(2), harmonics)
 }
 
-/// Checks a certificate with its block, and claims what is proved.
+/// Checks a certificate with its block, and enters the proved values as claims.
 fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
     certificate.inverse = inverse(certificate)?;
     certificate.sigma = weight(&certificate.inverse);
@@ -423,12 +423,12 @@ fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
     Ok(certified)
 }
 
-/// The neighbours among the decimals of three digits; of infinity zero, a claim that does not hold.
+/// The neighbouring decimals of three digits; zero for infinity, a claim that does not hold.
 pub(super) fn claimed(value: f64) -> [Rational; 2] {
     neighbours(&from_f64(value).unwrap_or_default(), 3)
 }
 
-/// Claims of a formula what is proved of it.
+/// Enters the proved errors of a formula as its claims.
 pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Certified) {
     let Some((formula, errors)) = formula.zip(certified.formula.as_ref()) else {
         return;
@@ -479,8 +479,8 @@ pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, No
     Ok((0..size).map(row).collect())
 }
 
-/// Newton's iteration with one inverse, until it is so near, nothing changes, or it does not get
-/// nearer.
+/// Newton's iteration with one inverse, until a step is smaller than `near` or no smaller than the
+/// one before.
 pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
     let bits = certificate.bits;
     certificate.inverse = inverse(certificate)?;
@@ -501,14 +501,14 @@ pub(super) fn few_units(bits: usize) -> Bound {
     Bound::power_of_two(-(bits as i32)) * Bound::exactly(64.0)
 }
 
-/// Newton's iteration, until it is so near, nothing changes, or it does not get nearer.
+/// Newton's iteration, until a step is smaller than `near` or no smaller than the one before.
 pub(super) fn iterate<Candidate, Place>(
     candidate: &mut Candidate,
     near: Bound,
     correction: impl Fn(&Candidate) -> Result<Correction<Place>, NotProved>,
     subtract: impl Fn(&mut Candidate, &Correction<Place>),
 ) -> Result<(), NotProved> {
-    /// The steps of an iteration that gains a digit a step.
+    /// Largest number of steps of an iteration that gains one digit per step.
     const STEPS: usize = 40;
     let mut before = Bound::UNKNOWN;
     for _ in 0..STEPS {
@@ -535,7 +535,7 @@ pub(super) fn subtract(coefficients: &mut Vec<Integer>, harmonic: usize, correct
     coefficients[harmonic] -= correction;
 }
 
-/// Leaves out the coefficients at the end that have no digits, and those beyond all length.
+/// Removes trailing coefficients without significant digits, and those beyond the greatest length.
 pub(super) fn shorten(coefficients: &mut Vec<Integer>) {
     while coefficients.len() > 2
         && (coefficients.len() > 2 * HIGHEST_HARMONIC
@@ -545,8 +545,8 @@ pub(super) fn shorten(coefficients: &mut Vec<Integer>) {
     }
 }
 
-/// The weight with which an error of the number that is looked for counts as much as the harmonics
-/// that come with it.
+/// The weight, as a power of two, with which an error of the unknown frequency counts as much as
+/// the errors of the harmonics that it causes.
 pub(super) fn weight(inverse: &[Vec<Integer>]) -> i32 {
     let balls = Balls { bits: INVERSE_BITS };
     let number = |units: &Integer| {

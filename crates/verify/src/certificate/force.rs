@@ -4,7 +4,7 @@
 //! In: `f`, `f'` or `f''` as an expression in the coordinate with exact numbers. Out: a series that
 //! contains its values on every motion of the ball. Sums, products and elementary functions of
 //! analytic arguments have one; a corner (`abs`, `sgn`, `max`, a fractional power through zero) has
-//! none, for what is proved rests on the harmonics falling off.
+//! none, because the proof needs harmonics that decay.
 
 use num_traits::{One as _, Signed as _, ToPrimitive as _};
 
@@ -22,7 +22,7 @@ pub(super) struct NoValue(
     pub(super) String,
 );
 
-/// The values of the expression where the coordinate has these.
+/// The values of the expression where the coordinate has these values.
 ///
 /// # Errors
 /// [`NoValue`].
@@ -30,7 +30,7 @@ pub(super) fn along(force: &Expr, motion: &FourierSeries) -> Result<FourierSerie
     along_all(force, &[(coordinate(), motion)])
 }
 
-/// The values of the expression where the letters have these.
+/// The values of the expression where its symbols have these values.
 ///
 /// # Errors
 /// [`NoValue`].
@@ -72,7 +72,7 @@ fn times(series: FourierSeries, coefficient: &Rational) -> FourierSeries {
     }
 }
 
-/// Powers up to this come of products.
+/// The highest whole power that is computed by products.
 const HIGHEST_POWER: u32 = 200;
 
 fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
@@ -116,8 +116,7 @@ fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSe
     }
 }
 
-/// Whether `f(-x) = -f(x)`, all these letters with the other sign, as far as can be seen by writing
-/// it out.
+/// Whether `f(-x) = -f(x)`, where x stands for all these symbols, as far as expansion shows it.
 ///
 /// # Errors
 /// A point at which the force has no value is written in it.
@@ -125,7 +124,7 @@ pub(super) fn is_odd(force: &Expr, letters: &[Symbol]) -> Result<bool, ExprError
     Ok(is_nothing(&(force + &mirrored(force, letters)?)))
 }
 
-/// Whether `f(-x) = f(x)`, likewise.
+/// Whether `f(-x) = f(x)`, where x stands for all these symbols, as far as expansion shows it.
 ///
 /// # Errors
 /// As [`is_odd`].

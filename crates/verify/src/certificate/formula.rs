@@ -28,12 +28,12 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY, may_stand_for};
 use crate::values::Values;
 
-/// A number with everything that it may be.
+/// An interval that contains a number, as middle and radius.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Enclosure {
     /// The middle.
     pub middle: Rational,
-    /// Bound of the distance of the number from it.
+    /// Bound of the distance of the number from the middle.
     pub radius: Bound,
 }
 
@@ -42,8 +42,8 @@ impl Enclosure {
         Self { middle: WORKING.middle(ball), radius: ball.radius }
     }
 
-    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
-    /// that is known where it is not a number.
+    /// Bounds of the relative error `|number/truth - 1|` of an approximation to the enclosed
+    /// number; from zero to infinity if it is not finite.
     pub fn relative_error(&self, number: f64) -> SizeBounds {
         let Some(exact) = from_f64(number) else {
             return SizeBounds { lower: 0.0, upper: f64::INFINITY };
@@ -73,17 +73,17 @@ pub struct SizeBounds {
     pub upper: f64,
 }
 
-/// The letters of amplitude and frequency in a law, beside the parameters of the equation.
+/// The symbols of amplitude and frequency in a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LettersOfLaw {
-    /// The amplitude at the start, `A` where the equation has no such name.
+    /// The initial amplitude, `A` unless the equation uses that name.
     pub amplitude: Symbol,
-    /// The frequency, `omega` likewise.
+    /// The frequency, `omega` unless the equation uses that name.
     pub frequency: Symbol,
 }
 
 impl LettersOfLaw {
-    /// The letters of these names; `None` if an answer never takes them.
+    /// The symbols of these names; `None` if no answer uses such names.
     pub fn of_names(amplitude: &str, frequency: &str) -> Option<Self> {
         let taken = [(amplitude, AMPLITUDE), (frequency, FREQUENCY)];
         let belongs = taken.iter().all(|(name, usual)| may_stand_for(name, *usual));
@@ -91,7 +91,7 @@ impl LettersOfLaw {
             .then(|| Self { amplitude: Symbol::new(amplitude), frequency: Symbol::new(frequency) })
     }
 
-    /// The letters that are in force on this thread.
+    /// The symbols that are in force on this thread.
     pub(super) fn in_force() -> Self {
         let written = |usual: Symbol| Symbol::new(usual.written());
         Self { amplitude: written(AMPLITUDE), frequency: written(FREQUENCY) }
@@ -108,18 +108,18 @@ impl Default for LettersOfLaw {
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedFormula {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...`, of a driven motion `x = ...` in
-    /// t, with definitions of letters behind commas. A text of another form is words, of which
-    /// nothing is proved.
+    /// t, with definitions of symbols after commas. A text of another form counts as words, and
+    /// nothing is proved of it.
     pub law: String,
-    /// The letters of the answer in the law.
+    /// The symbols of amplitude and frequency in the law.
     pub letters: LettersOfLaw,
-    /// The values of the letters in the law.
+    /// The values of the symbols in the law.
     pub values: Values,
     /// The angular frequency, an integer times `2^-bits` of the certificate.
     pub frequency: Integer,
-    /// The cosine coefficients of the motion, likewise.
+    /// The cosine coefficients of the motion, in the same unit.
     pub coefficients: Vec<Integer>,
-    /// Its sine coefficients by harmonic, likewise; none of a motion that begins at rest.
+    /// The sine coefficients by harmonic, in the same unit; empty for a motion that begins at rest.
     pub sines: Vec<Integer>,
     /// Claimed lower and upper bound of `max |X - X~|`.
     pub deviation: [Rational; 2],
@@ -143,7 +143,7 @@ pub struct Errors {
     pub frequency: SizeBounds,
     /// `|omega~/omega - 1|`; of a driven motion, whose frequency is known, `|a~/a - 1|`.
     pub relative: SizeBounds,
-    /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
+    /// `max |X~'| |omega - omega~|`, the largest growth of the deviation per unit of time.
     pub drift: SizeBounds,
     /// `|a - a~|` for a driven motion, the amplitudes of its own harmonic.
     pub amplitude: Option<SizeBounds>,
@@ -152,7 +152,7 @@ pub struct Errors {
 impl JudgedFormula {
     /// Checks sizes, and of a motion without a drive that the frequency is positive and the first
     /// harmonic there: with another sign, or as that of half the frequency, the same formula would
-    /// be held against the motion at another phase.
+    /// be compared with the motion at another phase.
     pub(super) fn well_formed(&self, is_driven: bool) -> Result<(), &'static str> {
         let small = |integer: &Integer| integer.bits() <= 700;
         let first = [&self.coefficients, &self.sines]
@@ -179,12 +179,12 @@ impl JudgedFormula {
         }
     }
 
-    /// The frequency, of units of `2^-bits`.
+    /// The frequency, stored in units of `2^-bits`.
     pub(super) fn frequency_ball(&self, bits: usize) -> Ball {
         WORKING.dyadic(&self.frequency, bits)
     }
 
-    /// The motion, likewise.
+    /// The motion, stored in units of `2^-bits`.
     pub(super) fn motion(&self, bits: usize) -> FourierSeries {
         let balls =
             |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
@@ -192,14 +192,14 @@ impl JudgedFormula {
     }
 }
 
-/// A motion that is proved, against which a formula is held.
+/// A proved motion, with which a formula is compared.
 pub(super) struct Truth<'a> {
-    /// The approximate motion, and what the symmetries of its equation make of it: a formula is one
-    /// for all of them.
+    /// The approximate motion, and its images under the symmetries of its equation: a formula
+    /// describes all of them.
     pub(super) copies: &'a [FourierSeries],
     /// omega.
     pub(super) frequency: &'a Ball,
-    /// The true motion is so near, and each of the others.
+    /// The distance of the true motion from the approximate one, and of each image likewise.
     pub(super) radius: Bound,
 }
 
@@ -247,7 +247,8 @@ impl Truth<'_> {
         differences.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (mut lower, mut upper) = (f64::INFINITY, Bound::UNKNOWN);
         for (mean, difference) in &differences {
-            // No largest value is below the mean: this copy and those behind it are no nearer.
+            // The largest value is at least the root mean square: this copy and the following ones
+            // are no nearer.
             if *mean >= upper.value() {
                 break;
             }
@@ -262,7 +263,7 @@ impl Truth<'_> {
     }
 
     /// Errors of a formula of a driven motion, whose frequency is that of the drive. The last
-    /// argument has the amplitude by the formula and the true one.
+    /// argument holds the amplitude by the formula and the true one.
     pub(super) fn errors_of_driven(
         &self,
         own_motion: &FourierSeries,
@@ -316,7 +317,7 @@ fn absolute_and_relative_error(own: &Ball, truth: &Ball) -> (SizeBounds, SizeBou
 
 /// A lower bound of the root mean square of a series.
 fn below_mean(series: &FourierSeries) -> f64 {
-    /// More than what the roundings of so short a sum make.
+    /// Bound of the rounding error of so short a sum.
     const ROUNDING: f64 = 1e-12;
     let square = |ball: &Ball| WORKING.distance_from_zero(ball).max(0.0).powi(2);
     let waves = series.cosines.iter().skip(1).chain(series.sines.iter().skip(1));
@@ -335,7 +336,7 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
     }
     let points = (64 * degree).min(4096).max(16 * degree);
     let table = waves(points, BALLS);
-    // Of an even or odd function half a turn is enough.
+    // Half a turn suffices for an even or odd function.
     let all = match empty == [false, false] {
         true => 2 * points,
         false => points + 1,

@@ -5,13 +5,13 @@
 //! u(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta)) + h(theta),    ||h|| <= tail,    norm: sum_k (|a_k| + |b_k|)
 //! ```
 //!
-//! In: the coefficients of an approximate motion. Out: series that contain whatever the operations
-//! make of any functions of those that came in. The norm bounds the largest value, and that of a
-//! product is at most the product of the norms, since a product of two of the functions is half the
-//! sum of two: `cos i cos j = (cos(i+j) + cos(i-j))/2`, `sin i sin j = (cos(i-j) - cos(i+j))/2`,
-//! `sin i cos j = (sin(i+j) + sin(i-j))/2`. A product of n by m coefficients costs n m products of
-//! integers; what is elementary is a Taylor series of an argument that has been halved until it is
-//! small, or Newton's iteration, whose outcome is held against what it has to fulfil.
+//! In: the coefficients of an approximate motion. Out: series that contain the result of the
+//! operations for any functions contained in the operands. The norm bounds the largest value, and
+//! that of a product is at most the product of the norms, since a product of two of the functions
+//! is half the sum of two: `cos i cos j = (cos(i+j) + cos(i-j))/2`, `sin i sin j = (cos(i-j) -
+//! cos(i+j))/2`, `sin i cos j = (sin(i+j) + sin(i-j))/2`. A product of n by m coefficients costs n
+//! m products of integers; an elementary function is a Taylor series of an argument that has been
+//! halved until it is small, or the result of Newton's iteration, whose residual is enclosed.
 //!
 //! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence
 //! spaces of varying regularity, SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
@@ -24,7 +24,7 @@ use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::numeric::harmonics::Transform;
 
-/// The digits with which functions are computed. Those of an approximate motion are fewer.
+/// The precision with which functions are computed; that of an approximate motion is lower.
 pub(super) const WORKING: Balls = Balls { bits: 224 };
 
 /// Binary exponent below which a coefficient is negligible if its digits are not known, and the
@@ -82,7 +82,7 @@ pub(super) struct FourierSeries {
     pub(super) cosines: Vec<Ball>,
     /// Sine coefficients by harmonic, the entry of the constant zero; empty for an even function.
     pub(super) sines: Vec<Ball>,
-    /// The norm of what is not in them.
+    /// Bound of the norm of the part that is not in the coefficients.
     pub(super) tail: Bound,
     /// Harmonics smaller than `2^-negligible` at the end become a part of the tail.
     negligible: i32,
@@ -99,7 +99,8 @@ impl FourierSeries {
         Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
 
-    /// This function, of whose coefficients only this many bits are significant.
+    /// This function, with the information that only so many bits of its coefficients are
+    /// significant.
     pub(super) fn of_digits(mut self, bits: usize) -> Self {
         const MORE: i32 = 16;
         let bits = i32::try_from(bits).unwrap_or(NEGLIGIBLE);
@@ -107,8 +108,8 @@ impl FourierSeries {
         self
     }
 
-    /// The terms of a Taylor series, of an argument of a norm of at most 1/2, after which what is
-    /// left is negligible; an even number.
+    /// The number of terms of a Taylor series after which the remainder is negligible, for an
+    /// argument of norm at most 1/2; an even number.
     fn terms(&self) -> u32 {
         let negligible = Bound::power_of_two(-self.negligible - 8);
         (2..MOST_TERMS)
@@ -117,7 +118,7 @@ impl FourierSeries {
             .unwrap_or(MOST_TERMS)
     }
 
-    /// All that it may be at the angle 0, which is all where it is a constant.
+    /// An enclosure of the value at the angle 0, and so of a constant function.
     pub(super) fn at_zero(&self) -> Ball {
         let zero = Ball::zero();
         let mut value = self.cosines.iter().fold(zero, |sum, ball| WORKING.sum(&sum, ball));
@@ -129,7 +130,7 @@ impl FourierSeries {
         Self::constant(WORKING.integer(value))
     }
 
-    /// The norm of what is in the coefficients.
+    /// The norm of the part in the coefficients.
     pub(super) fn finite_norm(&self) -> Bound {
         let all = self.cosines.iter().chain(&self.sines);
         all.map(|ball| WORKING.magnitude(ball)).sum()
@@ -180,7 +181,7 @@ impl FourierSeries {
         Self { cosines, sines, tail: self.tail, negligible: self.negligible }
     }
 
-    /// The derivative by the angle; nothing is known of that of a tail.
+    /// The derivative by the angle; the derivative of a tail is not bounded.
     pub(super) fn derivative(&self) -> Self {
         let by_harmonic = |balls: &[Ball], sign: i64| {
             let scaled = balls.iter().enumerate();
@@ -200,14 +201,14 @@ impl FourierSeries {
         self
     }
 
-    /// Without the tail, for what is not proved.
+    /// This function without its tail, for computations that prove nothing.
     #[cfg(test)]
     pub(super) fn without_tail(mut self) -> Self {
         self.tail = Bound::ZERO;
         self
     }
 
-    /// Moves into the tail what is at the end and negligible, or beyond all length.
+    /// Moves trailing harmonics that are negligible, or beyond the greatest length, into the tail.
     fn trimmed(mut self) -> Self {
         let negligible = Bound::power_of_two(-self.negligible);
         for balls in [&mut self.cosines, &mut self.sines] {
@@ -338,8 +339,8 @@ impl FourierSeries {
         result.unwrap_or_else(|| Self::integer(1))
     }
 
-    /// Itself divided by a power of two, so that its norm is at most a half, and how often it was
-    /// halved.
+    /// This function divided by a power of two so that its norm is at most a half, and the number
+    /// of halvings; `None` if that is too large.
     fn scaled_to_half_norm(&self) -> Option<(Self, u32)> {
         let norm = self.norm();
         let halvings = (0..=MOST_HALVINGS)
@@ -347,7 +348,7 @@ impl FourierSeries {
         Some((self.divided(1 << halvings), halvings))
     }
 
-    /// Sine and cosine; `None` for what is too large.
+    /// Sine and cosine; `None` if the norm is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
         let square = argument.squared();
@@ -368,7 +369,7 @@ impl FourierSeries {
         Some((sine, cosine))
     }
 
-    /// The exponential function; `None` for what is too large.
+    /// The exponential function; `None` if the norm is too large.
     pub(super) fn exponential(&self) -> Option<Self> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
         let terms = self.terms();
@@ -479,7 +480,7 @@ impl FourierSeries {
         (distance > 0.0).then(|| if value.middle.is_negative() { -distance } else { distance })
     }
 
-    /// The middles alone: a guess of an iteration needs no more.
+    /// The middles without radii, which suffice for the guess of an iteration.
     fn without_radii(mut self) -> Self {
         for ball in self.cosines.iter_mut().chain(&mut self.sines) {
             ball.radius = Bound::ZERO;
@@ -501,7 +502,7 @@ impl FourierSeries {
             return None;
         }
         let mut harmonics = transform.harmonics(&samples, count / 2 - 1);
-        // Of a constant twice the mean.
+        // The coefficient of the constant was twice the mean.
         harmonics.cosines[0] /= 2.0;
         if self.sines.is_empty() {
             harmonics.sines.clear();

@@ -1,8 +1,8 @@
-//! The law of a formula as text, held against its numbers.
+//! The law of a formula as text, compared with its numbers.
 //!
-//! In: `omega^2 = 1 - A^2/8`, with definitions of other letters behind commas, and the values of
-//! the letters. Out: the number that it gives, in balls where every function of it has a value
-//! there, else to twelve digits. What is not of this form is words, of which nothing is said.
+//! In: `omega^2 = 1 - A^2/8`, with definitions of other symbols after commas, and the values of the
+//! symbols. Out: the number that it gives, in balls if every function of it has a value in balls,
+//! else to twelve digits. A text of another form counts as words and is not compared.
 
 use std::collections::BTreeMap;
 
@@ -19,16 +19,16 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 
-/// A longer text is words.
+/// Greatest length of a law; a longer text counts as words.
 const LONGEST: usize = 20_000;
 
-/// With fewer binary digits behind the point the numbers of a formula do not tell one law from
-/// another.
+/// Number of binary digits behind the point below which the numbers of a formula do not distinguish
+/// laws.
 const FEWEST_BITS: usize = 40;
 
-/// The law of the frequency as text, and the values of the letters in it.
+/// The law of the frequency as text, and the values of the symbols in it.
 pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values) {
-    // Rounded coefficients are printed with six digits: here all of them are needed.
+    // Rounded coefficients are printed with six digits; here all digits are needed.
     let exactly = match solution.law.in_one_line() {
         _ if !solution.numerical || solution.slow().is_some() => None,
         DisplayedLaw::Squared(law) => Some(("^2", Expr::from(law))),
@@ -61,8 +61,8 @@ pub(super) fn with_definitions(
     std::iter::once(format!("{name} = {value}")).chain(definitions).collect()
 }
 
-/// Selects the values whose letters stand in a law, under the names that they have there; none for
-/// words.
+/// Selects the values of the symbols that occur in a law, under the names that they have there;
+/// none for words.
 pub(super) fn values_in(law: &str, at: &Values) -> Values {
     let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
     let mut values = Values::default();
@@ -76,7 +76,7 @@ pub(super) fn values_in(law: &str, at: &Values) -> Values {
     values
 }
 
-/// The left side of a law, and its right side with the definitions put in.
+/// The left side of a law, and its right side with the definitions substituted.
 fn read(law: &str) -> Option<(String, Expr)> {
     if law.len() > LONGEST {
         return None;
@@ -96,7 +96,7 @@ fn read(law: &str) -> Option<(String, Expr)> {
     Some((name, value))
 }
 
-/// The parts between the commas that are in no parentheses.
+/// The parts between the commas outside of parentheses.
 fn equations_of(law: &str) -> Vec<&str> {
     let (mut depth, mut begin, mut parts) = (0_i64, 0, vec![]);
     for (place, letter) in law.char_indices() {
@@ -114,8 +114,8 @@ fn equations_of(law: &str) -> Vec<&str> {
     parts
 }
 
-/// The left side of a law, and its right side with the definitions and the values put in; `None`
-/// for words.
+/// The left side of a law, and its right side with definitions and values substituted; `None` for
+/// words.
 pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
     let (name, value) = read(law)?;
     let values: BTreeMap<Symbol, Expr> =
@@ -123,8 +123,8 @@ pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> 
     Some((name, value.substitute_all(&values).ok()?))
 }
 
-/// Evaluates the frequency, by its letter, by the law of a formula; `None` for words, and if the
-/// law has no positive value.
+/// Evaluates the frequency by the law of a formula; `None` for words, and if the law has no
+/// positive value.
 pub(super) fn frequency(formula: &JudgedFormula) -> Option<Ball> {
     let (name, value) = with_values(&formula.law, &formula.values)?;
     let value = number(&value)?;
@@ -135,7 +135,7 @@ pub(super) fn frequency(formula: &JudgedFormula) -> Option<Ball> {
     }
 }
 
-/// The number that an expression without letters is.
+/// The value of an expression without symbols, in balls; `None` if it has none.
 pub(super) fn number(expression: &Expr) -> Option<Ball> {
     /// The relative error of a double, for functions that have no value in balls.
     const ROUNDING: f64 = 1e-12;
@@ -152,7 +152,7 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
 }
 
 /// Returns whether the law was read and gives the frequency of the formula to its last digits;
-/// `false` of words.
+/// `false` for words.
 ///
 /// # Errors
 /// A law that gives another one.
@@ -171,7 +171,7 @@ pub(super) fn law_matches_frequency(
 }
 
 /// Returns whether the law of a displacement was read and gives the coefficients of the formula to
-/// their last digits; `false` of words.
+/// their last digits; `false` for words.
 ///
 /// # Errors
 /// A law that gives others.

@@ -1,10 +1,10 @@
-//! Certificates: a proof beside a closed form.
+//! Certificates: a proof of the error of a closed form.
 //!
 //! In: an oscillator whose energy is conserved, an answer of any method to it, and numbers. Out: a
 //! [`Certificate`], from which anybody can prove in exact arithmetic that there is exactly one
-//! motion `x(t) = X(omega t)` with this start near a refined one, and [`Certified`], what that says
-//! of the formula: its frequency is off by no less than this and no more than that, its motion
-//! likewise, and how far the two drift apart in any time.
+//! motion `x(t) = X(omega t)` with this start near a refined one, and [`Certified`], the
+//! consequences for the formula: lower and upper bounds of the errors of its frequency and its
+//! motion, and of the rate at which the two motions drift apart.
 //!
 //! ```text
 //! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
@@ -15,7 +15,7 @@
 //! in `damped/`.
 //!
 //! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
-//! iteration): the proof rests on `theorem.rs` and on what computes for it, `force.rs`,
+//! iteration): the proof rests on `theorem.rs` and on the arithmetic of `force.rs`,
 //! `fourier_series.rs` and balls. A certificate that fails says nothing about the formula.
 
 mod approximate_inverse;
@@ -49,7 +49,7 @@ use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 use fourier_series::{FourierSeries, WORKING};
 
-/// The letter of the displacement in every certificate.
+/// The symbol of the displacement in every certificate.
 pub fn coordinate() -> Symbol {
     Symbol::new("x")
 }
@@ -63,7 +63,7 @@ pub const MOST_BITS: usize = 224;
 /// Numbers from which a motion can be proved. They may be anything: [`check`] trusts none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// `f` of `x'' + f(x) = 0`, in the letter [`x`](coordinate) and numbers.
+    /// `f` of `x'' + f(x) = 0`, in the symbol [`x`](coordinate) and numbers.
     pub force: Expr,
     /// `x(0)`; `x'(0) = 0`.
     pub start: Rational,
@@ -94,7 +94,7 @@ pub struct Certificate {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Certified {
-    /// The motion exists, and is the only one so near.
+    /// The proof that the motion exists and is the only one within its radius.
     pub proof: Proof,
     /// `omega`.
     pub frequency: Enclosure,
@@ -102,11 +102,11 @@ pub struct Certified {
     /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
     /// energy is conserved.
     pub exponent: Option<Enclosure>,
-    /// Amplitude of the own harmonic of a driven motion.
+    /// Amplitude of the harmonic of a driven motion that the formula is about.
     pub amplitude: Option<Enclosure>,
-    /// The number of motions that the symmetries of the equation make of the proved one, itself
-    /// among them: with a drive that of another whole number of its periods later, of an equation
-    /// that is its mirror image the mirror image. A formula is one for all of them alike.
+    /// The number of images of the proved motion under the symmetries of the equation, itself
+    /// included: with a drive the motion any number of drive periods later, and for a symmetric
+    /// equation its mirror image. A formula describes all of them.
     pub copies: usize,
     /// Set if the law of the formula was read as text and gives the numbers that are judged: the
     /// frequency, of a driven motion all.
@@ -125,7 +125,7 @@ pub enum CheckError {
     /// An inequality of the theorem does not hold.
     #[error("not certified: {0}")]
     NotProved(NotProved),
-    /// The motion is proved, and something of it is claimed to be smaller than what is proved.
+    /// The motion is proved, but a claimed number is smaller than the proved upper bound.
     #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", rounded_up(*proved, 6))]
     ClaimedLess {
         /// The name of the number.
@@ -133,7 +133,7 @@ pub enum CheckError {
         /// The proved upper bound.
         proved: f64,
     },
-    /// The motion is proved, and a number of it is claimed to be larger than the proved value.
+    /// The motion is proved, but a claimed number is larger than the proved lower bound.
     #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", rounded_down(*proved, 6))]
     ClaimedMore {
         /// The name of the number.
@@ -173,7 +173,7 @@ pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
 }
 
 impl Certificate {
-    /// Leaves this many digits of the motion.
+    /// Shortens the coefficients of the motion to this many binary digits.
     fn shorten(&mut self, bits: usize) {
         let short = |units: &Integer| Balls { bits }.dyadic(units, self.bits).middle;
         self.coefficients = self.coefficients.iter().map(short).collect();
@@ -242,7 +242,7 @@ impl Certificate {
         self.well_formed_formula()
     }
 
-    /// Checks the formula, and that it belongs to the motion that it is held against.
+    /// Checks the formula, and that it belongs to the motion with which it is compared.
     ///
     /// # Errors
     /// The demand that does not hold.
@@ -254,8 +254,8 @@ impl Certificate {
         if formula.sines.iter().any(|sine| !sine.is_zero()) {
             return Err("a formula with sines, of a motion that begins at rest");
         }
-        // Half a period later the motion begins at its other turning point: the formula is of the
-        // same start.
+        // Half a period later the motion begins at its other turning point: the formula must have
+        // the same start.
         let start = formula.motion(self.bits).at_zero();
         let apart = WORKING.difference(&start, &WORKING.fraction(&self.start));
         let size = formula.motion(self.bits).norm() * Bound::power_of_two(-ROUNDING_OF_START);
@@ -266,8 +266,8 @@ impl Certificate {
         law::law_matches_frequency(formula, self.bits).map(|_| ())
     }
 
-    /// Checks that the amplitude among the values of the law is that of the motion, about a place
-    /// of rest.
+    /// Checks that the amplitude among the values of the law is that of the motion, measured from
+    /// an equilibrium.
     fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
         let letter = formula.letters.amplitude;
         let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
@@ -301,11 +301,11 @@ impl Certificate {
     }
 }
 
-/// An equilibrium is known so well, in binary digits of the amplitude.
+/// Number of binary digits of the amplitude to which an equilibrium is known.
 const ROUNDING_OF_EQUILIBRIUM: usize = 30;
 
-/// The sum of the coefficients of a formula is its start up to so many binary digits of their size:
-/// they are doubles, of series that may cancel.
+/// Number of binary digits, of the size of the coefficients, to which their sum agrees with the
+/// start of the formula: they are doubles, and may cancel.
 const ROUNDING_OF_START: i32 = 20;
 
 /// The parts of a certificate whose sizes are checked before anything is computed with them.
@@ -315,11 +315,11 @@ struct Sizes<'a> {
     sigma: i32,
     highest: usize,
     odd: bool,
-    /// That which is looked for beside the harmonics.
+    /// The unknown besides the harmonics: `mu` or `1/omega`.
     number: &'a Integer,
     coefficients: &'a [&'a [Integer]],
     inverse: &'a [Vec<Integer>],
-    /// With the letters that they may have.
+    /// The expressions, each with the symbols that it may contain.
     expressions: &'a [(&'a Expr, &'a [Symbol])],
 }
 

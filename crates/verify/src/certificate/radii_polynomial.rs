@@ -101,8 +101,9 @@ pub(super) struct Correction<Place> {
     pub(super) beyond: Vec<(Place, Ball)>,
 }
 
-/// The radius of the ball, with the bounds Y0 and Z1 as they are and Z2 for each R that is tried.
-/// `distinct` says whether what is in a ball of a radius is a motion of the kind that is meant.
+/// The radius of the ball, from the bounds Y0 and Z1 and a function that gives Z2 for each R that
+/// is tried. `distinct` says whether a ball of a given radius contains only motions of the required
+/// kind.
 ///
 /// # Errors
 /// [`NotProved`].

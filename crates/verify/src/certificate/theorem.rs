@@ -9,11 +9,11 @@
 //! D = (1 - Z1)^2 - 2 Y0 Z2,   r = 2 Y0/((1 - Z1) + sqrt(D))                   norm: sigma |mu| + sum_k |c_k|
 //! ```
 //!
-//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1`, `r/sigma < mu` and `r < |c_1|`, the map
-//! `1 - B F` takes the ball of radius r about the approximation into itself and contracts there: it
-//! holds exactly one solution, whose smallest period is `2 pi sqrt(mu)`. The approximate inverse B
-//! is a matrix on `mu` and the harmonics up to N, and `-1/k^2` beyond, whose sum the condition at
-//! `t = 0` feels. Nothing that is read here is trusted: any numbers may be claimed, and every
+//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1`, `r/sigma < mu` and `r < |c_1|`, the map `1 - B
+//! F` takes the ball of radius r about the approximation into itself and contracts there: it holds
+//! exactly one solution, whose smallest period is `2 pi sqrt(mu)`. The approximate inverse B is a
+//! matrix on `mu` and the harmonics up to N, and `-1/k^2` beyond, where the sum of the corrections
+//! enters the condition at `t = 0`. No input is trusted: any numbers may be claimed, and every
 //! inequality is checked in balls.
 //!
 //! Source: S. Day, J.-P. Lessard, K. Mischaikow: Validated continuation for equilibria of PDEs,
@@ -41,7 +41,7 @@ pub(super) fn prove(certificate: &Certificate) -> Result<Proof, NotProved> {
     Theorem::new(certificate)?.proof(Bound::ZERO)
 }
 
-/// The motions of all starts that are near that of a certificate.
+/// The motions of all starts near that of a certificate.
 pub(super) struct Neighbours {
     /// `1/omega^2` of every one of them.
     pub(super) mu: Ball,
@@ -108,7 +108,7 @@ impl Direction {
     }
 }
 
-/// The bounds of a certificate that its proofs are made of.
+/// The bounds of a certificate from which its proofs follow.
 struct Theorem<'a> {
     system: BoundData<'a>,
     /// f' and f''.
@@ -136,7 +136,7 @@ impl<'a> Theorem<'a> {
         })
     }
 
-    /// The proof for every start that is so near.
+    /// The proof for every start within `spread`.
     fn proof(&self, spread: Bound) -> Result<Proof, NotProved> {
         let certificate = self.system.certificate;
         let defect = self.defect + spread * self.system.start;
@@ -251,8 +251,8 @@ impl<'a> BoundData<'a> {
         WORKING.product(&self.mu, &self.force.cosine(k))
     }
 
-    /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the
-    /// further off.
+    /// `B F`: the correction of `mu` and of every harmonic, the amount by which the approximation
+    /// is off.
     fn correction(&self) -> Correction<usize> {
         let last = self.motion.cosines.len().max(self.force.cosines.len());
         let sum = self.motion.at_zero();
@@ -263,8 +263,8 @@ impl<'a> BoundData<'a> {
         })
     }
 
-    /// B of what is left of the equations: of that at the start, and of those of the harmonics up
-    /// to one.
+    /// B applied to the residuals: of the condition at the start, and of the equations of the
+    /// harmonics up to a given one.
     fn image(
         &self,
         mut start: Ball,
@@ -385,7 +385,8 @@ impl<'a> BoundData<'a> {
             start = WORKING.sum(&start, &image);
             tail += WORKING.magnitude(&image);
         }
-        // Far beyond, nothing of f' reaches the block: the condition at t = 0 alone does.
+        // Far beyond the block, f' does not couple a harmonic to it; only the condition at t = 0
+        // does.
         if j > self.certificate.highest + last {
             return tail + self.start * WORKING.magnitude(&start);
         }

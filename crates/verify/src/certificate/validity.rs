@@ -1,10 +1,10 @@
 //! From an amplitude to a range: a formula that is within a tolerance for every amplitude of an
 //! interval, proved.
 //!
-//! An interval `|A - A_m| <= h` is one question more in the theorem: the condition at `t = 0` is
-//! off by h at most, so that `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at
-//! `A_m` prove all motions of the interval at once. The square of the ratio of the frequencies is
-//! `q = omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
+//! An interval `|A - A_m| <= h` enters the theorem as follows: the condition at `t = 0` is off by
+//! at most h, so that `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at `A_m`
+//! prove all motions of the interval at once. The square of the ratio of the frequencies is `q =
+//! omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
 //!
 //! ```text
 //! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
@@ -14,8 +14,8 @@
 //! error hardly changes with A they cancel.
 //!
 //! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far
-//! the formula is proved to hold from its lower end on. Intervals are halved where they do not
-//! prove it and widened where they do; each costs a proof.
+//! the formula is proved to hold from its lower end on. Intervals are halved if the proof fails and
+//! widened if it succeeds; each costs a proof.
 
 use super::candidate::{NotCertified, certify, inverse, refine, weight};
 use super::force::along;
@@ -56,7 +56,8 @@ pub enum RangeEnd {
     Asked,
     /// The error of the formula is proved to be larger at this amplitude.
     Further(Rational),
-    /// The formula is not proved to be within there, and not proved to be beyond either.
+    /// At this amplitude the error is neither proved to be within the tolerance nor proved to be
+    /// beyond it.
     Open(Rational),
     /// There is no proof of the motion there.
     Unproved(Rational, NotCertified),
@@ -64,15 +65,15 @@ pub enum RangeEnd {
     Stopped,
 }
 
-/// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter
-/// than from one to the next. For a smaller tolerance there are more, up to sixteen times as many.
+/// Number of amplitudes of the range, at equal ratios, for a tolerance of a hundredth: no interval
+/// is shorter than one step. For a smaller tolerance there are more, up to sixteen times as many.
 const PLACES: u32 = 1 << 16;
 
-/// Binary digits of the motions, of which a few hundredths have to be proved.
+/// Binary digits of the motions, whose error need only be small beside the tolerance.
 const BITS: usize = 48;
 
-/// The largest weight of an error of `mu`, as a power of two: with more the inequalities hold for
-/// shorter intervals alone.
+/// The largest weight of an error of `mu`, as a power of two: with a larger one the inequalities
+/// hold only for shorter intervals.
 const HEAVIEST: i32 = 4;
 
 /// Computes the range of amplitudes from `from` to `to`, both positive, in which a formula is
@@ -135,8 +136,8 @@ pub fn validity(
             }
             _ if width > 1 => width = (width / 2).min(next - position),
             _ => {
-                // At the first places beyond, the error is too near to the tolerance to be told
-                // from it. As they are printed, with six digits.
+                // At the first amplitudes beyond, the error is too close to the tolerance to be
+                // decided. They are rounded to six digits, as they are printed.
                 let shown = |position: u32| match position.min(finest) {
                     position if position == finest => to.clone(),
                     position => rounded_fraction(&place(position), 6),
@@ -155,11 +156,11 @@ struct Family<'a> {
     solution: &'a Solution,
     /// The values of the parameters.
     at: Values,
-    /// The last motion that was looked for, from where the next one is.
+    /// The motion that was found last, from which the next one starts.
     certificate: Certificate,
     /// The equilibrium about which the motion oscillates.
     equilibrium: Rational,
-    /// omega~^2 as an expression in the amplitude, which has the letter of the coordinate here.
+    /// omega~^2 as an expression in the amplitude, which has the symbol of the coordinate here.
     squared: Expr,
     /// Its derivative.
     slope: Expr,
@@ -226,8 +227,8 @@ impl<'a> Family<'a> {
         Ok(WORKING.magnitude(&WORKING.difference(&root, &WORKING.integer(1))).value())
     }
 
-    /// The first of these amplitudes at which the formula is proved to be off by more, or what is
-    /// known of the very first.
+    /// The first of these amplitudes at which the error is proved to exceed the tolerance, or else
+    /// the result at the very first.
     fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> RangeEnd {
         let is_further = |amplitude: &Rational| {
             let (_, certified) = certify(
@@ -246,8 +247,8 @@ impl<'a> Family<'a> {
     }
 }
 
-/// The proof of all motions whose start is so near, with a larger block where that of the last one
-/// is too small.
+/// The proof of all motions whose start is within `spread`, with a larger block if the last one is
+/// too small.
 fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
     certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
     match prove_around(certificate, spread) {

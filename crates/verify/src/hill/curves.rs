@@ -1,9 +1,9 @@
 //! The transition curves of one tongue, exact, order by order.
 //!
 //! On them a motion of the period 4 pi/Omega exists, `x(phi)` with `phi = Omega t/2`, so that the
-//! mean stiffness `lambda` is an eigenvalue. What belongs to the harmonic n is split off (C. Bloch,
-//! Nucl. Phys. 6 (1958) 329): with `X` the motions that begin as `cos n phi` and `sin n phi`, and
-//! have nothing else of harmonic n,
+//! mean stiffness `lambda` is an eigenvalue. The harmonic n is separated by effective perturbation
+//! theory (C. Bloch, Nucl. Phys. 6 (1958) 329): with `X` the motions that begin as `cos n phi` and
+//! `sin n phi`, and have no other part of harmonic n,
 //!
 //! ```text
 //! lambda x = -(Omega^2/4) x_phiphi - (Omega/2) c x_phi - p x =: (M0 + V) x
@@ -13,8 +13,8 @@
 //!
 //! The eigenvalues of the two by two matrix H are the two curves: its diagonal where it has no
 //! other entries, and otherwise `C -+ sqrt(Q)`, `C = tr H/2`, `Q = C^2 - det H`. C and Q are power
-//! series in what is small even where the curves are none, as at the tip of a tongue that damping
-//! has drawn back.
+//! series in the small parameters even where the curves are not, as at the tip of a tongue that
+//! damping has moved away from the axis.
 
 use std::collections::BTreeMap;
 
@@ -30,8 +30,8 @@ use crate::symbol::Symbol;
 /// One curve: `middle`, or `middle -+ sqrt(under_root)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransitionCurve {
-    /// `a1` and `b1` for a motion of cosines and one of sines; `lower1` and `upper1` where it is of
-    /// both.
+    /// `a1` and `b1` for a motion of cosines and one of sines; `lower1` and `upper1` for a motion
+    /// of both.
     pub name: String,
     /// n: on the curve a motion of the frequency n*Omega/2 exists.
     pub tongue: usize,
@@ -39,7 +39,7 @@ pub struct TransitionCurve {
     pub middle: Polynomial,
     /// The radicand; `None` if the curve is a power series.
     pub under_root: Option<Polynomial>,
-    /// Whether it is the upper one of its pair where what is small is positive: the one to which
+    /// Whether it is the upper curve of its pair for positive small parameters: the one to which
     /// the root is added.
     pub upper: bool,
     /// The harmonics of the periodic motion on the curve.
@@ -103,7 +103,7 @@ fn of_waves(letter: &str, tongue: usize, middle: Polynomial) -> TransitionCurve 
     }
 }
 
-/// Both curves where H has nothing beside its diagonal: each of its entries has its own.
+/// Both curves if H is diagonal: each diagonal entry gives one.
 fn separate(
     hill: &Hill,
     tongue: usize,
@@ -165,8 +165,8 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     vec![curve(false), curve(true)]
 }
 
-/// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown
-/// that is solved for.
+/// The mean of the diagonal of H, and the square of the distance of the curves from it, in terms of
+/// the unknown.
 fn middle_and_square(
     power: &TruncatedPowers,
     tongue: usize,
@@ -192,7 +192,7 @@ fn middle_and_square(
     }
 }
 
-/// H, to the order in what is small; for tongue 0 its first entry alone.
+/// H to an order in the small parameters; for tongue 0 its first entry alone.
 fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2]; 2] {
     let frequency = hill.frequency.polynomial();
     let quarter = frequency.product(&frequency).scaled(&ratio(1, 4));
@@ -286,7 +286,7 @@ impl Combined for Polynomial {
     }
 }
 
-/// Power series in what is small, cut after an order.
+/// Power series in the small parameters, truncated after an order.
 #[derive(Clone, Copy)]
 struct TruncatedPowers<'a> {
     hill: &'a Hill,
@@ -314,8 +314,8 @@ impl TruncatedPowers<'_> {
         self.kept(polynomial, |degree| degree <= highest)
     }
 
-    /// Whether the first of two curves is the upper one just above zero of all that is small, other
-    /// letters being positive.
+    /// Whether the first of two curves is the upper one for small parameters just above zero, all
+    /// other symbols being positive.
     fn is_above(&self, first: &Polynomial, second: &Polynomial) -> bool {
         let difference = first.less(second);
         let Some(least) = self.least_degree(&difference) else {
@@ -325,19 +325,19 @@ impl TruncatedPowers<'_> {
         leading.evaluate(|_| Some(1.0)).is_ok_and(|value| value > 0.0)
     }
 
-    /// Whether what a curve gives falls where the eigenvalue grows.
+    /// Whether the unknown decreases as the eigenvalue grows.
     fn decreases_with_eigenvalue(&self) -> bool {
         match self.hill.unknown {
             Unknown::Stiffness { .. } => {
                 let factor = self.hill.factor.single_term();
                 factor.is_some_and(|(_, number)| *number < Rational::zero())
             }
-            // The frequency has to be lower for the eigenvalue to be the mean stiffness still.
+            // A larger eigenvalue equals the mean stiffness at a lower frequency.
             Unknown::Frequency(_) => true,
         }
     }
 
-    /// One over the term before the unknown power.
+    /// The reciprocal of the coefficient of the unknown power.
     fn inverse_factor(&self) -> Polynomial {
         let factor = self.hill.factor.single_term();
         factor.map_or_else(Polynomial::zero, |(monomial, number)| {
@@ -352,11 +352,12 @@ impl TruncatedPowers<'_> {
                 eigenvalue.less(&self.hill.constant).product(&self.inverse_factor())
             }
             Unknown::Frequency(name) => {
-                // constant = n^2 w/4 + rest(w): from the right side of the order before.
+                // constant = n^2 w/4 + rest(w), solved by iteration with the right side of the
+                // order before.
                 let scale = self.first_square(tongue);
                 let mut square = scale.product(&self.hill.constant);
                 let rest = self.kept(eigenvalue, |degree| degree > 0);
-                // Each round is right to one order more, and keeps no other.
+                // Each iteration gains one order, and truncates the others.
                 for order in 1..=self.order {
                     let round = TruncatedPowers { order, ..*self };
                     let rest = round.with_square(&rest, name, &square);
@@ -368,7 +369,7 @@ impl TruncatedPowers<'_> {
         }
     }
 
-    /// `w/lambda` where nothing is small: `4/(n^2 q^2)` for the frequency `q*Omega`.
+    /// `w/lambda` at zero small parameters: `4/(n^2 q^2)` for the frequency `q*Omega`.
     fn first_square(&self, tongue: usize) -> Polynomial {
         let number = &self.hill.frequency.number;
         Polynomial::constant(ratio(4, 1) / (fraction(tongue * tongue, 1) * number * number))
@@ -399,7 +400,7 @@ impl TruncatedPowers<'_> {
         sum
     }
 
-    /// The product up to a degree; what is above is not made.
+    /// The product up to a degree; higher terms are not computed.
     fn product(&self, left: &Polynomial, right: &Polynomial, highest: i64) -> Polynomial {
         let by_degree = |polynomial: &Polynomial| {
             let mut parts: BTreeMap<i64, Polynomial> = BTreeMap::new();
@@ -433,7 +434,8 @@ impl TruncatedPowers<'_> {
         powers
     }
 
-    /// One over a series that begins with a single term: `1/(s (1 + u)) = (1 - u + u^2 - ...)/s`.
+    /// The reciprocal of a series that begins with a single term: `1/(s (1 + u)) = (1 - u + u^2 -
+    /// ...)/s`.
     fn inverse(&self, series: &Polynomial) -> Polynomial {
         let first = self.kept(series, |degree| degree == 0);
         let inverse = first
@@ -445,7 +447,7 @@ impl TruncatedPowers<'_> {
         let one = Polynomial::constant(Rational::one());
         let rest = series.less(&first).product(&inverse).scaled(&ratio(-1, 1));
         let mut sum = one.clone();
-        // Each round is right to one order more.
+        // Each iteration gains one order.
         for order in 1..=self.highest() {
             sum = one.sum_with(&self.product(&rest, &sum, order));
         }
@@ -476,10 +478,10 @@ impl TruncatedPowers<'_> {
     }
 
     /// Middle and half distance squared of `w = Omega^2` from those of the eigenvalues at a given
-    /// w: Weierstrass's polynomial `v^2 + b v + e`, `v = w - w_0`, of
-    /// `F(w) = (lambda - C(w))^2 - Q(w)`, which has the two roots that vanish with what is small.
-    /// Dividing `v^2 = q F + r` gives it: `E q = 1 - hi(q lo(F))`, where `F = lo(F) + v^2 E` and lo
-    /// is of degree one in v.
+    /// w: Weierstrass's polynomial `v^2 + b v + e`, `v = w - w_0`, of `F(w) = (lambda - C(w))^2 -
+    /// Q(w)`, which has the two roots that vanish with the small parameters. Dividing `v^2 = q F +
+    /// r` gives it: `E q = 1 - hi(q lo(F))`, where `F = lo(F) + v^2 E` and lo is of degree one in
+    /// v.
     fn frequency_squared(
         &self,
         middle: &Polynomial,
@@ -525,8 +527,8 @@ impl TruncatedPowers<'_> {
         let unit = power.inverse(&high);
         let one = Polynomial::constant(Rational::one());
         let mut quotient = unit.clone();
-        // Each round is right to one order more in what is small beside v, since that is what every
-        // term of lo(F) has.
+        // Each iteration gains one order in the small parameters without v, since every term of
+        // lo(F) contains them.
         for order in 1..=highest {
             let [_, above] = split(&power.product(&quotient, &low, highest + 2));
             let next = power.product(&unit, &one.less(&above), highest);

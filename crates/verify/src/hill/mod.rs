@@ -10,7 +10,7 @@
 //!
 //! In comes an [`Oscillator`] of this form; out go its transition curves `delta(eps)`, exact to an
 //! order: there a motion of period T or 2 T exists, and between two of them that belong together
-//! rest is unstable. They are judged by Floquet's multipliers of the equation.
+//! rest is unstable. They are verified by Floquet's multipliers of the equation.
 
 mod curves;
 mod periodic;
@@ -36,7 +36,7 @@ pub use truth::{Chart, JudgedCurve, chart, judge};
 /// The highest order that is derived.
 pub const HIGHEST_ORDER: u32 = 60;
 
-/// The most tongues that are derived, beside that of number 0.
+/// The largest number of tongues that are derived, not counting number 0.
 pub const MOST_TONGUES: usize = 20;
 
 /// Order, number of tongues and unknowns of a derivation.
@@ -46,10 +46,10 @@ pub struct HillOptions {
     pub order: u32,
     /// The tongues 0, 1, ... up to this one.
     pub tongues: usize,
-    /// The small parameters, where they are named.
+    /// The small parameters, if they are named; empty otherwise.
     pub small: Vec<String>,
-    /// The letter for which the curves are solved, in the mean stiffness or the frequency; chosen
-    /// by the equation if `None`.
+    /// The symbol for which the curves are solved, in the mean stiffness or the frequency; if
+    /// `None`, it is chosen by the form of the equation.
     pub solve_for: Option<String>,
 }
 
@@ -63,14 +63,14 @@ impl Default for HillOptions {
 /// The quantity that a transition curve gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// A power of a letter that stands in one term of the mean stiffness and nowhere else.
+    /// A power of a symbol that occurs in one term of the mean stiffness and nowhere else.
     Stiffness {
         /// The letter.
         name: Symbol,
         /// Its power there, not zero.
         power: i32,
     },
-    /// The square of the frequency, whose letter this is.
+    /// The square of the frequency, which has this symbol.
     Frequency(Symbol),
 }
 
@@ -82,7 +82,7 @@ impl Unknown {
         }
     }
 
-    /// The power of the letter that the curves give: 1 for `delta`, 2 for `Omega^2`.
+    /// The power of the symbol that the curves give: 1 for `delta`, 2 for `Omega^2`.
     pub fn power(self) -> i32 {
         match self {
             Self::Stiffness { power, .. } => power,
@@ -107,26 +107,26 @@ pub struct TransitionCurves {
     pub small: Vec<Symbol>,
     /// The highest power kept.
     pub order: u32,
-    /// The letters of the equation.
+    /// The parameters of the equation.
     pub parameters: Vec<Symbol>,
-    /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are
+    /// The symbol W of the dimensionless time `tau = W*t` in which the coefficients below are
     /// written; `None` if they are functions of the time of the equation.
     pub time_scale: Option<Symbol>,
     /// The frequency of the coefficients.
     pub frequency: Frequency,
     /// `c(t)`.
     pub damping: Expr,
-    /// All that stands before the coordinate.
+    /// The coefficient of the coordinate.
     pub stiffness: Expr,
     /// The highest harmonic of both, in halves of their frequency.
     pub highest_harmonic: usize,
-    /// The curves, those of tongue 0 first, the lower one of a pair before the upper one where all
-    /// that is small is positive.
+    /// The curves, those of tongue 0 first, the lower one of a pair before the upper one for
+    /// positive small parameters.
     pub curves: Vec<TransitionCurve>,
 }
 
 impl TransitionCurves {
-    /// A polynomial of a curve, lowest order in what is small first.
+    /// A polynomial of a curve, lowest order in the small parameters first.
     pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
         Sum::new(polynomial, false, |monomial| {
             self.small.iter().map(|name| monomial.exponent(*name)).sum()
@@ -148,7 +148,7 @@ impl TransitionCurves {
         Expr::divide(&turn, &self.driving_frequency())
     }
 
-    /// The names of what is small: `eps, zeta`.
+    /// The names of the small parameters: `eps, zeta`.
     pub fn small_in_words(&self) -> String {
         let names: Vec<&str> = self.small.iter().map(|name| name.name()).collect();
         names.join(", ")
@@ -170,7 +170,7 @@ impl TransitionCurve {
     }
 }
 
-/// Why there are no transition curves, or no judgement of them.
+/// The reason why there are no transition curves, or no verification of them.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HillError {
@@ -185,7 +185,7 @@ pub enum HillError {
     /// A term without the coordinate.
     #[error("the term `{0}` drives the motion and has no part in the stability of rest")]
     Drive(String),
-    /// A coefficient that is no finite Fourier series.
+    /// A coefficient that is not a finite Fourier series.
     #[error(
         "`{0}` is no sum of waves cos(m*Omega*t), sin(m*Omega*t) of one period, with products of letters before them"
     )]
@@ -193,21 +193,21 @@ pub enum HillError {
     /// All coefficients are constant.
     #[error("no coefficient depends on the time, so there are no transition curves")]
     Constant,
-    /// There is no letter to solve for.
+    /// There is no symbol to solve for.
     #[error("there is no letter to solve for: neither the mean stiffness nor the frequency is one")]
     NoUnknown,
-    /// Several letters to solve for.
+    /// There are several symbols to solve for.
     #[error("the mean stiffness has the letters {0}: which of them do the curves give?")]
     SeveralUnknowns(String),
-    /// A letter that cannot be solved for.
+    /// A symbol that cannot be solved for.
     #[error("`{0}` is neither a letter of the mean stiffness alone nor the frequency")]
     NotAnUnknown(String),
-    /// A frequency that stands in several coefficients also in the time that it scales.
+    /// A frequency that remains in several coefficients even in the time that it scales.
     #[error(
         "the curves cannot be solved for `{0}`: with the time tau = {0}*t it still stands in several terms of the coefficients, {1}"
     )]
     InSeveralTerms(Symbol, String),
-    /// A mean stiffness that is zero where the frequency is asked for.
+    /// A mean stiffness that is not a single positive term although the frequency is the unknown.
     #[error(
         "the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone"
     )]
@@ -215,13 +215,13 @@ pub enum HillError {
     /// A coefficient that is a number.
     #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
     NumberIsSmall(String),
-    /// Several letters might be small, and none was named.
+    /// Several parameters might be small, and none was named.
     #[error("which of {0} are small?")]
     SeveralSmall(String),
-    /// A letter that is small by request and is none.
+    /// A parameter that is to be small but does not occur.
     #[error("`{0}` is no parameter of the equation")]
     UnknownSmall(String),
-    /// A term that does not vanish with what is small.
+    /// A term that does not vanish with the small parameters.
     #[error("the term `{0}` does not vanish with {1}")]
     NotSmall(String, String),
     /// An order beyond the limits.
@@ -229,16 +229,16 @@ pub enum HillError {
         "the order is a whole number from 1 to {HIGHEST_ORDER}, the tongues are 0 to {MOST_TONGUES}"
     )]
     Limits,
-    /// Letters without a number.
+    /// Parameters without a value.
     #[error("no value for {0}")]
     Missing(String),
-    /// A value for a letter that does not occur, or that the curves give.
+    /// A value for a symbol that does not occur, or that the curves give.
     #[error("there is a value for `{0}`, which {1}")]
     Unknown(Symbol, &'static str),
     /// No positive frequency.
     #[error("the frequency of the coefficients is {0} there, and must be positive")]
     Frequency(f64),
-    /// Coefficients that are no numbers, or too large.
+    /// Coefficients that have no finite value, or are too large.
     #[error(
         "the coefficients have no finite value there, or are too large for {} harmonics",
         truth::MOST_HARMONICS
@@ -297,11 +297,11 @@ impl HillError {
     }
 }
 
-/// An equation taken apart.
+/// Hill's equation, separated into its coefficients.
 struct Hill {
     unknown: Unknown,
-    /// The term that stands before the unknown power in the mean stiffness; zero where the
-    /// frequency is unknown.
+    /// The coefficient of the unknown power in the mean stiffness; zero if the frequency is the
+    /// unknown.
     factor: Polynomial,
     /// The part of the mean stiffness that is neither the unknown nor small.
     constant: Polynomial,
@@ -309,13 +309,14 @@ struct Hill {
     frequency: Frequency,
     /// Highest harmonic of the coefficients, in halves of the frequency.
     highest_harmonic: usize,
-    /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in what is small.
+    /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in the small parameters.
     graded: Vec<[FourierSeries<Polynomials>; 2]>,
 }
 
-/// The transition curves of an equation, exact to an order in what is small.
+/// The transition curves of an equation, exact to an order in the small parameters.
 ///
-/// Costs, for each tongue and order, the products of the coefficients with the orders before.
+/// The cost is, for each tongue and order, that of the products of the coefficients with the orders
+/// before.
 ///
 /// # Errors
 /// [`HillError`].
@@ -368,7 +369,7 @@ pub fn transition_curves(
     })
 }
 
-/// `c(t)` and all that stands before `x`.
+/// `c(t)` and the coefficient of `x`.
 fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> {
     let [x, v] = [oscillator.coordinate, oscillator.velocity()];
     let force = oscillator.force.expand()?;
@@ -392,9 +393,9 @@ fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> 
     Ok([damping, stiffness])
 }
 
-/// The letter W of the frequency of the waves if it stands in the coefficients as well, as in
-/// `amp*W^2*cos(W*t)`, and is what the curves are wanted for: the one asked for, or the only one
-/// there is.
+/// The symbol W of the frequency of the waves if it occurs in the coefficients as well, as in
+/// `amp*W^2*cos(W*t)`, and the curves are to be solved for it: because it was requested, or because
+/// it is the only candidate.
 fn time_scale(coefficients: &[Expr; 2], asked: Option<&str>) -> Option<Symbol> {
     let frequency = periodic::frequency(coefficients).ok()??;
     let [(name, 1)] = frequency.unit.factors() else {
@@ -428,7 +429,7 @@ fn in_scaled_time([damping, stiffness]: &[Expr; 2], name: Symbol) -> Result<[Exp
     Ok([scaled(damping, 1)?, scaled(stiffness, 2)?])
 }
 
-/// The letters that stand as a term of the mean stiffness by themselves.
+/// The symbols that are a term of the mean stiffness by themselves.
 fn stiffness_letters(mean: &Polynomial) -> impl Iterator<Item = Symbol> {
     mean.terms().filter_map(|(monomial, _)| match monomial.factors() {
         [(name, 1)] => Some(*name),
@@ -436,7 +437,7 @@ fn stiffness_letters(mean: &Polynomial) -> impl Iterator<Item = Symbol> {
     })
 }
 
-/// The first typed term that answers to `is_meant`; else the term as it was understood.
+/// The first typed term for which `is_meant` holds, else the term as it was understood.
 fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Expr) -> String {
     match oscillator.typed.values().position(|value| is_meant(&value)) {
         Some(number) => oscillator.typed.quote(&[number]),
@@ -544,7 +545,7 @@ impl Hill {
     }
 }
 
-/// Chooses the unknown of the curves: a letter that stands in the mean stiffness alone, or the
+/// Chooses the unknown of the curves: a symbol that occurs only in the mean stiffness, or the
 /// frequency.
 fn unknown(
     mean: &Polynomial,
@@ -590,7 +591,7 @@ fn unknown(
     }
 }
 
-/// The terms of the coefficients in which a letter stands: `c/W`, `g/(l*W^2)`.
+/// The terms of the coefficients that contain a symbol: `c/W`, `g/(l*W^2)`.
 fn terms_with(name: Symbol, coefficients: [&FourierSeries<Polynomials>; 2]) -> String {
     let terms =
         coefficients.into_iter().flat_map(FourierSeries::numerators).flat_map(Polynomial::terms);
@@ -609,8 +610,8 @@ fn listed(names: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// The small parameters: those that were named, or else `eps` and every letter that stands alone
-/// before a harmonic or the velocity.
+/// The small parameters: those that were named, or else `eps` and every symbol that alone
+/// multiplies a harmonic or the velocity.
 fn small(
     oscillator: &Oscillator,
     [damping, stiffness]: [&FourierSeries<Polynomials>; 2],
@@ -667,7 +668,7 @@ fn small(
             small.insert(*only);
         }
     }
-    // Of `amp/l` beside the mean stiffness `g/l` only the amplitude can vanish alone.
+    // If a coefficient is `amp/l` and the mean stiffness is `g/l`, only `amp` can vanish by itself.
     let mean = stiffness.constant_term();
     let in_mean = |name: &Symbol| mean.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
     for (letters, _) in &terms {

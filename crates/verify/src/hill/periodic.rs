@@ -1,9 +1,9 @@
 //! An expression of the time as a finite Fourier series: `cos(m*Omega*t)`, `sin(m*Omega*t)`, their
 //! products and powers.
 //!
-//! In: an expression, the parameters being letters. Out: its exact series in `phi = Omega*t/2`, in
-//! whose even harmonics the period of the coefficients stands, so that motions of twice that period
-//! have a place too. What is no such sum is handed back.
+//! In: an expression with symbols for its parameters. Out: its exact series in `phi = Omega*t/2`,
+//! where the coefficients have even harmonics and motions of twice their period have odd ones. The
+//! error is the first term that is not such a sum.
 
 use std::convert::Infallible;
 
@@ -16,24 +16,24 @@ use crate::expr::{Expr, Function, Node};
 use crate::series::FourierSeries;
 use crate::symbol::Symbol;
 
-/// The most harmonics of a coefficient.
+/// Largest number of harmonics of a coefficient.
 const MOST_HARMONICS: usize = 200;
 
 /// The highest power of a sum of waves that is written out.
 const HIGHEST_POWER: u32 = 40;
 
 /// The angular frequency of which all waves are multiples: `number * unit`, where the unit is a
-/// product of letters, or one.
+/// product of symbols, or one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frequency {
-    /// The number before the letters, positive.
+    /// The numerical factor, positive.
     pub number: Rational,
-    /// The letters.
+    /// The product of symbols.
     pub unit: Monomial,
 }
 
 impl Frequency {
-    /// As a polynomial.
+    /// The frequency as a polynomial.
     pub fn polynomial(&self) -> Polynomial {
         Polynomial::term(self.unit.clone(), self.number.clone())
     }
@@ -45,7 +45,7 @@ impl Frequency {
     }
 }
 
-/// `rate` in `rate*t`, for the argument of a wave: its number and its letters.
+/// `rate` in the argument `rate*t` of a wave: its numerical factor and its product of symbols.
 fn rate(argument: &Expr) -> Option<(Rational, Monomial)> {
     let time = Symbol::new("t");
     let polynomial = argument.to_polynomial(&mut |_| None).ok()??;
@@ -62,7 +62,8 @@ fn common(a: &Rational, b: &Rational) -> Rational {
 /// The frequency of all waves in these expressions; `None` if no wave occurs.
 ///
 /// # Errors
-/// A wave whose argument is no multiple of the time, or of another frequency than those before it.
+/// A wave whose argument is not a multiple of time, or whose frequency has no common unit with
+/// those before it.
 pub fn frequency<'a>(
     expressions: impl IntoIterator<Item = &'a Expr>,
 ) -> Result<Option<Frequency>, Expr> {
@@ -113,8 +114,8 @@ pub fn series(
     expression.terms().iter().try_fold(zero, |sum, part| Ok(sum.sum(&term(part)?)))
 }
 
-/// The series of a part, given those of its own parts; none for what has no series, as the argument
-/// of a wave.
+/// The series of an expression, given those of its parts; `None` for a part without a series, such
+/// as the argument of a wave.
 fn series_of(
     part: &Expr,
     parts: &[Option<FourierSeries<Polynomials>>],
@@ -187,7 +188,7 @@ pub(super) fn fraction(numerator: usize, denominator: i64) -> Rational {
     Rational::from_integer(Integer::from(numerator)) * ratio(1, denominator)
 }
 
-/// Whether nothing is left of a series.
+/// Whether a series is zero.
 pub(super) fn is_constant(series: &FourierSeries<Polynomials>) -> bool {
     series.highest_harmonic().is_zero()
 }

@@ -1,4 +1,4 @@
-//! The judge of transition curves: Floquet's multipliers of the equation as it was typed.
+//! Verification of transition curves by Floquet's multipliers of the equation as it was typed.
 //!
 //! References: Nayfeh and Mook, section 5.2 (Floquet), 5.3 (Hill's determinant).
 //!
@@ -7,9 +7,8 @@
 //! Phi(T) of x'' + c x' + (k + mu) x = 0     has the multiplier +1 (n even) or -1 (n odd)
 //! ```
 //!
-//! The determinant says which root belongs to which tongue, for real ones come in their order; the
-//! multiplier of the integrated motion confirms it. Nothing is taken from the derivation but which
-//! curve is meant.
+//! The determinant assigns roots to tongues, because real ones come in their order; the multiplier
+//! of the integrated motion confirms it. Only the number of the curve is taken from the derivation.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -23,13 +22,13 @@ use crate::symbol::Symbol;
 use crate::system::{System, SystemOptions};
 use crate::values::Values;
 
-/// Harmonics beyond those that the coefficients ask for.
+/// Number of harmonics beyond those that the coefficients require.
 const SPARE_HARMONICS: usize = 16;
 
 /// Highest harmonic of the motion, in multiples of the highest harmonic of the coefficients.
 const TIMES_TAKEN_ON: usize = 3;
 
-/// The most harmonics of the determinant.
+/// Largest number of harmonics of the determinant.
 pub(super) const MOST_HARMONICS: usize = 200;
 
 /// Rounding error of a value of the determinant, over the square of the frequency.
@@ -49,15 +48,15 @@ pub struct JudgedCurve {
     pub curve: usize,
     /// The value by the formula; `None` if it is not real.
     pub value: Option<f64>,
-    /// In truth; `None` if the tongue does not reach so far.
+    /// The true value; `None` if the tongue does not reach so far.
     pub truth: Option<f64>,
-    /// `value/truth - 1`; `None` if one of them is none or the truth alone is zero.
+    /// `value/truth - 1`; `None` if either is `None`, or if only the truth is zero.
     pub relative_error: Option<f64>,
-    /// Whether the formula is right to the tolerance: both none is right.
+    /// Whether the formula is within the tolerance; it is if neither value exists.
     pub passes: bool,
 }
 
-/// Formula and truth of a curve against the size of what is small.
+/// Formula and truth of a curve against a small parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// Index of the curve.
@@ -68,7 +67,7 @@ pub struct Chart {
     pub truth: Vec<(f64, f64)>,
 }
 
-/// Every curve at the values, beside the truth.
+/// Every curve at the values, compared with the truth.
 ///
 /// # Errors
 /// [`HillError`].
@@ -125,7 +124,7 @@ pub fn judge(
     curves.curves.iter().enumerate().map(one).collect()
 }
 
-/// Every curve from nothing small to `upto` of the small parameter `by`, in equal steps.
+/// Every curve for values of the small parameter `by` from zero to `upto`, in equal steps.
 ///
 /// # Errors
 /// [`HillError`].
@@ -170,7 +169,7 @@ fn formula(
     letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
 }
 
-/// The letter whose power this is, positive where it has two signs; `None` if it is not real.
+/// The value of the symbol whose power is given, the positive one of two; `None` if it is not real.
 fn letter_of_power(value: f64, power: i32) -> Option<f64> {
     match power {
         1 => Some(value),
@@ -180,8 +179,8 @@ fn letter_of_power(value: f64, power: i32) -> Option<f64> {
     }
 }
 
-/// Whether a curve is the upper one of its pair at the numbers: where what is small is negative,
-/// two of them change places.
+/// Whether a curve is the upper one of its pair at the numbers: for a negative small parameter the
+/// two may change places.
 fn is_upper(
     curves: &TransitionCurves,
     curve: &TransitionCurve,
@@ -212,8 +211,8 @@ fn true_value(
         Unknown::Stiffness { power, .. } => {
             let slope = curves.stiffness.differentiate(unknown).ok();
             let slope = slope.ok_or(HillError::Coefficients)?;
-            // The equation without the unknown, where its power is one; else beside the formula,
-            // and once more at what comes of it.
+            // The reference is zero if the unknown enters linearly; otherwise it is the value of
+            // the formula, and then the results of two iterations.
             let mut reference = match power {
                 1 => 0.0,
                 _ => formula(curves, curve, numbers).filter(|value| *value != 0.0).unwrap_or(1.0),
@@ -263,7 +262,7 @@ fn frequency_without_remainder(
     with: &dyn Fn(f64) -> BTreeMap<Symbol, f64>,
 ) -> Result<Option<f64>, HillError> {
     let upper = is_upper(curves, curve, &with(1.0));
-    // mu grows with the frequency: the larger of two comes to zero first.
+    // mu grows with the frequency, so that the larger of the two reaches zero first.
     let mu = |frequency: f64| {
         SampledCoefficients::new(curves, &with(frequency))?.eigenvalue(curve, !upper)
     };
@@ -275,7 +274,7 @@ fn frequency_without_remainder(
         return Ok(None);
     }
     let guess = 2.0 * mean.sqrt() / count;
-    // From there on towards where it is zero.
+    // The search goes on from there in the direction of the zero.
     const STEPS: i32 = 300;
     let (mut from, mut before) = (guess, mu(guess)?.value);
     let ratio = if before < 0.0 { 1.01_f64 } else { 1.0 / 1.01 };
@@ -294,7 +293,7 @@ fn frequency_without_remainder(
     Ok(None)
 }
 
-/// An eigenvalue, its real part where it is one of a complex pair.
+/// An eigenvalue, or the real part of a complex pair.
 struct Eigenvalue {
     value: f64,
     is_real: bool,
@@ -353,7 +352,7 @@ impl SampledCoefficients {
     /// order. `above` asks for the larger one of its pair.
     fn eigenvalue(&self, curve: &TransitionCurve, above: bool) -> Result<Eigenvalue, HillError> {
         let odd = curve.tongue % 2;
-        // Normed waves: harmonic, and whether it is a sine.
+        // The normalised waves: harmonic, and whether it is a sine.
         let waves: Vec<(usize, bool)> = (odd..=self.harmonics)
             .step_by(2)
             .flat_map(|k| [(k, false), (k, true)])
@@ -375,7 +374,8 @@ impl SampledCoefficients {
         let mut images = DMatrix::zeros(count, waves.len());
         for (row, [c, k]) in self.samples.iter().enumerate() {
             for (column, (harmonic, is_sine)) in waves.iter().enumerate() {
-                // Reduced in whole numbers, so that the waves are orthogonal to the last digit.
+                // The index is reduced in whole numbers, so that the waves are orthogonal to the
+                // last digit.
                 let (sine, cosine) = round[(harmonic * row) % count];
                 let rate = *harmonic as f64 * half;
                 let (value, slope) =
@@ -401,8 +401,8 @@ impl SampledCoefficients {
             schur.complex_eigenvalues().iter().map(|value| (value.re, value.im)).collect()
         };
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Of both waves, that of tongue 0 stands before the pairs; of one, there is one for every
-        // second tongue.
+        // With cosines and sines, tongue 0 comes before the pairs; with one kind alone, there is
+        // one eigenvalue for every second tongue.
         let index = match (curve.motion, curve.tongue) {
             (WavesOfMotion::Sines, tongue) => (tongue - 1) / 2,
             (WavesOfMotion::Cosines, tongue) => tongue / 2,

@@ -1,14 +1,14 @@
 //! Backbones: the frequency of the free motion without damping against its amplitude, about every
-//! stable place of rest.
+//! stable equilibrium.
 //!
 //! ```text
 //! X(theta) = a_0 + a cos theta + a_2 cos(2 theta) + ...,   R(a_0, omega, a_2, ..., a_H) = 0 for the given a
 //! ```
 //!
-//! Resonance bends along it. In: an oscillator without drive and damping, a frequency as an
-//! expression in the parameter that varies. Out: the parameter at which the free motion has the
-//! frequency of the drive, for amplitudes from small to large; the same balance as that of the
-//! driven motion, with the frequency as an unknown.
+//! The resonance peak bends along it. In: an oscillator without drive and damping, the frequency of
+//! the drive as an expression in the parameter that varies. Out: the parameter at which the free
+//! motion has the frequency of the drive, for amplitudes from small to large; the same balance as
+//! that of the driven motion, with the frequency as an unknown.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -30,11 +30,11 @@ pub struct BackbonePoint {
     pub amplitude: f64,
 }
 
-/// Amplitudes of a curve.
+/// Number of amplitudes of a curve.
 const POINTS: usize = 120;
 
-/// The backbones of an oscillator about its places of rest, as far as they lie in the range: those
-/// of mirrored places once. `size` is the largest amplitude of interest.
+/// The backbones of an oscillator about its equilibria, as far as they lie in the range; of two
+/// mirrored equilibria only one is listed. `size` is the largest amplitude of interest.
 ///
 /// # Errors
 /// A force that cannot be differentiated.
@@ -77,7 +77,7 @@ pub fn backbones(
     Ok(curves)
 }
 
-/// The stable places of rest nearest to zero.
+/// The stable equilibria nearest to zero.
 pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<f64> {
     const CELLS: i32 = 400;
     const REACH: f64 = 3.0;
@@ -90,7 +90,7 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
         };
         (0..PHASES).map(force).sum::<f64>() / f64::from(PHASES)
     };
-    // Off the middle, so that zero lies inside a cell.
+    // The grid is shifted by half a cell, so that zero lies inside a cell.
     let place = |cell: i32| REACH * size * (f64::from(cell) + 0.5) / f64::from(CELLS);
     let mut found: Vec<f64> = (-CELLS..CELLS)
         .filter(|cell| mean_force(place(*cell)) < 0.0 && mean_force(place(cell + 1)) > 0.0)
@@ -134,7 +134,8 @@ fn curve(balance: &DrivenBalance, place: f64, range: [f64; 2], size: f64) -> Vec
     points
 }
 
-/// One harmonic about a place: its frequency by the first harmonic of the force.
+/// The motion of one harmonic about an equilibrium, with the frequency by the first harmonic of the
+/// force.
 fn first_guess(
     balance: &DrivenBalance,
     place: f64,
@@ -175,7 +176,7 @@ fn solved(
 ) -> Option<(DVector<f64>, f64)> {
     const MOST: usize = 30;
     let count = balance.core.harmonics + 1;
-    // The cosine of a harmonic: its place among the coefficients.
+    // The index of the cosine of a harmonic among the coefficients.
     let cosine = |harmonic: usize| if harmonic == 0 { 0 } else { 2 * harmonic - 1 };
     for _ in 0..MOST {
         let linear = balance.linearised(&coefficients, parameter)?;

@@ -3,9 +3,9 @@
 //!
 //! In: coefficients and a parameter. Out: residual and derivatives, in the units of the equation.
 //!
-//! At a jump of the force with the velocity, such as dry friction, samples would not tell where it
-//! is: the phases at which the velocity passes it are located, and what is more above it is
-//! integrated between them.
+//! Samples do not locate a jump of the force with the velocity, such as that of dry friction: the
+//! phases at which the velocity passes it are computed, and the height of the jump is integrated
+//! between them.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ use crate::numeric::balance::{ForceSample, HarmonicBalance, Linearised, LocatedF
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
-/// The equations for so many harmonics.
+/// The balance equations for a number of harmonics.
 #[derive(Clone, Debug)]
 pub struct DrivenBalance<'a> {
     /// The equation.
@@ -63,7 +63,7 @@ impl<'a> DrivenBalance<'a> {
         let force = |phase: f64, state: &[[f64; 2]], sample: &mut ForceSample| {
             let at = [state[0][0], state[0][1], phase, parameter];
             match jumps {
-                // What a jump adds above it is counted where the velocity is.
+                // The samples use the lower side of the jump; its height is added below.
                 true => {
                     write(sample, driven.force_on(&at, &[BELOW]), driven.slopes_on(&at, &[BELOW]))
                 }
@@ -74,10 +74,10 @@ impl<'a> DrivenBalance<'a> {
         self.core.linearised(&motion, frequency, above, force)
     }
 
-    /// What the force and its derivatives have more above a jump than below it, at phases of the
-    /// motion: an integral by Gauss and Legendre between the phases at which the velocity passes
-    /// the jump, and these phases themselves, at which the derivatives by the velocity and by what
-    /// moves the jump are Dirac's.
+    /// The height of a jump of the force and of its derivatives, at phases of the motion: an
+    /// integral by Gauss and Legendre between the phases at which the velocity passes the jump, and
+    /// these phases themselves, at which the derivatives by the velocity and by the parameter of
+    /// the jump are delta functions.
     fn above(
         &self,
         coefficients: &DVector<f64>,
@@ -141,7 +141,7 @@ impl<'a> DrivenBalance<'a> {
         all
     }
 
-    /// Newton's method for the coefficients at a fixed parameter; `None` if it does not settle.
+    /// Newton's method for the coefficients at a fixed parameter; `None` if it does not converge.
     pub fn solve(&self, guess: &DVector<f64>, parameter: f64) -> Option<DVector<f64>> {
         self.core.solve(guess, |coefficients| self.linearised(coefficients, parameter))
     }

@@ -28,13 +28,14 @@ pub enum BifurcationKind {
     Fold,
     /// Another branch crosses: often one of less symmetry.
     BranchPoint,
-    /// Motions of twice the period come off.
+    /// A branch of motions of twice the period begins.
     PeriodDoubling,
-    /// A second frequency comes in.
+    /// A second frequency appears.
     NeimarkSacker,
     /// A self-excited motion is born from rest.
     Hopf,
-    /// Motions of every amplitude: what swings freely repeats itself with the others.
+    /// Motions of every amplitude exist here, because a free undamped motion has a commensurable
+    /// period.
     Centre,
 }
 
@@ -81,8 +82,8 @@ fn test(kind: BifurcationKind, node: &BranchNode, floquet: Option<Floquet>) -> O
     value.is_finite().then_some(value)
 }
 
-/// The bifurcations between two neighbouring points, each at its place on the branch. `between`
-/// finds the point at a part of the way, `floquet` the multipliers of a point.
+/// The bifurcations between two neighbouring points, each with its point on the branch. `between`
+/// gives the point at a fraction of the way, `floquet` the multipliers of a point.
 pub fn between(
     balance: &DrivenBalance,
     [from, to]: [(&BranchNode, Option<Floquet>); 2],
@@ -130,7 +131,7 @@ pub fn between(
             node.and_then(|node| test(kind, node, multipliers)).unwrap_or(f64::NAN)
         };
         let part = match kind {
-            // A sign alone has no root but by halving.
+            // The test function is only a sign, so that it is bisected.
             BranchPoint => Some(bisect_sign_change(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
@@ -142,8 +143,8 @@ pub fn between(
         let Some(node) = part.and_then(beside) else {
             continue;
         };
-        // A branch that is born at a crossing turns back there without a fold of its own, and its
-        // turn is easier to find.
+        // A branch that begins at a crossing turns back there without a fold of its own, but the
+        // turn is easier to locate.
         let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);
         match crossing {
             Some(index) => found[index] = (BranchPoint, node),
@@ -157,7 +158,7 @@ pub fn between(
 fn bisect_sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
     let before = value(0.0);
     let is_before = |part: f64| match value(part) {
-        // The branch itself cannot be told from the other one here: close enough.
+        // Here the branch cannot be distinguished from the other one, which is close enough.
         there if there.is_nan() => Err(part),
         there => Ok(there * before > 0.0),
     };

@@ -1,5 +1,5 @@
-//! The branches, each once: not begun later, not its mirror image, not the other half of one that
-//! came back.
+//! The list of branches without repetitions: no branch shifted in time, no mirror image, no second
+//! half of one that returns.
 
 use nalgebra::DVector;
 
@@ -88,7 +88,7 @@ impl PreparedRequest<'_> {
         known.is_some()
     }
 
-    /// Keeps a branch that is none of those that are known, nor the mirror image of one.
+    /// Adds a branch unless it, or its mirror image, is known already.
     fn keep(&self, balance: &DrivenBalance, mut path: BranchPath, paths: &mut Vec<BranchPath>) {
         if path.nodes.len() < 2 || self.is_centre(&path) {
             return;
@@ -111,8 +111,8 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// A branch that is born where another one is crossed comes back from there as its own image:
-    /// that half is left out.
+    /// A branch that begins at a crossing with another one returns from there as its own image:
+    /// that half is removed.
     fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
         let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
         let Some(index) = path.nodes.windows(2).position(turns) else {
@@ -137,8 +137,8 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the
-    /// drive later, or a mirror image.
+    /// The branch on which a motion lies, shifted by drive periods or mirrored; `None` if there is
+    /// none.
     fn known_motion(
         &self,
         balance: &DrivenBalance,
@@ -146,7 +146,8 @@ impl PreparedRequest<'_> {
         coefficients: &DVector<f64>,
         parameter: f64,
     ) -> Option<KnownMotion> {
-        /// The part of a motion by which a guess between two points may be off.
+        /// Largest error of an interpolation between two points, relative to the size of the
+        /// motion.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
         let size = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
@@ -156,8 +157,8 @@ impl PreparedRequest<'_> {
             shifts.clone().map(|shift| balance.core.later(coefficients, shift)).collect();
         let mirrored: Vec<DVector<f64>> =
             shifts.map(|shift| -balance.core.later(coefficients, shift + 0.5 * period)).collect();
-        // Places between which the force does not change, such as those a turn of a pendulum apart,
-        // are one.
+        // Positions a period of the force apart, such as a full turn of a pendulum, count as the
+        // same.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
             let near = |shifted: &DVector<f64>| {
                 let apart = motion - shifted;
@@ -197,8 +198,8 @@ impl PreparedRequest<'_> {
         })
     }
 
-    /// Follows the branch that crosses another one here; whether that has motions of every
-    /// amplitude at this one value of the parameter.
+    /// Follows the branch that crosses another one here. Returns whether it consists of motions of
+    /// every amplitude at this one value of the parameter.
     pub(super) fn follow_crossing(
         &self,
         balance: &DrivenBalance,
@@ -221,8 +222,8 @@ impl PreparedRequest<'_> {
         is_centre
     }
 
-    /// Whether these are motions at one value of the parameter, which need neither drive nor
-    /// damping.
+    /// Whether these are motions at one value of the parameter, as only an equation without drive
+    /// and damping has.
     fn is_centre(&self, path: &BranchPath) -> bool {
         /// Relative difference, over the range, below which two parameters are equal.
         const NOTHING: f64 = 1e-9;
@@ -233,7 +234,8 @@ impl PreparedRequest<'_> {
     }
 }
 
-/// The size of the largest motion of a branch, of an ordinary one where it grows without bound.
+/// The size of the largest motion of a branch, or of a typical one if the branch grows without
+/// bound.
 pub(super) fn largest(balance: &DrivenBalance, path: &BranchPath) -> f64 {
     continuation::largest(balance, &path.nodes, path.ends)
 }

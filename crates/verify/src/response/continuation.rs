@@ -4,12 +4,12 @@
 //! R(u, p) = 0,   w_u^2 u'.(u - u_0) + w_p^2 p' (p - p_0) = s        [R_u R_p; w_u^2 u'^T  w_p^2 p'] [du; dp] = -[R; 0]
 //! ```
 //!
-//! From a point a step along the tangent is a guess, and Newton's method on the bordered equations,
-//! at right angles to the tangent, brings it back to the branch (H. B. Keller, in *Applications of
-//! Bifurcation Theory*, Academic Press 1977; R. Seydel, *Practical Bifurcation and Stability
-//! Analysis*, Springer 2010, chapter 4). Coefficients are measured in the size of the motion where
-//! the step begins, the parameter in the length of its range. In: a balance, a point on the branch.
-//! Out: the points of the whole branch within the range, both ways, with their tangents.
+//! A step along the tangent gives a guess, and Newton's method on the bordered equations, at right
+//! angles to the tangent, returns to the branch (H. B. Keller, in *Applications of Bifurcation
+//! Theory*, Academic Press 1977; R. Seydel, *Practical Bifurcation and Stability Analysis*,
+//! Springer 2010, chapter 4). Coefficients are scaled by the size of the motion at the beginning of
+//! the step, the parameter by the length of its range. In: a balance, a point on the branch. Out:
+//! the points of the whole branch within the range, both ways, with their tangents.
 
 use nalgebra::{DVector, Dyn, LU};
 
@@ -74,22 +74,22 @@ pub enum BranchEnd {
     Unbounded,
     /// No step leads on, however small.
     Lost,
-    /// After as many points as are allowed.
+    /// The largest number of points was reached.
     Points,
     /// The harmonics that are kept do not suffice for the motions beyond.
     Harmonics,
-    /// The motion rests all the time: dry friction bears the drive.
+    /// The motion is at rest all the time: dry friction balances the drive.
     Held,
-    /// Its amplitude has come to zero: a self-excited motion is born from rest there.
+    /// The amplitude has reached zero: a Hopf point, at which self-excited motions begin.
     Rest,
-    /// Its period grows without bound: a self-excited motion comes near a place of rest that it
-    /// cannot pass.
+    /// Its period grows without bound: a self-excited motion approaches an equilibrium, as at a
+    /// homoclinic orbit.
     Slow,
     /// The computation was interrupted.
     Interrupted,
 }
 
-/// The points of a branch in order, and why it ends at either end.
+/// The points of a branch in order, and the reasons why it ends.
 #[derive(Clone, Debug)]
 pub struct BranchPath {
     /// The points.
@@ -105,15 +105,15 @@ pub struct BranchPath {
 pub struct ContinuationSettings {
     /// The range of the parameter.
     pub range: [f64; 2],
-    /// The longest step, in parts of the range and of the size of the motion.
+    /// The longest step, as a fraction of the range and of the size of the motion.
     pub longest: f64,
-    /// Points after which it ends.
+    /// Largest number of points.
     pub most: usize,
     /// Whether it ends where the harmonics do not suffice for the motion.
     pub resolved: bool,
-    /// The size of the largest motion known: smaller ones are measured in parts of it.
+    /// The size of the largest motion known: smaller ones are scaled by a fraction of it.
     pub size: f64,
-    /// The size of ordinary motions: far beyond it they are unbounded.
+    /// The size of typical motions: far larger ones count as unbounded.
     pub ordinary: f64,
     /// The interrupt.
     pub interrupt: Interrupt,
@@ -129,7 +129,8 @@ struct Weights {
 }
 
 impl Weights {
-    /// The weight of an unknown, of which there are `size`, or of the parameter behind them.
+    /// The weight of an unknown, of which there are `size`, or of the parameter, which follows
+    /// them.
     fn weight(&self, index: usize, size: usize) -> f64 {
         match self.frequency {
             Some((place, weight)) if place == index => weight,
@@ -153,7 +154,7 @@ impl Weights {
         vector.map_with_location(|index, _, part| self.weight(index, vector.len() - 1) * part)
     }
 
-    /// A point with its tangent, which goes on in this direction.
+    /// A point with its tangent, oriented in this direction.
     fn node(
         &self,
         balance: &DrivenBalance,
@@ -164,9 +165,9 @@ impl Weights {
         self.node_of(&bordered(&jacobian, &self.row(direction)).lu(), point)
     }
 
-    /// A point with its tangent, from the factors of the bordered equations there. Their
-    /// determinant has the same sign whatever direction stands in the last row, as long as the
-    /// tangent goes the same way.
+    /// A point with its tangent, from the factors of the bordered equations there. The sign of
+    /// their determinant does not depend on the direction in the last row, as long as the tangent
+    /// keeps its orientation.
     fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<BranchNode> {
         let tangent = tangent(factors)?;
         let length = self.norm(&tangent);
@@ -180,7 +181,7 @@ impl Weights {
         })
     }
 
-    /// The last row of the bordered equations: a product with it is one with this direction.
+    /// The last row of the bordered equations: the weighted inner product with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
         DVector::from_fn(size + 1, |index, _| self.weight(index, size).powi(2) * direction[index])
@@ -198,8 +199,8 @@ fn stacked(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
     coefficients.clone().push(parameter)
 }
 
-/// The size of the largest motion of these, that of one in the middle where they grow without
-/// bound: what is measured in an enormous size passes over a resonance as if it were nothing.
+/// The size of the largest of these motions, or the median if they grow without bound: steps scaled
+/// by an enormous size would pass over a resonance.
 pub(super) fn largest<const ENDS: usize>(
     balance: &DrivenBalance,
     nodes: &[BranchNode],
@@ -217,7 +218,7 @@ pub(super) fn largest<const ENDS: usize>(
 
 impl ContinuationSettings {
     fn weights(&self, balance: &DrivenBalance, coefficients: &DVector<f64>) -> Weights {
-        /// The smallest size that counts, in parts of the largest.
+        /// The smallest size used as a scale, as a fraction of the largest.
         const SMALLEST: f64 = 0.1;
         let own = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let size = own.max(SMALLEST * self.size);
@@ -231,7 +232,7 @@ impl ContinuationSettings {
         }
     }
 
-    /// Newton's method at right angles to a direction: the point, its tangent turned as
+    /// Newton's method at right angles to a direction: the point, its tangent oriented like
     /// `direction`, and the number of iterations.
     fn corrected(
         &self,
@@ -253,14 +254,14 @@ impl ContinuationSettings {
             }
             point -= &step;
             if moved <= CONVERGED {
-                // So short a step leaves the derivatives what they are.
+                // After so short a step the derivatives are those of the solution.
                 return Some((weights.node_of(&factors, point)?, iterations));
             }
         }
         None
     }
 
-    /// A point between two of a branch, at this part of the way.
+    /// A point between two of a branch, at this fraction of the way.
     pub fn between(
         &self,
         balance: &DrivenBalance,
@@ -305,7 +306,7 @@ impl ContinuationSettings {
         let start = weights.node(balance, stacked(coefficients, parameter), &direction)?;
         let mut backward = start.clone();
         backward.tangent *= -1.0;
-        // The last row of the bordered equations has turned round.
+        // The direction in the last row of the bordered equations is reversed.
         backward.orientation *= -1.0;
         let (mut nodes, end) = self.follow(balance, start);
         if end == BranchEnd::Closed {
@@ -324,16 +325,16 @@ impl ContinuationSettings {
         Some(BranchPath { nodes: all, ends: [first_end, end], mirrored: false })
     }
 
-    /// The motions by which a branch that ends with the range comes back to it, where it is
-    /// followed beyond as far as `wide`: a resonance whose peak lies outside has two of its
-    /// branches inside, and one of them may be hard to come by otherwise.
+    /// The motions at which a branch that leaves the range re-enters it, if it is followed up to
+    /// the bounds `wide`: a resonance whose peak lies outside has two of its branches inside, and
+    /// one of them may be hard to find otherwise.
     pub(super) fn reentries(
         &self,
         balance: &DrivenBalance,
         path: &BranchPath,
         wide: [f64; 2],
     ) -> Vec<(DVector<f64>, f64)> {
-        /// Points beyond the range.
+        /// Largest number of points beyond the range.
         const MOST: usize = 200;
         let outward = |(node, turn): (&BranchNode, f64)| BranchNode {
             tangent: &node.tangent * turn,
@@ -363,9 +364,9 @@ impl ContinuationSettings {
             .collect()
     }
 
-    /// Whether the last harmonics that are kept are as large as if there were as many again.
+    /// Whether the last harmonics are so large that about as many more would be needed.
     pub(super) fn is_cut_off(&self, balance: &DrivenBalance, coefficients: &DVector<f64>) -> bool {
-        /// Largest part of the last quarter of the harmonics in the size of the motion: for a
+        /// Largest size of the last quarter of the harmonics, relative to the motion; for a
         /// resolved motion it is negligible.
         const LARGEST: f64 = 0.1;
         self.resolved
@@ -373,12 +374,12 @@ impl ContinuationSettings {
                 > LARGEST * balance.core.extent(coefficients)
     }
 
-    /// The points from one on in the direction of its tangent.
+    /// The points that follow `start` in the direction of its tangent, and the reason why they end.
     fn follow(&self, balance: &DrivenBalance, start: BranchNode) -> (Vec<BranchNode>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
-        /// Short enough to tell where the harmonics cease to suffice, or where an end of the range
-        /// is near.
+        /// Length of a step short enough to locate where the harmonics no longer suffice, or the
+        /// end of the range.
         const SHORT: f64 = 1e-4;
         const FEW: usize = 3;
         const MANY: usize = 6;
@@ -390,7 +391,7 @@ impl ContinuationSettings {
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.core.extent(&start.coefficients).max(self.ordinary);
-        // Where a self-excited motion is near rest it may be born there.
+        // A self-excited motion near rest may end in a Hopf point.
         let at_rest = |here: &BranchNode, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
             None => Ended(None, BranchEnd::Lost),
@@ -416,7 +417,7 @@ impl ContinuationSettings {
             });
             let Some((node, iterations)) = found else {
                 return match 0.5 * length < SHORTEST {
-                    // If the damping has a corner at rest, the branch has one there as well.
+                    // If the damping has a corner at rest, so has the branch.
                     true => at_rest(here, here.parameter),
                     false => TooLong,
                 };
@@ -438,7 +439,7 @@ impl ContinuationSettings {
                 };
             }
             if balance.driven.self_excited && here.coefficients[1] * node.coefficients[1] <= 0.0 {
-                // Beyond rest the same motions come again, begun half a period later.
+                // Beyond the Hopf point the same motions follow, shifted by half a period.
                 let part = here.coefficients[1] / (here.coefficients[1] - node.coefficients[1]);
                 return at_rest(here, here.parameter + part * (node.parameter - here.parameter));
             }
@@ -465,16 +466,16 @@ impl ContinuationSettings {
         follow(start, FIRST * self.longest, self.longest, step)
     }
 
-    /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited
-    /// motion is born.
+    /// The motion of amplitude zero next to a small one, near this parameter: the Hopf point of a
+    /// self-excited motion.
     pub(super) fn rest_beside(
         &self,
         balance: &DrivenBalance,
         here: &BranchNode,
         near: f64,
     ) -> Option<BranchNode> {
-        /// Distance, in parts of the largest motion and of the range, within which a motion is
-        /// near.
+        /// Distance, relative to the largest motion and to the range, within which a motion counts
+        /// as near.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
         if !balance.driven.self_excited || balance.core.extent(&here.coefficients) > small {
@@ -494,7 +495,7 @@ impl ContinuationSettings {
         Some(BranchNode { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
-    /// Whether the way from one point to the next passes the first one in its direction.
+    /// Whether the step between two points passes the first point of the branch in its direction.
     fn has_closed(
         &self,
         first: &BranchNode,

@@ -1,4 +1,4 @@
-//! The true limit cycle beside a balance, and whether it lasts.
+//! The true limit cycle near a solution of the balance, and its stability.
 //!
 //! ```text
 //! y = (x, x'),   y(T; y_0) = y_0,   flow(y_0) . dy_0 = 0:      [M - 1  flow(y_T)] [dy_0]     [y_T - y_0]
@@ -22,7 +22,7 @@ use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting};
 
-/// A motion that is known but for rounding: where it starts, its frequency, how large it is.
+/// A guess of a limit cycle: start, frequency and size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guess {
     /// Position and velocity.
@@ -62,8 +62,8 @@ fn followed(
     path.is_complete().then_some(path)
 }
 
-/// The periodic motion beside this one, and its frequency; `None` if shooting does not settle, or
-/// goes far away.
+/// The periodic motion beside this one, and its frequency; `None` if shooting does not converge, or
+/// moves far away.
 pub fn true_cycle(
     driven: &Driven,
     guess: &Guess,
@@ -114,9 +114,10 @@ pub fn settle_cycle(
     budget: &mut SimulationBudget,
 ) -> Option<(f64, Vec<f64>)> {
     const CLOSELY: f64 = 1e-11;
-    /// A period and what the first guess of it may be off.
+    /// One period plus the possible error of its guess.
     const LONGER: f64 = 1.3;
-    /// Part of its size by which a simulation that has settled may miss its start.
+    /// Largest distance from its start at which a settled simulation counts as returned, relative
+    /// to its size.
     const BACK: f64 = 1e-3;
     let period = std::f64::consts::TAU / guess.frequency;
     let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
@@ -137,7 +138,7 @@ pub fn settle_cycle(
     let path = follow(state, LONGER * period)?;
     let [x, v] = state;
     let flow = [v, -driven.force(&[x, v, 0.0, parameter])];
-    // It comes back through the line at right angles to its way.
+    // The return is the crossing of the line through the start at right angles to the trajectory.
     let across = |t: f64| {
         path.state_at(t).map_or(f64::NAN, |point| {
             (point.y[0] - x) * flow[0] + (point.y[1] - v) * flow[1] / guess.frequency.powi(2)

@@ -6,9 +6,9 @@
 //!
 //! In: an oscillator with exact numbers for all parameters but one, p, which varies, and how many
 //! periods of the drive, n, a period of the motion takes. Out: f and its derivatives by x, x' and p
-//! at a fixed phase as straight lists of operations. Time may stand inside `sin`, `cos` and `tan`
-//! alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
-//! If it does not occur at all, omega is an unknown of every motion.
+//! at a fixed phase as compiled functions. Time may occur only inside `sin`, `cos` and `tan`, as
+//! `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega. If it does
+//! not occur at all, omega is an unknown of every motion.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
@@ -29,10 +29,10 @@ pub struct Driven {
     pub parameter: Symbol,
     /// Periods of the drive in a period of the motion.
     pub periods: usize,
-    /// Whether nothing drives it: the frequency of a motion is then an unknown, for which
-    /// `frequency` is a name.
+    /// Whether there is no drive: the frequency of a motion is then an unknown, and `frequency` is
+    /// its name.
     pub self_excited: bool,
-    /// f(x, x', theta; p) with the sides of the jumps that the motion is on, where there are some.
+    /// f(x, x', theta; p), with the sides of the jumps as further arguments if there are any.
     force: CompiledFunction,
     jumps: Vec<Jump>,
     /// Its derivatives by x, x' and p.
@@ -41,7 +41,7 @@ pub struct Driven {
     in_time: CompiledFunction,
     /// omega(p) and its derivative.
     base: [CompiledFunction; 2],
-    /// Whether it has no odd power of the velocity.
+    /// Whether the force is even in the velocity.
     pub undamped: bool,
     /// Whether the force has no corner or jump: no `abs`, `sgn`, `H`, `max` or `min`.
     pub smooth: bool,
@@ -51,8 +51,8 @@ pub struct Driven {
 const CORNERS: [Function; 5] =
     [Function::Absolute, Function::Sign, Function::Step, Function::Maximum, Function::Minimum];
 
-/// A line of places and velocities on which the force jumps, `n_x x + n_v x' = c(p)`; n_v is one,
-/// or n_x where n_v is zero.
+/// A line in the plane of position and velocity on which the force jumps, `n_x x + n_v x' = c(p)`;
+/// n_v is one, or n_x where n_v is zero.
 #[derive(Clone, Debug)]
 struct Jump {
     normal: [f64; 2],
@@ -68,8 +68,8 @@ struct SwitchingLine {
     level: Expr,
 }
 
-/// The argument of a part of a force that is a step where this changes its sign, if a place or a
-/// velocity stands in it.
+/// The argument of a part of a force that jumps where the argument changes its sign, if the
+/// argument contains position or velocity.
 fn argument_of_step<'a>(part: &'a Expr, oscillator: &Oscillator) -> Option<&'a Expr> {
     let Node::Function(Function::Sign | Function::Step, arguments) = part.node() else {
         return None;
@@ -111,9 +111,8 @@ fn grows_across(
     Ok(found.map(|(_, grows)| grows))
 }
 
-/// Whether a force has two values on a line on which steps of it change: their factors together do
-/// not vanish there, as those of friction, where those of a stop `(x - 1)*H(x - 1)` do, however
-/// they are written.
+/// Whether the force jumps across a line on which steps in it change. Friction does; a stop `(x -
+/// 1)*H(x - 1)` does not, however it is written, because the factor of its step vanishes there.
 fn jumps_across(
     force: &Expr,
     line: &SwitchingLine,
@@ -145,14 +144,14 @@ fn jumps_across(
     Ok(!cancel(&terms))
 }
 
-/// Whether terms that no rule takes together cancel at all places, velocities, times and parameters
-/// that are tried.
+/// Whether the sum of terms vanishes, to rounding, at all positions, velocities, times and
+/// parameters that are tried.
 fn cancel(terms: &[CompiledFunction]) -> bool {
     const PLACES: i32 = 24;
     const ROUNDING: f64 = 1e-12;
     let mut told = false;
     for index in 0..PLACES {
-        // No place is special, and none is where another one is.
+        // The points are distinct and not special.
         let number =
             |step: f64, from: f64, width: f64| from + width * (step * f64::from(index)).fract();
         let at = [
@@ -163,7 +162,7 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
         ];
         let values: Vec<f64> = terms.iter().map(|term| term.call(&at)).collect();
         let size: f64 = values.iter().map(|value| value.abs()).sum();
-        // Other steps, or the force itself, may have nothing here.
+        // Terms may all vanish at a point, which then decides nothing.
         if size > 0.0 && size.is_finite() {
             told = true;
             if values.iter().sum::<f64>().abs() > ROUNDING * size {
@@ -175,7 +174,7 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
 }
 
 /// The line on which the argument of a jump is zero, and whether it grows across it; `None` if that
-/// is no line of places and velocities, the same at every time.
+/// is not a fixed line in the plane of position and velocity.
 fn line_of(
     argument: &Expr,
     oscillator: &Oscillator,
@@ -201,9 +200,9 @@ fn line_of(
     Ok(Some((SwitchingLine { normal, level }, grows)))
 }
 
-/// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it
-/// does; the force as it is where nothing jumps. A step across which the force is continuous may be
-/// followed as it stands.
+/// The force with a symbol for the side, 1 or -1, in place of each jump, and the lines of the
+/// jumps; the force unchanged if it has no jumps. A step across which the force is continuous stays
+/// as it is.
 fn with_sides(
     oscillator: &Oscillator,
     parameter: Symbol,
@@ -222,7 +221,7 @@ fn with_sides(
             }
         }
     }
-    // The terms of a force may jump one by one and together not.
+    // Single terms may jump although their sum does not.
     let mut jumping = Vec::new();
     for line in lines {
         if jumps_across(&force, &line, oscillator, parameter)? {
@@ -240,8 +239,8 @@ fn with_sides(
 }
 
 impl Driven {
-    /// Prepares an oscillator without other parameters than the one that varies; it is self-excited
-    /// if time does not occur.
+    /// Prepares an oscillator whose only parameter is the one that varies; it is self-excited if
+    /// time does not occur.
     ///
     /// # Errors
     /// A drive that is not periodic; several frequencies that are not multiples of one; a
@@ -322,18 +321,18 @@ impl Driven {
         })
     }
 
-    /// omega: that of the motion, a whole part of that of the drive; 1 where there is no drive.
+    /// omega of the motion, that of the drive over a whole number; 1 if there is no drive.
     pub fn frequency_at(&self, parameter: f64) -> f64 {
         self.base[0].call(&[parameter])
     }
 
-    /// Its derivative by the parameter.
+    /// The derivative of [omega](Self::frequency_at) by the parameter.
     pub fn frequency_slope(&self, parameter: f64) -> f64 {
         self.base[1].call(&[parameter])
     }
 
-    /// The velocity at which the force jumps, if it does there alone, as that of dry friction at
-    /// zero.
+    /// The velocity at which the force jumps, as that of dry friction does at zero; `None` if it
+    /// has no jump or other jumps.
     pub fn jump_speed(&self, parameter: f64) -> Option<f64> {
         match self.jumps.as_slice() {
             [jump] if jump.normal[0] == 0.0 => Some(jump.level[0].call(&[parameter])),
@@ -346,13 +345,13 @@ impl Driven {
         self.jumps.first().map_or(0.0, |jump| jump.level[1].call(&[parameter]))
     }
 
-    /// On how many lines of places and velocities the force jumps.
+    /// The number of lines on which the force jumps.
     pub fn jumps(&self) -> usize {
         self.jumps.len()
     }
 
-    /// Whether harmonic balance takes its jumps: there are none, or one with the velocity under a
-    /// drive.
+    /// Whether harmonic balance can treat the jumps: there are none, or there is one with the
+    /// velocity and a drive.
     pub fn is_balanced(&self) -> bool {
         match self.jumps.as_slice() {
             [] => true,
@@ -369,7 +368,8 @@ impl Driven {
     /// The value of `n_x x + n_v x' - c` for a jump.
     pub fn height(&self, index: usize, [x, v]: [f64; 2], parameter: f64) -> f64 {
         let Jump { normal, level } = &self.jumps[index];
-        // The velocity zero is met exactly.
+        // For a jump with the velocity alone the term 0 x is left out, so that the velocity c is
+        // met exactly.
         match normal {
             [0.0, _] => v - level[0].call(&[parameter]),
             [by_position, by_velocity] => {
@@ -394,19 +394,19 @@ impl Driven {
         }
     }
 
-    /// f as it is on these sides of its jumps, 1 above and -1 below.
+    /// f on these sides of its jumps, 1 above and -1 below.
     pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
         with_arguments(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
     }
 
-    /// Its derivatives on these sides.
+    /// The derivatives of f on these sides.
     pub fn slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 3] {
         with_arguments(at, sides, self.jumps.len(), |arguments| {
             self.slopes.each_ref().map(|slope| slope.call(arguments))
         })
     }
 
-    /// The sides of its jumps that a motion is on; zero at a jump itself.
+    /// The side of each jump at a state, 1 or -1; zero on the jump itself.
     fn sides(&self, at: &[f64; 4]) -> Vec<f64> {
         let side = |height: f64| if height == 0.0 { 0.0 } else { height.signum() };
         (0..self.jumps.len()).map(|index| side(self.height(index, [at[0], at[1]], at[3]))).collect()

@@ -1,4 +1,4 @@
-//! Why there is no response.
+//! Errors of the computation of a response.
 
 use thiserror::Error;
 
@@ -11,10 +11,10 @@ use crate::symbol::Symbol;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ResponseError {
-    /// Time does not occur, and nothing feeds or damps the motion.
+    /// Time does not occur, and no term feeds or dissipates energy.
     #[error("there is no drive: time `t` does not occur in the equation")]
     NoDrive,
-    /// Time does not occur, and nothing excites the motion either.
+    /// Time does not occur, and no self-excited motion was found.
     #[error("there is no drive, and no limit cycle was found for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
     NoCycle {
         /// The parameter.
@@ -22,15 +22,16 @@ pub enum ResponseError {
         /// Its range.
         range: [f64; 2],
     },
-    /// Periods of a drive that there is not.
+    /// A number of drive periods was given, but there is no drive.
     #[error(
         "there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation"
     )]
     NoPeriods(usize),
-    /// Time enters in a way that does not repeat.
+    /// Time enters in a way that is not periodic.
     #[error("the term `{0}` is not periodic in time")]
     NotPeriodic(String),
-    /// A force that jumps with the velocity, but along no line of places and velocities.
+    /// A force that jumps with the velocity, but not on a fixed line in the plane of position and
+    /// velocity.
     #[error(
         "the term `{0}` jumps with the velocity, and not on a line of places and velocities that is the same at every time"
     )]
@@ -50,12 +51,12 @@ pub enum ResponseError {
         /// The value of the parameter.
         at: f64,
     },
-    /// The parameter to vary is none of the equation.
+    /// The parameter to vary does not occur in the equation.
     #[error("there is no parameter `{name}` in the equation: {}", parameters(.known))]
     NoParameter {
         /// The name.
         name: Symbol,
-        /// The parameters that there are.
+        /// The parameters of the equation.
         known: Vec<Symbol>,
     },
     /// The parameter that varies has a value.
@@ -67,7 +68,7 @@ pub enum ResponseError {
     /// Parameters without a value.
     #[error("no value for {}", list(.0))]
     Missing(Vec<Symbol>),
-    /// A range that is none.
+    /// A range whose ends are not finite and in order.
     #[error("the range of `{0}` must go from a finite number to a larger one")]
     Range(Symbol),
     /// A count beyond what can be kept.
@@ -77,10 +78,10 @@ pub enum ResponseError {
         what: &'static str,
         /// The value given.
         given: usize,
-        /// The most.
+        /// The largest value allowed.
         most: usize,
     },
-    /// Motions to begin with, and no branch of them.
+    /// Initial motions were found, but no branch could be followed from them.
     #[error("motions were found, but none of them could be followed for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
     NotFollowed {
         /// The parameter.
@@ -117,19 +118,19 @@ pub enum ResponseError {
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// A name that stands for nothing.
+    /// A name without a value.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
 }
 
-/// The search for motions to begin with.
+/// The progress of the search for initial motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SeedSearch {
-    /// Values of the parameter.
+    /// Number of values of the parameter.
     pub values: usize,
-    /// Starts of simulations at them.
+    /// Number of simulations started at them.
     pub starts: usize,
-    /// Motions that they led to.
+    /// Number of motions found.
     pub motions: usize,
 }
 

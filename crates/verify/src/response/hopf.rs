@@ -1,23 +1,23 @@
-//! Hopf points: the parameter at which a self-excited motion is born from rest.
+//! Hopf points: the parameter at which self-excited motions of amplitude zero begin.
 //!
 //! ```text
 //! f(x, 0; p) = 0,   f_v(x, 0; p) = 0,   omega^2 = f_x(x, 0; p) > 0
 //! ```
 //!
 //! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapter 3.) In: an
-//! equation without drive, a place and a parameter nearby. Out: the place of rest, the parameter
-//! and the frequency of the smallest motions, by Newton's method on the equation itself, whatever
-//! number of harmonics the motions beside it have.
+//! equation without drive, a position and a parameter nearby. Out: the equilibrium, the parameter
+//! and the frequency of the smallest motions, by Newton's method on the equation itself,
+//! independent of the number of harmonics of a balance.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::driven::Driven;
 use crate::numeric::ode::newton::{Progress, newton};
 
-/// A place of rest that small motions neither leave nor approach.
+/// An equilibrium whose linearisation is an undamped oscillation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopfPoint {
-    /// The place of rest.
+    /// The position of the equilibrium.
     pub position: f64,
     /// The parameter.
     pub parameter: f64,
@@ -25,8 +25,8 @@ pub struct HopfPoint {
     pub frequency: f64,
 }
 
-/// The Hopf point near a place and a parameter, measured in these lengths; `None` if Newton's
-/// method does not settle.
+/// The Hopf point near a position and a parameter, in units of these lengths; `None` if Newton's
+/// method does not converge.
 pub fn hopf_point_near(
     driven: &Driven,
     position: f64,
@@ -35,7 +35,7 @@ pub fn hopf_point_near(
 ) -> Option<HopfPoint> {
     const MOST: usize = 30;
     const SETTLED: f64 = 1e-12;
-    /// The finite differences of the damping, of the lengths.
+    /// Step of the finite differences of the damping, in units of the lengths.
     const DIFFERENCE: f64 = 1e-6;
     let at = |place: Vector2<f64>| [place[0], 0.0, 0.0, place[1]];
     let lengths = Vector2::new(size, range);

@@ -1,5 +1,5 @@
-//! Points of a branch beside the true motion that shooting finds, and simulations let go beside the
-//! stable ones.
+//! Verification of the points of a branch: the true motion that shooting finds near each, and
+//! simulations started near the stable ones.
 
 use nalgebra::Matrix2;
 
@@ -32,7 +32,8 @@ impl PreparedRequest<'_> {
 
     /// The multipliers at a point of a branch, and the true motion beside it.
     pub(super) fn judged(&self, balance: &DrivenBalance, node: &BranchNode) -> PointJudgement {
-        /// Parts of its size by which the true motion may differ: beyond it is another one.
+        /// Largest difference of the true motion, relative to its size; beyond this it is another
+        /// motion.
         const OTHER: f64 = 0.3;
         if node.truth.is_some() {
             return (node.truth.map(|truth| truth.floquet), node.truth);
@@ -50,7 +51,7 @@ impl PreparedRequest<'_> {
             });
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
-            // Across a jump only the true motion tells.
+            // Across a jump only the true motion has multipliers.
             if self.driven.jumps() > 0 {
                 return None;
             }
@@ -89,7 +90,7 @@ impl PreparedRequest<'_> {
             self_excited: true,
         };
         if guess.size == 0.0 {
-            // At rest it is what it is: there the place and the frequency come from the equation
+            // At rest no integration is needed: position and frequency follow from the equation
             // itself.
             let at_rest = TrueMotion {
                 start: guess.start,
@@ -126,7 +127,7 @@ impl PreparedRequest<'_> {
         let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
         let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
-            // Half a turn is pi, whatever rounding has left of the sine.
+            // A half turn is written as pi, not -pi, whatever the rounding of the sine.
             true if sine.abs() <= NOTHING * amplitude => {
                 (amplitude, if cosine < 0.0 { std::f64::consts::PI } else { 0.0 })
             }
@@ -138,7 +139,7 @@ impl PreparedRequest<'_> {
             let of_size = relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size);
             of_size.max((frequency / truth.frequency - 1.0).abs())
         });
-        // On the circle itself only rounding tells.
+        // Without damping the multipliers lie on the unit circle, up to rounding.
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
         SteadyMotion {
             parameter: node.parameter,
@@ -161,11 +162,11 @@ impl PreparedRequest<'_> {
     /// Simulations beside some stable points, disturbed a little and followed until they have
     /// settled.
     pub(super) fn simulated(&self, branches: &[Branch]) -> Vec<Simulated> {
-        /// Points of a stable part of a branch, and of all of them.
+        /// Largest number of points on a stable part of a branch, and on all of them.
         const EACH: usize = 6;
         const MOST: usize = 30;
-        /// Disturbances in parts of the size of the motion: the second is for a first one that
-        /// leads to another motion.
+        /// Disturbances, relative to the size of the motion; the second is used if the first leads
+        /// to another motion.
         const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
         const OTHER: f64 = 0.05;
         const PERIODS: f64 = 1500.0;
@@ -192,7 +193,7 @@ impl PreparedRequest<'_> {
                         point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
                     let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
                     let stopped = self.question.interrupt.is_requested();
-                    // Without drive what shooting does not find may be no motion at all.
+                    // Without a drive, a motion that shooting does not find may not exist.
                     let nothing = self.driven.self_excited && point.error.is_none();
                     if !(needed > 0.0 && needed < PERIODS)
                         || found.len() >= MOST
@@ -246,9 +247,9 @@ impl PreparedRequest<'_> {
 }
 
 impl PreparedRequest<'_> {
-    /// Frequency and positions of the last of this many periods from a start, by the simulation
-    /// that takes every jump at its event and knows nothing of the map by which the points were
-    /// found; `None` if it does not come so far.
+    /// Frequency and positions of the last of this many periods from a start, by an independent
+    /// simulation that locates every jump as an event and does not use the map by which the points
+    /// were found; `None` if it ends earlier.
     fn simulated_by_series(
         &self,
         start: [f64; 2],
@@ -264,7 +265,7 @@ impl PreparedRequest<'_> {
         course.interrupt = self.question.interrupt;
         course.duration = period * (periods + 2) as f64;
         if self.driven.self_excited {
-            // From one least displacement to the next.
+            // The section is a minimum of the displacement.
             course.section =
                 Some(trajectory::PoincareSection::Rising(self.oscillator.velocity().into()));
         }
@@ -293,8 +294,8 @@ fn simulated(point: &SteadyMotion, positions: &[f64], frequency: f64, size: f64)
     }
 }
 
-/// The larger error of amplitude and peak, over the true peak; of motions that are little beside
-/// the largest, over a thousandth of it.
+/// The larger error of amplitude and peak, over the true peak; for motions far smaller than the
+/// largest, over a thousandth of the largest.
 fn relative_error(
     [amplitude, peak]: [f64; 2],
     [true_amplitude, true_peak]: [f64; 2],

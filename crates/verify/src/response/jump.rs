@@ -12,7 +12,7 @@
 //! Non-Smooth Mechanical Systems*, Springer 2004, chapter 7; M. di Bernardo, C. J. Budd, A. R.
 //! Champneys and P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter 2). In:
 //! a start. Out: the motion leg by leg, each between the jumps or sticking on one, the ends of the
-//! legs located as events, and M(t). Of a force without such a jump it is one leg.
+//! legs located as events, and M(t). Without jumps the motion is a single leg.
 
 use super::driven::Driven;
 use crate::numeric::ode::{
@@ -112,7 +112,7 @@ pub fn follow(
     until: StopCondition,
     options: &IntegrationOptions,
 ) -> Option<VariationalMotion> {
-    /// Legs of a period: beyond them it does not come to an end.
+    /// Largest number of legs of a period, beyond which the motion is given up.
     const MOST: usize = 400;
     let mut run = NonsmoothRun::new(driven, start, parameter);
     let mut legs = Vec::new();
@@ -140,7 +140,7 @@ pub fn follow(
     None
 }
 
-/// A motion on its way.
+/// The state of an integration across jumps.
 struct NonsmoothRun<'a> {
     driven: &'a Driven,
     parameter: f64,
@@ -171,7 +171,7 @@ impl<'a> NonsmoothRun<'a> {
         for index in (0..driven.jumps()).filter(|index| heights(*index) == 0.0) {
             match [1.0, -1.0].into_iter().find(|side| side * run.rise(index, *side) > 0.0) {
                 Some(side) => run.sides[index] = side,
-                // At rest beside a step in place it is on neither side.
+                // On a step in position at rest it is on neither side.
                 None if driven.normal(index)[1] != 0.0 => run.stick(index),
                 None => {}
             }
@@ -197,7 +197,7 @@ impl<'a> NonsmoothRun<'a> {
         by_position * self.y[1] + acceleration
     }
 
-    /// The events at which it leaves its side of a jump, those but one.
+    /// The events at which the motion leaves its side of a jump, except for one jump.
     fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<VariationalState>>> {
         let (driven, parameter) = (self.driven, self.parameter);
         let crossing = |(index, side): (usize, &f64)| {
@@ -210,7 +210,8 @@ impl<'a> NonsmoothRun<'a> {
         self.sides.iter().enumerate().map(crossing).collect()
     }
 
-    /// The event at which it turns back, behind all others but before them at the same time.
+    /// The event at which the motion turns back; it comes last in the list but has priority at
+    /// equal times.
     fn turn(until: StopCondition) -> Option<Event<'a, Point<VariationalState>>> {
         let falls = |point: &Point<VariationalState>| point.y[1];
         matches!(until, StopCondition::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
@@ -240,7 +241,7 @@ impl<'a> NonsmoothRun<'a> {
         path.is_complete().then_some(path)
     }
 
-    /// A leg on a jump: x' = c - n_x x, the velocity counted once.
+    /// A leg that sticks on a jump, where x' = c - n_x x.
     fn sliding_leg(
         &self,
         surface: usize,
@@ -266,7 +267,7 @@ impl<'a> NonsmoothRun<'a> {
         let turn = Self::turn(until);
         let events: Vec<_> =
             turn.into_iter().chain(self.crossings(Some(surface))).chain(leaves).collect();
-        // Nothing but the drive changes: a step sees all of it.
+        // Only the drive changes on such a leg, so that the error control sees all of it.
         let options = IntegrationOptions {
             maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
             ..*options
@@ -287,7 +288,7 @@ impl<'a> NonsmoothRun<'a> {
             (StopCondition::Time(_), _) => event,
         };
         if let Some(side) = index.checked_sub(self.sides.len()) {
-            // Pulled off the jump on which it stuck.
+            // The motion is pulled off the jump on which it stuck.
             if let Some(surface) = self.sliding.take() {
                 self.sides[surface] = if side == 0 { 1.0 } else { -1.0 };
             }
@@ -305,7 +306,7 @@ impl<'a> NonsmoothRun<'a> {
         } else if self.driven.normal(index)[1] != 0.0 {
             self.stick(index);
         } else {
-            // A step in place that is reached without speed is turned back from.
+            // A step in position that is reached with zero speed is not crossed.
             self.sides[index] = side;
         }
         false
@@ -320,7 +321,7 @@ impl<'a> NonsmoothRun<'a> {
         }
     }
 
-    /// The acceleration with which it comes to a jump.
+    /// The acceleration before the jump.
     fn rate_before(&self, index: usize) -> f64 {
         match self.sliding {
             Some(surface) => -self.driven.normal(surface)[0] * self.y[1],
@@ -341,7 +342,7 @@ impl<'a> NonsmoothRun<'a> {
         }
     }
 
-    /// Begins to stick on a jump: of what is beside it only what lies along the jump is left.
+    /// Begins to stick on a jump: only the component of the variations along the jump remains.
     fn stick(&mut self, index: usize) {
         let [by_position, _] = self.driven.normal(index);
         self.put_on(index);
@@ -351,7 +352,7 @@ impl<'a> NonsmoothRun<'a> {
         self.sliding = Some(index);
     }
 
-    /// Whether what stuck on a jump does so still behind another one.
+    /// Ends sticking if the motion no longer sticks after another jump.
     fn check_sticking(&mut self) {
         let Some(surface) = self.sliding else { return };
         if let Some(side) =

@@ -1,5 +1,5 @@
 //! Steady states of an oscillator, driven or self-excited: all branches of periodic motions with
-//! their stability, and what happens between them.
+//! their stability, and their bifurcations.
 //!
 //! ```text
 //! x'' + f(x, x', t; p) = 0,  f periodic in t:    X(theta) = a_0 + sum a_k cos(k theta) + b_k sin(k theta),  theta = omega t
@@ -7,9 +7,9 @@
 //!
 //! In: a [`ResponseRequest`]: an oscillator with numbers for all parameters but one, and the range
 //! in which that one varies. Out: a [`ResponseDiagram`]: branches found by harmonic balance and
-//! followed by pseudo-arclength; the multipliers of the true motion beside each of their points;
-//! folds, crossings, period doublings, second frequencies; backbones; and how far all of that is
-//! from motions that Runge-Kutta finds. Units are those of the equation.
+//! followed by pseudo-arclength; the multipliers of the true motion near each of their points;
+//! folds, crossings, period doublings, Neimark-Sacker points; backbones; and the errors against
+//! motions found by Runge-Kutta. Units are those of the equation.
 //!
 //! - [`driven`]: the equation in the phase of the motion.
 //! - [`balance`]: its equations for Fourier coefficients.
@@ -20,12 +20,12 @@
 //! - [`backbone`]: the free motion without damping.
 //! - [`slow`]: the same motions by slow equations of amplitude and phase.
 //!
-//! - [`cycle`]: the true motion where nothing drives it, for start and period together; [`hopf`]:
-//!   where it is born.
+//! - [`cycle`]: the true motion without a drive, by shooting for start and period together;
+//!   [`hopf`]: the Hopf point at which it begins.
 //!
 //! Branches start where a simulation settles, from rest and from a ring of starts at several values
-//! of the parameter, and where others cross: that finds closed and disconnected ones wherever a
-//! simulation finds its way to them. Limit cycles are found by their return to where they turn,
+//! of the parameter, and where others cross. So closed and disconnected branches are found if a
+//! simulation reaches them. Limit cycles are found by the return map of their turning points,
 //! forward and backward in time.
 
 pub mod backbone;
@@ -81,7 +81,7 @@ pub struct ResponseRequest {
     pub oscillator: Oscillator,
     /// Exact values of all parameters but the one that varies.
     pub values: Values,
-    /// The one that varies.
+    /// The parameter that varies.
     pub parameter: Symbol,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
@@ -90,7 +90,7 @@ pub struct ResponseRequest {
     pub harmonics: Option<usize>,
     /// Number of drive periods in one period of the motion.
     pub periods: usize,
-    /// The relative error up to which it passes.
+    /// The largest relative error of a passing verdict.
     pub tolerance: f64,
     /// The interrupt.
     pub interrupt: Interrupt,
@@ -106,7 +106,7 @@ pub struct SteadyMotion {
     pub parameter: f64,
     /// Coefficients of cos(k theta) and sin(k theta), from k = 0, the mean.
     pub harmonics: Vec<[f64; 2]>,
-    /// The frequency of the motion: that of the drive over the periods of it, or its own.
+    /// The frequency of the motion: that of the drive over the number of its periods, or its own.
     pub frequency: f64,
     /// The amplitude of the first harmonic of the motion.
     pub amplitude: f64,
@@ -125,8 +125,8 @@ pub struct SteadyMotion {
     /// The part of a period in which it sticks, held by dry friction.
     pub stuck: f64,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over
-    /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if it
-    /// found none near.
+    /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if
+    /// shooting found no motion near.
     pub error: Option<f64>,
 }
 
@@ -169,7 +169,7 @@ pub struct Bifurcation {
 }
 
 impl Bifurcation {
-    /// Whether this is the same place, met from another branch or by the other half of one.
+    /// Whether this is the same bifurcation, met from another branch or from the other half of one.
     fn is_near(&self, other: &Self, [low, high]: [f64; 2], size: f64) -> bool {
         // At a branch point each branch locates the bifurcation with less accuracy.
         let near = if self.kind == BifurcationKind::BranchPoint { 2e-4 } else { 1e-5 };
@@ -221,17 +221,17 @@ impl Elsewhere {
 pub struct ResponseDiagram {
     /// The request that this answers.
     pub question: ResponseRequest,
-    /// The frequency of the drive; where there is none a name for that of the motion, of which each
-    /// point has the number.
+    /// The frequency of the drive; without a drive, a name for the frequency of the motion, whose
+    /// value each point holds.
     pub frequency: Expr,
-    /// Whether nothing drives the motion.
+    /// Whether there is no drive.
     pub self_excited: bool,
-    /// Whether nothing damps the motion.
+    /// Whether there is no damping.
     pub undamped: bool,
-    /// Whether the force jumps with the velocity, as dry friction does, or in place.
+    /// Whether the force jumps with the velocity, as dry friction does, or with the position.
     pub jumps: bool,
-    /// Whether all branches are those of the map of a period, because harmonic balance does not
-    /// take the jumps.
+    /// Whether all branches are those of the map of a period, because harmonic balance cannot treat
+    /// the jumps.
     pub by_map: bool,
     /// Number of harmonics kept.
     pub harmonics: usize,
@@ -239,9 +239,9 @@ pub struct ResponseDiagram {
     pub branches: Vec<Branch>,
     /// Folds and the like, branch by branch.
     pub bifurcations: Vec<Bifurcation>,
-    /// Folds of the balance that are none of the true motion, left out of these.
+    /// Folds of the balance that the true motion does not have, left out of the list.
     pub ripple: Option<Ripple>,
-    /// The free motion without damping, about each place of rest; empty if the frequency does not
+    /// The free motion without damping, about each equilibrium; empty if the frequency does not
     /// vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
@@ -253,34 +253,33 @@ pub struct ResponseDiagram {
     pub error: Option<f64>,
     /// Points beside which shooting found no true motion.
     pub unjudged: usize,
-    /// Whether the error is within the tolerance, on the whole of what was found, and every motion
-    /// was followed.
+    /// Whether the error of everything found is within the tolerance and every motion was followed.
     pub verdict: Verdict,
-    /// The steady motions by slow equations, where they were asked for.
+    /// The steady motions by slow equations, if requested.
     pub slow: Option<SlowResponse>,
-    /// Whether it was followed to its end.
+    /// Whether the computation was completed without an interrupt.
     pub complete: bool,
 }
 
-/// The most harmonics that are kept.
+/// The largest number of harmonics.
 pub const MOST_HARMONICS: usize = 64;
 
-/// The most periods of the drive in one of the motion.
+/// The largest number of drive periods in one period of the motion.
 pub const MOST_PERIODS: usize = 12;
 
-/// The longest step along a branch, in parts of the range and of the size of the motion.
+/// The longest step along a branch, as a fraction of the range and of the size of the motion.
 const LONGEST_STEP: f64 = 0.03;
 
-/// Points of a branch.
+/// Largest number of points of a branch.
 const MOST_POINTS: usize = 1500;
 
-/// Evaluations of the force that simulations may take: some seconds of work.
+/// Largest number of evaluations of the force in simulations: some seconds of work.
 const MOST_EVALUATIONS: usize = 10_000_000;
 
-/// Branches that are followed.
+/// Largest number of branches that are followed.
 const MOST_BRANCHES: usize = 12;
 
-/// All steady states that are found, judged.
+/// Computes and verifies all steady states that are found.
 ///
 /// # Errors
 /// [`ResponseError`].
@@ -300,7 +299,7 @@ const MOST_BRANCHES: usize = 12;
 pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
     const FIRST: usize = 8;
     let asked = PreparedRequest::new(question)?;
-    // Of the map of a period harmonics are only read off: as many as there may be.
+    // For the map of a period harmonics are only output, so that the largest number costs nothing.
     let automatic = match asked.driven.is_balanced() {
         true => FIRST,
         false => MOST_HARMONICS,
@@ -383,11 +382,11 @@ impl ResponseDiagram {
 }
 
 impl ResponseRequest {
-    /// A question with automatic harmonics, a tolerance of 1 %, and motions of the period of the
+    /// A request with automatic harmonics, a tolerance of 1 %, and motions of the period of the
     /// drive.
     ///
     /// # Errors
-    /// A text that is no equation, or values that are none.
+    /// A text that is not an equation, or values that cannot be read.
     pub fn new(
         equation: &str,
         parameter: &str,
@@ -408,7 +407,7 @@ impl ResponseRequest {
     }
 }
 
-/// A question with its equation ready for numbers.
+/// A request with its equation compiled.
 struct PreparedRequest<'a> {
     question: &'a ResponseRequest,
     /// The equation with all values but one.
@@ -465,7 +464,7 @@ impl<'a> PreparedRequest<'a> {
         asked.has_frequency()
     }
 
-    /// Whether the drive has a frequency in all of the range.
+    /// Checks that the frequency of the drive is positive in all of the range.
     fn has_frequency(self) -> Result<Self, ResponseError> {
         let (parameter, [low, high]) = (self.question.parameter, self.question.range);
         for part in 0..=20 {
@@ -490,7 +489,8 @@ impl<'a> PreparedRequest<'a> {
 
     fn walk(&self, seeds: &[Seed], size: f64) -> ContinuationSettings {
         ContinuationSettings {
-            // Corners and slow motions have long series of harmonics, and ends of their own.
+            // Motions with corners and slow motions have long series of harmonics, and other
+            // criteria for their ends.
             resolved: self.question.harmonics.is_none()
                 && self.driven.smooth
                 && !self.driven.self_excited,
@@ -503,7 +503,7 @@ impl<'a> PreparedRequest<'a> {
         }
     }
 
-    /// Everything with this many harmonics.
+    /// The whole diagram with this many harmonics.
     fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
         let balance = DrivenBalance::new(&self.driven, harmonics);
@@ -581,7 +581,7 @@ impl<'a> PreparedRequest<'a> {
         &self,
         mut response: ResponseDiagram,
     ) -> Result<ResponseDiagram, ResponseError> {
-        /// Points without a true motion in a row that are no accident.
+        /// Largest number of consecutive points without a true motion that counts as accidental.
         const FEW: usize = 3;
         let tolerance = response.question.tolerance;
         let mut slowest: Vec<f64> = Vec::new();
@@ -597,7 +597,8 @@ impl<'a> PreparedRequest<'a> {
                 slowest.push(f64::INFINITY);
                 continue;
             };
-            // Before no true motion is near any more the error has grown.
+            // The error grows before the true motion is lost, so that the end is put where it was
+            // within tolerance.
             let within =
                 |index: &&usize| points[**index].error.is_some_and(|error| error <= tolerance);
             if count - 1 - last > FEW {
@@ -632,8 +633,8 @@ impl<'a> PreparedRequest<'a> {
         }
     }
 
-    /// Every point of the branches judged, and what happens between them; branches that cross are
-    /// followed and added.
+    /// Verifies every point of the branches and locates the bifurcations between them; branches
+    /// that cross are followed and added.
     fn judged_paths(
         &self,
         balance: &DrivenBalance,
@@ -642,7 +643,7 @@ impl<'a> PreparedRequest<'a> {
     ) -> (Vec<Vec<PointJudgement>>, Vec<Change>, Option<Ripple>) {
         let size = paths.iter().map(|path| largest(balance, path));
         let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
-        // Of a motion that is none the multipliers say nothing.
+        // Multipliers have a meaning only for a true motion.
         let of_true_motion = |judged: PointJudgement| judged.1.map(|truth| truth.floquet);
         let floquet = |node: &BranchNode| of_true_motion(self.judged(balance, node));
         let mut all_judged: Vec<Vec<PointJudgement>> = Vec::new();
@@ -695,7 +696,7 @@ impl<'a> PreparedRequest<'a> {
         (all_judged, changes, ripple)
     }
 
-    /// The places where branches change, each once.
+    /// The bifurcations of the branches, each once.
     fn bifurcations(
         &self,
         balance: &DrivenBalance,
@@ -720,7 +721,7 @@ impl<'a> PreparedRequest<'a> {
         found
     }
 
-    /// Counts what the search for motions to begin with has done.
+    /// Updates the progress of the search for initial motions.
     fn count(&self, [values, starts]: [usize; 2], motions: usize) {
         let before = self.tried.get();
         self.tried.set(SeedSearch {
@@ -743,5 +744,5 @@ impl<'a> PreparedRequest<'a> {
     }
 }
 
-/// A place where a branch, counted from 0, changes.
+/// A bifurcation of a branch, which is counted from 0.
 type Change = (BifurcationKind, usize, BranchNode);

@@ -13,7 +13,7 @@ use super::bifurcation::BifurcationKind;
 use super::continuation::BranchNode;
 use super::judgement::PointJudgement;
 
-/// A place where a branch changes, between the point of this index and the next one.
+/// A bifurcation between the point of this index and the next one.
 pub(super) type LocatedBifurcation = (usize, BifurcationKind, BranchNode);
 
 /// Folds of the balance alone.
@@ -41,8 +41,8 @@ impl Ripple {
     }
 }
 
-/// The sign of det(1 - M) of the true motions beside these points, that of most of them; zero where
-/// there is none.
+/// The sign that det(1 - M) has for most of the true motions near these points; zero if there are
+/// none.
 fn side(judged: &[PointJudgement]) -> f64 {
     let sign = |(_, truth): &PointJudgement| {
         truth.map_or(0.0, |truth| {
@@ -58,8 +58,8 @@ fn side(judged: &[PointJudgement]) -> f64 {
     if sum == 0.0 { 0.0 } else { sum.signum() }
 }
 
-/// The places where a branch changes without the folds that only its balance has, and the
-/// parameters of these.
+/// The bifurcations of a branch without the folds that only its balance has, and the parameters of
+/// those folds.
 pub(super) fn without_ripple(
     found: Vec<LocatedBifurcation>,
     nodes: &[BranchNode],
@@ -101,10 +101,10 @@ pub(super) fn without_ripple(
 }
 
 /// The folds of the true motion in place of these of a balance, on a part of a branch without
-/// crossings; `None` if these are they, or if the true motions do not tell. On either side of a
-/// fold of the true motion det(1 - M) has one sign each: where the balance turns more often than
-/// the sign, its folds are as many as the sign changes, each where the branch comes farthest in
-/// between.
+/// crossings; `None` if all of these are real, or if the true motions do not decide. On either side
+/// of a fold of the true motion det(1 - M) has one sign each: where the balance turns more often
+/// than the sign, its folds are as many as the sign changes, each where the branch comes farthest
+/// in between.
 fn of_true_motion(
     folds: &[LocatedBifurcation],
     nodes: &[BranchNode],
@@ -128,7 +128,7 @@ fn of_true_motion(
         before = if *behind == 0.0 { before } else { *behind };
     }
     let left_out = folds.len() - turns.len();
-    // A branch that goes on the same way has turned twice, or not at all.
+    // Spurious folds come in pairs, between which the branch turns back and forth.
     if left_out == 0 || left_out % 2 == 1 || first * last == 0.0 {
         return None;
     }

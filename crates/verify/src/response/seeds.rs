@@ -1,4 +1,4 @@
-//! Motions to begin with: where simulations settle.
+//! Initial motions of branches, found by simulations that settle.
 
 use nalgebra::DVector;
 
@@ -8,25 +8,25 @@ use super::continuation::BranchPath;
 use super::stability::{SimulationBudget, half_of_peak_to_peak, settle};
 use super::{Elsewhere, PreparedRequest, ResponseError};
 
-/// A motion to begin with.
+/// An initial motion of a branch.
 #[derive(Clone, Debug)]
 pub(super) struct Seed {
     pub(super) parameter: f64,
     /// The frequency of the motion.
     pub(super) frequency: f64,
     pub(super) positions: Vec<f64>,
-    /// Position and velocity with which it begins, where a simulation has come to it.
+    /// Position and velocity at its start, if a simulation has found it.
     pub(super) start: Option<[f64; 2]>,
 }
 
 impl PreparedRequest<'_> {
-    /// Motions to begin with: where simulations settle, from rest and from a ring of starts as
-    /// large as the motions of the first branches; and what did not repeat itself.
+    /// Initial motions from simulations that settle, from rest and from a ring of starts as large
+    /// as the motions of the first branches; and the simulations that did not become periodic.
     pub(super) fn seeds(
         &self,
         harmonics: usize,
     ) -> Result<(Vec<Seed>, Vec<Elsewhere>), ResponseError> {
-        /// Values of the parameter at which simulations begin.
+        /// Number of values of the parameter at which simulations begin.
         const VALUES: u32 = 5;
         const RINGS: [f64; 2] = [0.5, 1.3];
         if self.driven.self_excited {
@@ -52,12 +52,13 @@ impl PreparedRequest<'_> {
             self.count([1, 0], seeds.len());
             self.question.progress.advance();
             let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
-            // Between two wells there is a motion as well, though it does not last.
+            // There is a motion about the maximum between two wells as well, though it is unstable.
             if !places.contains(&0.0) {
                 places.push(0.0);
             }
             for place in places {
-                // Beside the motion that a balance finds from rest, if it does.
+                // The simulation starts near the motion that a balance finds from rest, if it finds
+                // one.
                 if let Some((seed, extent)) = self.balanced_from_rest(&balance, place, *parameter) {
                     size = size.max(extent);
                     seeds.push(seed);
@@ -71,7 +72,7 @@ impl PreparedRequest<'_> {
             }
         }
         size = size.max(size_of(&seeds));
-        // The ring is as wide as the branches that are known by now.
+        // The ring is as large as the motions of the branches known so far.
         let first: Vec<BranchPath> = match self.driven.is_balanced() {
             true => self.branches(&balance, &seeds, size),
             false => vec![],
@@ -114,8 +115,8 @@ impl PreparedRequest<'_> {
         Ok((seeds, elsewhere))
     }
 
-    /// The motion that a balance finds from rest at a place, and its extent; `None` if it finds
-    /// none.
+    /// The motion that a balance finds from rest at an equilibrium, and its extent; `None` if it
+    /// finds none.
     fn balanced_from_rest(
         &self,
         balance: &DrivenBalance,
@@ -131,7 +132,7 @@ impl PreparedRequest<'_> {
         Some((self.seed(balance, &found, parameter), balance.core.extent(&found)))
     }
 
-    /// A motion of a balance to begin with.
+    /// An initial motion from the solution of a balance.
     fn seed(&self, balance: &DrivenBalance, found: &DVector<f64>, parameter: f64) -> Seed {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
@@ -147,7 +148,7 @@ impl PreparedRequest<'_> {
     }
 
     /// The range, widened, in which branches that leave it are followed because they might come
-    /// back; it does not reach a parameter of the other sign.
+    /// back; it contains no value of the other sign.
     fn surroundings(&self) -> [f64; 2] {
         const TIMES: f64 = 4.0;
         let [low, high] = self.question.range;
@@ -157,7 +158,7 @@ impl PreparedRequest<'_> {
         [lowest, highest]
     }
 
-    /// Adds where a simulation settles, or says that it does not repeat itself.
+    /// Adds the motion on which a simulation settles, or reports that it does not become periodic.
     fn add_settled(
         &self,
         start: [f64; 2],
@@ -185,7 +186,7 @@ impl PreparedRequest<'_> {
     }
 }
 
-/// The size of the largest of the motions to begin with.
+/// The size of the largest initial motion.
 pub(super) fn size_of(seeds: &[Seed]) -> f64 {
     seeds.iter().map(|seed| half_of_peak_to_peak(&seed.positions)).fold(0.0, f64::max)
 }

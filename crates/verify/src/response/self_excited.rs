@@ -1,13 +1,13 @@
-//! Limit cycles to begin with: where a motion released at rest comes back to where it was.
+//! Initial limit cycles, found by the return map of a motion released at rest.
 //!
 //! ```text
 //! P(x): the next turning point on the same side        P(x) = x: a cycle
 //! ```
 //!
-//! Every cycle turns right of a place of rest, so that starts there, from near to far, at several
-//! values of the parameter, forward and backward in time, find those that attract and those that
-//! repel (A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*, Pergamon 1966,
-//! chapter V).
+//! Every cycle has a turning point to the right of an equilibrium. Starts there, from near to far,
+//! at several values of the parameter, forward and backward in time, find the cycles that attract
+//! and those that repel (A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*,
+//! Pergamon 1966, chapter V).
 
 use super::backbone::places_of_rest;
 use super::jump::{StopCondition, follow};
@@ -16,14 +16,15 @@ use super::{PreparedRequest, ResponseError};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
-/// Values of the parameter at which cycles are looked for; the second where the first find none.
+/// Number of values of the parameter at which cycles are sought; the second is used if the first
+/// finds none.
 const VALUES: [u32; 2] = [5, 33];
 
 /// Starts: `RATIO^k` for `|k| <= RINGS`, a thousandth to a thousand units from rest.
 const RATIO: f64 = 1.36;
 const RINGS: i32 = 22;
 
-/// Growth that is no more than the error of the steps.
+/// Largest growth that may be the error of the steps.
 const ROUNDING: f64 = 1e-8;
 
 impl PreparedRequest<'_> {
@@ -53,7 +54,7 @@ impl PreparedRequest<'_> {
         Err(self.no_motion_error())
     }
 
-    /// The places of rest about which something may swing.
+    /// The equilibria about which a motion may oscillate.
     fn rest_positions(&self, parameter: f64) -> Vec<f64> {
         const SIZES: [f64; 3] = [1.0, 0.03, 30.0];
         let mut found: Vec<f64> = Vec::new();
@@ -67,7 +68,7 @@ impl PreparedRequest<'_> {
         found
     }
 
-    /// Adds the cycles that turn right of a place of rest.
+    /// Adds the cycles with a turning point to the right of an equilibrium.
     fn cycles_about(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
         for backward in [false, true] {
             let growth = |radius: f64| {
@@ -100,8 +101,8 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What
-    /// sticks cannot be followed backward.
+    /// Adds the cycles with a turning point to the right of an equilibrium for a force with jumps.
+    /// A motion that sticks cannot be followed backward.
     fn cycles_across_jumps(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
         /// The longest time in which a motion has to turn back.
         const LONGEST: f64 = 1e3;
@@ -151,7 +152,7 @@ impl PreparedRequest<'_> {
         (tolerance, maximum_steps): (f64, usize),
     ) -> Option<Trajectory> {
         const LONGEST: f64 = 2e3;
-        /// Radii away from where it does not come back.
+        /// Number of radii beyond which a motion does not return.
         const GONE: f64 = 1e3;
         let pace = self.approximate_frequency(place, radius, parameter);
         let speed = radius * pace * if backward { -1.0 } else { 1.0 };
@@ -170,11 +171,12 @@ impl PreparedRequest<'_> {
     }
 }
 
-/// Tolerance of a step and steps, while cycles are looked for and where one is found.
+/// Tolerance and largest number of steps during the search for cycles, and for a cycle that was
+/// found.
 const SEARCHED: (f64, usize) = (1e-9, 600);
 const FOUND: (f64, usize) = (1e-11, 4000);
 
-/// The radii, ring by ring, at which a turn neither grows nor shrinks.
+/// The radii at which one turn neither grows nor shrinks.
 fn fixed_radii(growth: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut before = f64::NAN;
     let mut radii = Vec::new();

@@ -1,9 +1,8 @@
-//! Steady motions by the slow equations of a method, beside the branches that were found and
-//! judged.
+//! Steady motions by the slow equations of a method, compared with the branches of a response.
 //!
 //! In: a [`ResponseDiagram`] and a [`Solution`] with slow equations of the primary resonance, such
-//! as that of multiple scales. Out: its steady motions over the range, and how far they are from
-//! the stable points of the branches, each of which has its true motion beside it.
+//! as that of multiple scales. Out: its steady motions over the range, and their errors at the
+//! stable points of the branches, whose true motions are known.
 
 use super::{ResponseDiagram, ResponseRequest};
 use crate::solution::Solution;
@@ -11,20 +10,20 @@ use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
 use crate::verify::Verdict;
 
-/// Parts of its amplitude by which a steady motion may differ: beyond it is another one, as where a
-/// branch folds back too soon.
+/// Largest relative difference in amplitude; beyond it the steady motion is another one, as when a
+/// branch folds back too early.
 const OTHER: f64 = 0.3;
 
-/// The part of the stable points that may be missing, for folds lie where they lie.
+/// One in so many stable points may be missing, because folds are shifted.
 const MISSING: usize = 20;
 
-/// Values of the parameter at which the slow equations are solved.
+/// Number of values of the parameter at which the slow equations are solved.
 const VALUES: u32 = 240;
 
 /// Steady motions by slow equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowResponse {
-    /// The slow equations, and who derived them.
+    /// The solution with the slow equations and their method.
     pub solution: Box<Solution>,
     /// The steady motions, by the parameter, the largest first.
     pub states: Vec<SlowState>,
@@ -45,7 +44,7 @@ pub struct SlowResponse {
     pub verdict: Verdict,
 }
 
-/// Steady motions that only the truncation of slow equations makes.
+/// Spurious steady motions, which only the truncation of the slow equations has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spurious {
     /// Their number, summed over all values of the parameter.
@@ -88,7 +87,7 @@ fn motions_at(question: &ResponseRequest, solution: &Solution, parameter: f64) -
 }
 
 impl ResponseDiagram {
-    /// This response with the steady motions of these slow equations beside it.
+    /// Returns this response with the steady motions of these slow equations added.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;

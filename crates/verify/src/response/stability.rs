@@ -1,4 +1,4 @@
-//! The true motion beside a balance, and whether it lasts: Floquet's multipliers.
+//! The true motion near a solution of the balance, and its stability by Floquet's multipliers.
 //!
 //! ```text
 //! M' = [0 1; -f_x -f_v] M,  M(0) = 1:   the multipliers are the eigenvalues of M(T),   det M(T) = exp(-integral of f_v over T)
@@ -6,9 +6,9 @@
 //!
 //! In: a start near a motion of period T. Out: the motion itself, found by shooting (Newton's
 //! method for the start that comes back after a period), its first harmonic and its peaks, and its
-//! multipliers; it is stable if both lie inside the unit circle (A. H. Nayfeh and B.
-//! Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by
-//! Runge-Kutta on the equation as it was given; of the balance only the start is taken.
+//! multipliers; it is stable if both lie inside the unit circle (A. H. Nayfeh and B. Balachandran,
+//! *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by
+//! Runge-Kutta on the equation as it was given; only the start is taken from the balance.
 
 use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
@@ -19,7 +19,7 @@ use crate::interrupt::Interrupt;
 use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
 
-/// Samples of a period from which its harmonics and its peaks are taken.
+/// Number of samples of a period for its harmonics and peaks.
 pub(super) const SAMPLES: usize = 256;
 
 /// The monodromy matrix: the image of a small disturbance of a periodic motion after one period.
@@ -33,7 +33,7 @@ pub struct Floquet {
 }
 
 impl Floquet {
-    /// The eigenvalues of M(T), the larger first; of a self-excited motion the one that decides,
+    /// The eigenvalues of M(T), the larger first; for a self-excited motion the nontrivial one,
     /// then the one that is 1.
     pub fn multipliers(&self) -> [Complex<f64>; 2] {
         match self.self_excited {
@@ -42,7 +42,7 @@ impl Floquet {
         }
     }
 
-    /// The size of the one that decides: the larger.
+    /// The absolute value of the multiplier that decides about stability, the larger one.
     pub fn largest(&self) -> f64 {
         self.multipliers()[0].norm()
     }
@@ -61,12 +61,12 @@ pub struct TrueMotion {
     pub first_harmonic: [f64; 2],
     /// Half of the way from the lowest to the highest point.
     pub peak: f64,
-    /// The part of a period in which it sticks.
+    /// The fraction of the period during which the motion sticks.
     pub stuck: f64,
 }
 
 impl TrueMotion {
-    /// A motion of which the positions over a period are known, at equal steps.
+    /// A motion from its positions over a period at equal steps.
     pub(super) fn new(
         start: [f64; 2],
         frequency: f64,
@@ -86,10 +86,10 @@ impl TrueMotion {
     }
 }
 
-/// Relative error of a step where motions are judged.
+/// Relative tolerance of a step in verification.
 pub(super) const TOLERANCE: f64 = 1e-10;
 
-/// Steps that a period may take.
+/// Largest number of steps of a period.
 const STEPS: usize = 4_000;
 
 pub(super) fn options(size: f64, tolerance: f64) -> IntegrationOptions {
@@ -100,23 +100,22 @@ pub(super) fn options(size: f64, tolerance: f64) -> IntegrationOptions {
     }
 }
 
-/// Parts of the size of a motion by which shooting may move its start, and of its period.
+/// Largest change of the start by shooting, relative to the size of the motion, and of the period.
 pub(super) const FAR: f64 = 0.3;
 
-/// Whether shooting has settled so closely, by how far an orbit is from closing and how far
-/// Newton's method would move it.
+/// A test whether shooting has converged, from the closure error of an orbit and the size of the
+/// next Newton step.
 pub(super) fn convergence_test(closely: f64) -> impl FnMut(f64, f64) -> bool {
     let mut before = f64::INFINITY;
     move |missed, moved| {
-        // Near a fold rounding is magnified: what does not shrink any more has come as near as it
-        // will.
+        // Near a fold rounding is magnified: steps that no longer shrink have converged.
         let stalled = moved <= 1e-6 && moved >= 0.5 * before;
         before = moved;
         stalled || moved <= closely || missed <= 1e-12
     }
 }
 
-/// The periodic motion whose start is near this one; `None` if shooting does not settle, or goes
+/// The periodic motion whose start is near this one; `None` if shooting does not converge, or moves
 /// far away.
 pub fn periodic_motion(
     driven: &Driven,
@@ -213,14 +212,14 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
 /// interrupt.
 #[derive(Clone, Copy, Debug)]
 pub struct SimulationBudget {
-    /// Evaluations that are left.
+    /// Number of evaluations left.
     pub evaluations: usize,
     /// The interrupt, tested after every period.
     pub interrupt: Interrupt,
 }
 
 impl SimulationBudget {
-    /// Takes what a period has cost; whether there may be another one.
+    /// Subtracts the cost of a period. Returns whether another one may be computed.
     pub(super) fn spend(&mut self, evaluations: usize) -> bool {
         self.evaluations = self.evaluations.saturating_sub(evaluations);
         self.evaluations > 0 && !self.interrupt.is_requested()
@@ -232,14 +231,14 @@ impl SimulationBudget {
 pub struct Settled {
     /// Position and velocity at phase zero.
     pub state: [f64; 2],
-    /// The periods of the motion after which it comes back, or would where what has not died out
-    /// yet is gone; `None` if it does not within eight.
+    /// The number of periods after which it repeats itself, or will once a decaying transient is
+    /// gone; `None` if it does not within eight.
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
 }
 
-/// A period of a simulation: in one, or by legs between the jumps of the force.
+/// A period of a simulation, in one piece or in legs between the jumps of the force.
 enum Period {
     One(Trajectory<Point<[f64; 2]>>),
     Legs(VariationalMotion),
@@ -281,11 +280,11 @@ pub fn settle(
     (most, closely): (usize, f64),
     budget: &mut SimulationBudget,
 ) -> Option<Settled> {
-    /// Periods in which a repetition is looked for.
+    /// Largest number of periods within which a motion may repeat itself.
     const LONGEST: usize = 8;
     const BOUND: f64 = 1e8;
-    /// Periods over which the largest difference is taken, and the part of it that may be left a
-    /// quarter of the run later.
+    /// Number of periods over which the largest difference is taken, and the largest fraction of it
+    /// that may remain a quarter of the run later.
     const WINDOW: usize = 16;
     const FALLING: f64 = 0.9;
     let omega = driven.frequency_at(parameter);
@@ -322,7 +321,7 @@ pub fn settle(
         let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
         states.push(end);
         last = Some(path);
-        // A motion that stands still is one that repeats itself.
+        // A state of rest counts as periodic.
         quiet = if moved <= closely * extent.max(1e-12) { quiet + 1 } else { 0 };
         if quiet >= 3 {
             break;

@@ -1,18 +1,18 @@
-//! Branches of motions across jumps of the force that harmonic balance does not take: by the map of
+//! Branches of motions across jumps of the force that harmonic balance cannot treat, by the map of
 //! a period.
 //!
 //! ```text
 //! P(y; p): position and velocity a period later,   P(y; p) - y = 0        [M - 1  P_p; y'^T  p'] [dy; dp] = -[P - y; 0]
 //! ```
 //!
-//! A sum of waves is smooth and has no rest in it, so that harmonic balance is lost where sticking
-//! begins. The map of a period, followed from event to event ([`jump`](super::jump)), is continuous
-//! there, and its derivative M is what the legs and their saltation matrices make it: of what
-//! sticks one multiplier is zero. Pseudo-arclength goes on with it (R. I. Leine and H.
-//! Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 8). Where
-//! nothing drives the motion the map goes from one largest displacement to the next, and its
-//! derivative is the multiplier. In: a periodic motion. Out: the branch through it, each point with
-//! the harmonics of the true motion.
+//! A sum of waves is smooth and contains no interval of rest, so that harmonic balance fails where
+//! sticking begins. The map of a period, followed from event to event ([`jump`](super::jump)), is
+//! continuous there, and its derivative M is the product of the variations of the legs and of their
+//! saltation matrices; for a motion that sticks one multiplier is zero. Pseudo-arclength
+//! continuation uses this map (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of
+//! Non-Smooth Mechanical Systems*, Springer 2004, chapter 8). Without a drive the map leads from
+//! one maximum of the displacement to the next, and its derivative is the multiplier. In: a
+//! periodic motion. Out: the branch through it, each point with the harmonics of the true motion.
 
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
@@ -28,7 +28,7 @@ use super::{LONGEST_STEP, MOST_BRANCHES, PreparedRequest};
 use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, passes};
 
-/// Position, velocity and parameter, each in its size.
+/// Position, velocity and parameter, each divided by its scale.
 type ScaledPoint = Vector3<f64>;
 
 /// A periodic motion on a branch.
@@ -39,10 +39,10 @@ struct ShootingOrbit {
     course: VariationalMotion,
 }
 
-/// The map of a period in its sizes.
+/// The map of a period in scaled variables.
 struct PeriodMap<'a> {
     asked: &'a PreparedRequest<'a>,
-    /// The sizes of position, velocity and parameter.
+    /// The scales of position, velocity and parameter.
     sizes: ScaledPoint,
 }
 
@@ -65,7 +65,7 @@ impl<'a> PeriodMap<'a> {
         ([real[0], real[1]], real[2])
     }
 
-    /// A period from here; `None` if it cannot be followed.
+    /// The motion over a period from this point; `None` if it cannot be followed.
     fn period(&self, at: &ScaledPoint) -> Option<VariationalMotion> {
         /// The longest time in which a motion without drive has to turn back.
         const LONGEST: f64 = 1e3;
@@ -75,8 +75,8 @@ impl<'a> PeriodMap<'a> {
         if driven.self_excited {
             let mut course =
                 follow(driven, [start[0], 0.0], parameter, StopCondition::Turn(LONGEST), &options)?;
-            // A displacement along the trajectory is no other motion: the start counts by its
-            // position alone, and the velocity at the end is zero.
+            // A displacement along the trajectory does not give another motion: only the position
+            // of the start varies, and the velocity at the end is zero.
             let [x, _, by_start, ..] = course.end;
             course.end = [x, 0.0, by_start, 0.0, 0.0, 0.0];
             return course.turned().then_some(course);
@@ -125,8 +125,8 @@ impl<'a> PeriodMap<'a> {
         )
     }
 
-    /// Newton's method at right angles to a direction: the motion, its tangent turned as the
-    /// direction.
+    /// Newton's method at right angles to a direction: the motion, with its tangent oriented like
+    /// the direction.
     fn corrected(&self, guess: &ScaledPoint, direction: &ScaledPoint) -> Option<ShootingOrbit> {
         const MOST: usize = 14;
         const SETTLED: f64 = 1e-9;
@@ -168,8 +168,8 @@ impl<'a> PeriodMap<'a> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
-    /// Motion after motion in the direction of the tangent, the first included, and why there are
-    /// no more. `met` says where motions of another branch are met.
+    /// The motions in the direction of the tangent, the first included, and the reason why they
+    /// end. `met` tells whether a motion lies on another branch.
     fn walk(
         &self,
         first: ShootingOrbit,
@@ -179,10 +179,10 @@ impl<'a> PeriodMap<'a> {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
         const MOST: usize = 500;
-        /// Cosine of the angle between tangents: a branch has a corner where a motion begins to
-        /// stick.
+        /// Least cosine of the angle between tangents; it is small because a branch has a corner
+        /// where a motion begins to stick.
         const SHARPEST: f64 = 0.5;
-        /// Part of a period.
+        /// Fraction of a period that counts as all of it.
         const ALL: f64 = 1.0 - 1e-9;
         const NEARLY_ALL: f64 = 0.8;
         let bounds = self.asked.question.range.map(|bound| bound / self.sizes[2]);
@@ -263,8 +263,7 @@ impl<'a> PeriodMap<'a> {
     }
 }
 
-/// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears
-/// what drives it.
+/// Removes the states of rest from a branch, in which friction balances the drive.
 fn cut_rest(balance: &DrivenBalance, path: &mut BranchPath, size: f64) {
     const NOTHING: f64 = 1e-5;
     let moves = |node: &BranchNode| balance.core.extent(&node.coefficients) > NOTHING * size;
@@ -284,8 +283,8 @@ fn cut_rest(balance: &DrivenBalance, path: &mut BranchPath, size: f64) {
 }
 
 impl PreparedRequest<'_> {
-    /// Follows every branch on from where harmonic balance has lost it because the motion begins to
-    /// stick, and adds those on which it sticks all along.
+    /// Continues every branch that harmonic balance has lost because the motion begins to stick,
+    /// and adds the branches that stick throughout.
     pub(super) fn follow_sticking(
         &self,
         balance: &DrivenBalance,
@@ -333,8 +332,8 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// A branch of self-excited motions with its end in the place where they are born from rest, if
-    /// it has one: motions too small to be told from rest are left out.
+    /// A branch of self-excited motions completed by its Hopf point, if it has one; motions too
+    /// small to be distinguished from rest are removed.
     fn ended_at_rest(
         &self,
         balance: &DrivenBalance,
@@ -395,7 +394,7 @@ impl PreparedRequest<'_> {
         (nodes.len() > 1).then_some(BranchPath { nodes, ends: [first, last], mirrored: false })
     }
 
-    /// Follows a branch on beyond one of its ends.
+    /// Continues a branch beyond one of its ends.
     fn follow_on(
         &self,
         balance: &DrivenBalance,
@@ -403,7 +402,7 @@ impl PreparedRequest<'_> {
         (index, side): (usize, usize),
         size: f64,
     ) {
-        /// Points at an end that harmonic balance may have led astray.
+        /// Number of points at an end that harmonic balance may have computed wrongly.
         const ASTRAY: usize = 40;
         let path = &paths[index];
         let nodes: Vec<&BranchNode> = match side {
@@ -477,8 +476,8 @@ impl PreparedRequest<'_> {
         parameter: f64,
         size: f64,
     ) -> bool {
-        /// Parts of a motion by which a guess between two points may be off, and by which motions
-        /// that are one may differ.
+        /// Largest error of an interpolation between two points, and largest difference of equal
+        /// motions, relative to their size.
         const NEAR: f64 = 0.25;
         const SAME: f64 = 1e-4;
         let omega = self.driven.frequency_at(parameter);
@@ -497,7 +496,8 @@ impl PreparedRequest<'_> {
         })
     }
 
-    /// A motion between two of a branch of which one is known by shooting, at this part of the way.
+    /// A motion between two of a branch, at this fraction of the way, if one of them was found by
+    /// shooting.
     pub(super) fn stuck_between(
         &self,
         balance: &DrivenBalance,

@@ -1,8 +1,8 @@
 //! Motions on which simulations have settled and that lie on no branch.
 //!
-//! In: the branches, and the motions to begin with. Out: those of them whose true motion, by
-//! shooting, is none that shooting finds from the branches: harmonic balance has not come to it, or
-//! has come to another one.
+//! In: the branches, and the initial motions. Out: the initial motions whose true motion, by
+//! shooting, is not found by shooting from any branch: harmonic balance has not converged to it, or
+//! has converged to another one.
 
 use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
@@ -11,8 +11,8 @@ use super::seeds::Seed;
 use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
 
-/// A motion at a value of the parameter, by its start and those of its images: begun a period of
-/// the drive later, or mirrored.
+/// A motion at a value of the parameter, by its start and those of its images, shifted by a drive
+/// period or mirrored.
 struct MotionWithImages {
     parameter: f64,
     starts: Vec<[f64; 2]>,
@@ -40,7 +40,7 @@ impl PreparedRequest<'_> {
                 return found;
             }
             let (parameter, extent) = (seed.parameter, half_of_peak_to_peak(&seed.positions));
-            // A simulation ends before it has settled for good.
+            // A simulation ends before it has settled completely, so that shooting refines it.
             let truth = periodic_motion(&self.driven, start, parameter, extent)
                 .filter(|_| extent > NOTHING * size);
             let Some(start) = truth.map(|truth| truth.start) else {
@@ -65,8 +65,7 @@ impl PreparedRequest<'_> {
         found
     }
 
-    /// The start of a motion, those a period of the drive later each, and those of its mirror
-    /// images.
+    /// The starts of a motion, of its shifts by drive periods, and of their mirror images.
     fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
         let period = std::f64::consts::TAU
             / self.driven.frequency_at(parameter)
@@ -81,7 +80,8 @@ impl PreparedRequest<'_> {
         std::iter::once(start).chain(later).collect()
     }
 
-    /// Whether a motion begins as this one or as an image of it, or where the force is the same.
+    /// Whether a start is that of this motion or of an image of it, up to a period of the force in
+    /// position.
     fn is_one(&self, motion: &MotionWithImages, [x, v]: [f64; 2]) -> bool {
         /// Ratio of a difference to the size below which two motions are the same.
         const SAME: f64 = 1e-3;
@@ -93,8 +93,8 @@ impl PreparedRequest<'_> {
         })
     }
 
-    /// Whether a branch passes a motion, by the true motions that shooting finds from it at the
-    /// same value of the parameter.
+    /// Whether a branch contains a motion, by the true motions that shooting finds from the branch
+    /// at the same value of the parameter.
     fn passes(
         &self,
         balance: &DrivenBalance,

@@ -1,13 +1,13 @@
-//! The energy of an equation of motion: what has a potential, and the power of everything else,
-//! term by term.
+//! The energy of an equation of motion: the potential of the terms that have one, and the power of
+//! every other term.
 //!
 //! ```text
 //! x'' + f = 0:   h = x'^2/2 + V(x),   dh/dt = -x' (f - V')
 //! ```
 //!
 //! Reference: H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6. Terms are those of the
-//! expanded force, but what stands inside a function or below a fraction stays as it was typed:
-//! `exp(-((t - 20)*1e5)^2)` written out would lose ten digits.
+//! expanded force, but arguments of functions and denominators stay as they were typed: `exp(-((t -
+//! 20)*1e5)^2)` written out would lose ten digits.
 
 use super::EnergyWithPowers;
 use crate::conservative::potential;
@@ -18,7 +18,7 @@ use crate::symbol::{Symbol, fresh_stem};
 use num_traits::Signed as _;
 
 /// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every
-/// other term; `None` for an inertia that depends on the position, whose energy is another.
+/// other term; `None` for an inertia that depends on the position, whose energy has another form.
 pub(super) fn energy_of_equation(oscillator: &Oscillator) -> Option<EnergyWithPowers> {
     let velocity = oscillator.velocity();
     let speed = Expr::from(velocity);

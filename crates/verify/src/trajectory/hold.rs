@@ -1,5 +1,5 @@
-//! Dry friction that holds something: a coordinate at rest, a block on a belt that runs, two bodies
-//! that stick to each other.
+//! Sticking by dry friction: a coordinate at rest, a block on a moving belt, two bodies that stick
+//! to each other.
 //!
 //! ```text
 //! y' = f(y, t; s_1, s_2, ...),  s_i = sgn(u_i),  u_i linear in the velocities
@@ -9,11 +9,11 @@
 //!
 //! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988,
 //! chapter 2; several at a time: F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral
-//! Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity is what
-//! the equation says of it and is not followed.
+//! Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity is
+//! determined by this equation and is not integrated.
 //!
 //! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which
-//! direction u_i leaves its zero. Therefore only crossings in one direction end a stretch, and each
+//! direction u_i leaves its zero. Therefore only crossings in one direction end a segment, and each
 //! such event has a second one at a level that rounding does not reach.
 
 use std::collections::BTreeMap;
@@ -25,17 +25,18 @@ use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
 use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions};
 
-/// A speed that rounding leaves of one that is zero, beside speeds and places of one.
+/// Largest speed that counts as zero up to rounding, relative to speeds and positions of order one.
 const AT_REST: f64 = 1e-9;
 
-/// The force that rounding and the steps leave of zero, in parts of the friction.
+/// Largest force that counts as zero up to rounding and the error of the steps, relative to the
+/// friction.
 const ROUNDING: f64 = 1e-9;
 
-/// The speed that they leave of zero at the onset of a slip, in parts of the change that friction
-/// makes in a unit of time.
+/// Largest speed that counts as zero at the onset of a slip, relative to the change of speed by
+/// friction per unit of time.
 const UNSEEN: f64 = 1e-12;
 
-/// A force that exceeds the friction by so large a part of it leads away from rest at once.
+/// A force that exceeds the friction by this fraction starts a slip at once.
 const CLEARLY: f64 = 1e-3;
 
 /// Largest number of sticking phases.
@@ -60,8 +61,8 @@ pub(super) struct StateEquations<'a> {
 #[derive(Clone, Debug)]
 struct Surface {
     u: Expr,
-    /// Every argument of a `sgn`, `H` or `abs` that is zero where u is, and whether it has the sign
-    /// of u.
+    /// Every argument of a `sgn`, `H` or `abs` that vanishes with u, and whether it has the sign of
+    /// u.
     arguments: Vec<(Expr, bool)>,
     /// Half of the jump of du/dt.
     strength: f64,
@@ -70,18 +71,18 @@ struct Surface {
 /// The mode of a switching surface on a segment of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SurfaceRegime {
-    /// As the equations are typed: a corner of theirs.
+    /// The equations apply as typed; the surface is a corner of theirs.
     Typed,
     /// The motion stays on it.
     Held,
-    /// The motion stays on it where it stays on others; its friction is that of the one of this
-    /// number, in parts of the bounds, with this sign.
+    /// The motion stays on it because it stays on others; its friction, relative to its bound,
+    /// equals that of the surface of this number, with this sign.
     Tied(usize, i64),
     /// The motion has left it to this side, 1 or -1, and has not come back yet.
     Left(i64),
 }
 
-/// The surfaces that a motion was on where a stretch of it begins.
+/// The surfaces on which a motion is at the beginning of a segment, with their modes.
 type Regimes = Vec<(Surface, SurfaceRegime)>;
 
 /// The map from the integrated states to all states.
@@ -89,7 +90,7 @@ type Regimes = Vec<(Surface, SurfaceRegime)>;
 pub(super) struct Layout {
     /// The index of each state among the integrated ones, or its value in terms of them.
     all_states: Vec<Result<usize, CompiledFunction>>,
-    /// The values of the letters in these.
+    /// The values of the symbols in these.
     numbers: Vec<f64>,
 }
 
@@ -107,8 +108,9 @@ impl Layout {
 }
 
 impl TrajectoryRequest {
-    /// The motion stretch by stretch, each as the equations say or with something held by friction,
-    /// and why it ends. The first stretch has been followed, as the equations say.
+    /// The motion segment by segment, each by the equations as typed or with surfaces held by
+    /// friction, and the reason why it ends. The first segment, by the equations as typed, is
+    /// given.
     pub(super) fn pieces(
         &self,
         first: Path,
@@ -142,7 +144,7 @@ impl TrajectoryRequest {
             pieces.push(piece);
             let Some(last) = last else { break reason };
             state = last;
-            // Other surfaces can hold the motion only if there is more friction than is needed.
+            // Other surfaces can take over only if there are more frictions than needed.
             let hit = match reason {
                 PathEnd::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
                 _ => None,
@@ -172,9 +174,9 @@ impl TrajectoryRequest {
         Ok((pieces, reason))
     }
 
-    /// The motion from a time on, until something that is held is released or something that was
-    /// left is back. The states that are held are set to what is held. `None` if there are no such
-    /// equations.
+    /// The motion from a time on, until a held surface is released or one that was left is reached
+    /// again. The held states are set to their fixed values. `None` if the equations of this mode
+    /// cannot be formed.
     fn stretch(
         &self,
         equations: &StateEquations,
@@ -241,11 +243,10 @@ impl PoincareSection {
     }
 }
 
-/// The events that each surface of a stretch has, in their order.
+/// Number of events of each surface of a segment.
 const EVENTS: usize = 4;
 
-/// Lets go of what an event of a stretch says is released; `false` where it says that something is
-/// back on its surface.
+/// Releases the surface that an event belongs to; `false` if the event is the return to a surface.
 fn released(regimes: &mut Regimes, event: usize) -> bool {
     match regimes.get_mut(event / EVENTS) {
         Some((_, regime)) if *regime == SurfaceRegime::Held => {
@@ -256,8 +257,8 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
     }
 }
 
-/// The surface whose friction reaches its bound in an event, where others have theirs from it or
-/// from each other.
+/// The surface whose friction reaches its bound in an event, if some frictions are tied to each
+/// other; `None` otherwise.
 fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
     let surplus = regimes.iter().any(|(_, regime)| matches!(regime, SurfaceRegime::Tied(..)));
     let (surface, _) = regimes
@@ -315,7 +316,7 @@ fn solved(
     Ok(Some((velocity, -Expr::divide(&rest, &coefficient)?)))
 }
 
-/// The surfaces that a state is on, to rounding, and on which the rates jump.
+/// The surfaces on which a state lies, up to rounding, and across which the rates jump.
 fn surfaces(
     equations: &StateEquations,
     time: f64,
@@ -336,7 +337,7 @@ fn surfaces(
             corners.push(found);
         }
     }
-    // Those that jump come first, for they are the surfaces.
+    // Corners that jump come first, because they define the surfaces.
     corners.sort_by_key(|(jumps, _)| !jumps);
     let mut found: Vec<Surface> = Vec::new();
     for (jumps, argument) in corners {
@@ -377,8 +378,8 @@ fn surfaces(
 }
 
 /// Determines the mode of each of these surfaces, on all of which a state lies: held if the
-/// friction that this needs is within its bound. On the surface that was just hit the friction is
-/// at its bound, unless others take it over. Returns `None` if the modes cannot be determined.
+/// required friction is within its bound. On the surface that was just hit the friction is at its
+/// bound, unless others take over. Returns `None` if the modes cannot be determined.
 fn regimes_at(
     equations: &StateEquations,
     found: Vec<Surface>,
@@ -392,7 +393,7 @@ fn regimes_at(
         let alone = vec![(surface.clone(), SurfaceRegime::Held)];
         let jump = sliding(equations, &alone, &numbers)?
             .and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
-        // Rates that lead away on both sides, or do not jump, hold nothing.
+        // A surface does not hold if the rates lead away on both sides or do not jump.
         if let Some(jump) = jump.filter(|jump| *jump < 0.0) {
             surface.strength = -jump;
             regimes.push((surface, SurfaceRegime::Held));
@@ -445,15 +446,15 @@ fn regimes_at(
             continue;
         }
         if sliding.shares.is_empty() && excess > CLEARLY {
-            // The corner itself says where the motion goes.
+            // The equations as typed determine the motion at a corner.
             regimes.iter_mut().for_each(|(_, regime)| *regime = SurfaceRegime::Typed);
         }
         return Ok(Some(regimes));
     }
 }
 
-/// Gives shares of one size to the frictions that the equations leave open: there are more of them
-/// at rest than independent velocities. `false` where that cannot be told.
+/// Gives equal shares to the frictions that the equations leave undetermined, because more of them
+/// are at rest than there are independent velocities. `false` if that is not possible.
 fn tie_frictions(
     equations: &StateEquations,
     regimes: &mut Regimes,
@@ -514,7 +515,7 @@ fn tie_frictions(
     Ok(true)
 }
 
-/// The rates of all states with a letter for each friction that holds something.
+/// The rates of all states, with a symbol for each friction that holds.
 struct SurfaceRates {
     /// The rates of all states.
     right: Vec<Expr>,
@@ -524,7 +525,7 @@ struct SurfaceRates {
     on: Vec<usize>,
     /// The surfaces whose frictions are linearly independent.
     independent: Vec<usize>,
-    /// The first letters of the names.
+    /// The common stem of the names.
     stem: String,
 }
 
@@ -548,7 +549,7 @@ impl SurfaceRates {
             independent: Vec::new(),
             stem: fresh_stem("share", &taken),
         };
-        // The velocities that are held, each in terms of what is left.
+        // Each held velocity is expressed by the remaining states.
         for index in rates.on.clone() {
             let typed = &regimes[index].0.u;
             let u = typed.substitute_all(&rates.fixed)?.expand()?;
@@ -559,7 +560,7 @@ impl SurfaceRates {
             let Some(slope) = slope_of(typed) else {
                 return Ok(None);
             };
-            // It moves with those before.
+            // It is held already by the surfaces before.
             if velocities(equations).all(|velocity| !u.contains(velocity))
                 || slope_of(&u).is_some_and(|left| left <= AT_REST * slope)
             {
@@ -585,7 +586,7 @@ impl SurfaceRates {
         Ok(Some(Self { right, ..rates }))
     }
 
-    /// The letter of a friction in parts of its bound.
+    /// The symbol of a friction relative to its bound.
     fn share(&self, index: usize) -> Symbol {
         Symbol::new(&format!("{}{index}", self.stem))
     }
@@ -600,17 +601,17 @@ impl SurfaceRates {
     }
 }
 
-/// The equations on a stretch where something is held or has been left.
+/// The equations of a segment on which surfaces are held or have been left.
 struct Sliding {
     /// The rates of all states.
     right: Vec<Expr>,
     /// The velocities that are held, in terms of the other states.
     fixed: BTreeMap<Symbol, Expr>,
-    /// The friction that each surface needs, in parts of its bound, by the number of the surface.
+    /// The friction that each surface needs, relative to its bound, by the number of the surface.
     shares: Vec<(usize, Expr)>,
-    /// Half of the jump of du/dt on each of these.
+    /// Half of the jump of du/dt across each of these surfaces.
     jumps: Vec<Expr>,
-    /// The events that end the stretch: [`EVENTS`] for each surface.
+    /// The events that end the segment: [`EVENTS`] for each surface.
     events: Vec<Event>,
     /// Whether anything is held.
     held: bool,
@@ -641,7 +642,7 @@ fn sliding(
             .iter()
             .map(|column| rate.differentiate(share(*column)))
             .collect::<Result<_, _>>()?;
-        // Friction enters in proportion, or nothing is known of what holds.
+        // Only frictions that enter linearly can be solved for.
         if row.iter().any(|entry| held.iter().any(|column| entry.contains(share(*column)))) {
             return Ok(None);
         }
@@ -649,7 +650,7 @@ fn sliding(
         rest.push(-rate.substitute_all(&none)?);
     }
     let jumps: Vec<Expr> = (0..held.len()).map(|row| matrix[row][row].clone()).collect();
-    // Of frictions of one size each may act on another surface than its own.
+    // Among tied frictions one may act on another surface than its own.
     if held == rates.independent && jumps.iter().any(Expr::is_zero) {
         return Ok(None);
     }
@@ -697,8 +698,8 @@ fn number(value: f64) -> Expr {
     from_f64(value).map_or_else(Expr::zero, Expr::number)
 }
 
-/// A part of a rate on these surfaces: `sgn`, `H` and `abs` of what is zero there, or has been left
-/// to one side.
+/// A rate on these surfaces: `sgn`, `H` and `abs` of arguments that are zero there, or that have
+/// been left to one side, are replaced.
 fn on_surfaces(
     expr: &Expr,
     children: &[Expr],

@@ -5,8 +5,8 @@
 //! F(t) = exp(-((t - s)/w)^2), tanh((t - s)/w), ...      s +- 2 w, 4 w, 8 w, ..., half the way to the next pulse
 //! ```
 //!
-//! An integrator looks at the drive along its step only; far from a pulse there is nothing to be
-//! seen of it. The expression knows where it is and how wide.
+//! An integrator samples the drive only along its step and may miss a pulse. The expression tells
+//! where a pulse is and how wide.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::symbol::Symbol;
 const FAR: f64 = 32.0;
 
 /// The times between zero and the duration at which a step has to end, in order. Waves alone,
-/// `cos(W*t)`, have none: they are to be seen everywhere.
+/// `cos(W*t)`, have none: no step can miss them.
 pub(super) fn critical_times(
     right: &[Expr],
     states: &[Symbol],
@@ -68,8 +68,8 @@ pub(super) fn critical_times(
     times
 }
 
-/// Whether a function of time may be there for a short while only. Waves, corners, which end a step
-/// by themselves, and low powers are as short as what stands in them.
+/// Whether a function of time may differ from a constant for a short time only. Waves, corners
+/// (which end a step by themselves) and sums vary no faster than their arguments.
 fn may_be_short(expr: &Expr) -> bool {
     use Function::{Absolute, Cos, Maximum, Minimum, Sign, Sin, Step, Tan};
     match expr.node() {

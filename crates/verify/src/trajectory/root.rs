@@ -1,13 +1,13 @@
 //! Powers such as 3/2 that begin at a corner: the force of a contact, written so that a step may
-//! look across its touch.
+//! extend across the beginning of contact.
 //!
 //! ```text
 //! u^r H(u), max(u, 0)^r  ->  (u^2)^(r/2) H(u)        abs(u)^r  ->  (u^2)^(r/2) sgn(u)^2        r = 3/2, 1/2, ..., or a letter
 //! ```
 //!
-//! Both sides are equal for every real u. But between its corners an expression is followed as it
-//! is on one side, and there u may be negative for a moment, before the corner is found: the left
-//! one has no value then, the right one has, and keeps its corner.
+//! Both sides are equal for every real u. But between its corners an expression is evaluated as on
+//! one side, and u may become negative for a moment before the corner is located: then the left
+//! form has no value, but the right one has, and it keeps its corner.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 
 /// The expression with its roots extended across corners, so that they have a value on both sides.
-/// An argument of a corner must not jump, so inside of one no steps are put in.
+/// An argument of a corner must not jump, so that no steps are introduced inside of one.
 pub(super) fn roots_across_corners(
     expression: &Expr,
     values: &BTreeMap<Symbol, f64>,
@@ -81,7 +81,7 @@ fn draws_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     }
 }
 
-/// Whether it is zero at zero besides.
+/// Whether the power also vanishes at zero, that is, whether the exponent is positive.
 fn rises_as_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     draws_root(exponent, values) && exponent.evaluate(values).is_ok_and(|value| value > 0.0)
 }
@@ -136,7 +136,7 @@ fn root_of(base: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Option<Rooted>
     }
 }
 
-/// An expression as numbers times one function with its arguments, where it is that.
+/// An expression as numbers times one function with its arguments; `None` if it has another form.
 fn one_function<'a>(
     expr: &'a Expr,
     values: &BTreeMap<Symbol, f64>,
@@ -164,8 +164,8 @@ fn is_positive(expr: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     expr.evaluate(values).is_ok_and(|value| value > 0.0)
 }
 
-/// `u^r H(v)` as `(u^2)^(r/2) H(v)` where u is zero with v and positive behind it. A root without
-/// its own gate is left alone, for where u is negative it has no value.
+/// `u^r H(v)` as `(u^2)^(r/2) H(v)` where u is zero with v and positive behind it. A root without a
+/// gate stays as it is, because it has no value for negative u.
 fn behind_gates(
     product: &Expr,
     factors: &[Expr],

@@ -13,9 +13,10 @@
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever
 //! side rounding leaves it there.
 
-use super::{Trajectory, TrajectoryError};
+use super::{Trajectory, TrajectoryError, TrajectorySegment};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
+use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 use crate::system::{Event, EventCrossing};
 
@@ -185,39 +186,44 @@ impl Trajectory {
         heights.windows(3).filter_map(touch).collect()
     }
 
-    /// The least and the greatest value of each coordinate from the time `after` of the course on.
+    /// The least and the greatest value of each coordinate from the time `after` of the course on:
+    /// at the ends, and where its velocity passes through zero.
     pub fn extremes(&self) -> Vec<[f64; 2]> {
-        /// Pieces of the motion in each of which a velocity changes its sign once.
-        const PIECES: u32 = 4000;
-        let count = self.course.coordinates.len();
         let (from, end) = (self.course.after.min(self.end()), self.end());
-        let mut extremes = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
-        let times =
-            (0..=PIECES).map(|piece| from + (end - from) * f64::from(piece) / f64::from(PIECES));
-        let sampled = self.sample(times.collect(), 2 * count);
-        for (index, [least, greatest]) in extremes.iter_mut().enumerate() {
-            let mut take = |value: f64| {
-                *least = least.min(value);
-                *greatest = greatest.max(value);
-            };
-            let (places, velocities) = (&sampled.columns[index], &sampled.columns[count + index]);
-            for (number, place) in places.iter().enumerate() {
-                take(*place);
-                // Between two signs of the velocity stands a turning point.
-                let Some(before) = number
-                    .checked_sub(1)
-                    .filter(|before| velocities[*before] * velocities[number] < 0.0)
-                else {
-                    continue;
-                };
-                let velocity = |time: f64| self.state_at(time, count + index).unwrap_or(f64::NAN);
-                let [earlier, time] = [sampled.times[before], sampled.times[number]];
-                let turning = crate::numeric::ode::root::find_root(velocity, earlier, time).ok();
-                if let Some(place) = turning.and_then(|time| self.state_at(time, index)) {
-                    take(place);
-                }
+        let count = self.course.coordinates.len();
+        let of_coordinate = |index: usize| {
+            let mut times = vec![from, end];
+            for piece in self.pieces.iter().filter(|piece| piece.end() >= from) {
+                times.extend(piece.turning_times(count + index, from.max(piece.from)));
+            }
+            let values = times.into_iter().filter_map(|time| self.state_at(time, index));
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {
+                [least.min(value), greatest.max(value)]
+            })
+        };
+        (0..count).map(of_coordinate).collect()
+    }
+}
+
+impl TrajectorySegment {
+    /// The times from `from` on at which a velocity passes through zero: where there are no series
+    /// of it, those between two of many values with opposite signs.
+    fn turning_times(&self, velocity: usize, from: f64) -> Vec<f64> {
+        /// Number of values per step of the integrator.
+        const VALUES: usize = 8;
+        if let Some(zeros) = self.path.zeros(velocity, from).filter(|_| !self.is_held()) {
+            return zeros;
+        }
+        let value = |time: f64| self.states_at(time).map_or(f64::NAN, |states| states[velocity]);
+        let count = VALUES * self.path.step_count().max(1);
+        let time = |index: usize| from + (self.end() - from) * index as f64 / count as f64;
+        let mut turning = Vec::new();
+        for index in 0..count {
+            let [before, behind] = [time(index), time(index + 1)];
+            if value(before) * value(behind) <= 0.0 {
+                turning.extend(find_root(value, before, behind));
             }
         }
-        extremes
+        turning
     }
 }

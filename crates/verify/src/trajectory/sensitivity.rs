@@ -1,4 +1,4 @@
-//! Until when the digits of a motion are those of its start.
+//! The time until which a motion is determined by its start to six digits.
 //!
 //! ```text
 //! d(t) = max_i |y_i(t) - z_i(t)|/Y_i,  Y_i = max |y_i|        z: the same from a start with y_i (1 + 1e-12)
@@ -6,30 +6,31 @@
 //! errors of the integration grow as d does: six digits are lost where d reaches 1e-12 (1e-6/e), e = 1e-15 or its tolerance
 //! ```
 //!
-//! Of a chaotic motion that is soon: `d` grows like `exp(lambda t)` with the largest exponent of
-//! Lyapunov (G. Benettin, L. Galgani, J.-M. Strelcyn, *Phys. Rev. A* 14 (1976) 2338, who follow two
-//! motions side by side).
+//! For a chaotic motion this time is short: `d` grows like `exp(lambda t)` with the largest
+//! exponent of Lyapunov (G. Benettin, L. Galgani, J.-M. Strelcyn, *Phys. Rev. A* 14 (1976) 2338,
+//! who follow two motions side by side).
 
 use super::{ACCOUNTS, Trajectory};
 use crate::system::PathEnd;
 
-/// The part of a state by which its start is displaced: more than rounding, and so little that
-/// differences grow in proportion.
+/// The relative displacement of the start: larger than rounding, and so small that differences grow
+/// linearly.
 pub const DISPLACEMENT: f64 = 1e-12;
 
-/// Least relative error that the integration starts with.
+/// Least relative error of the integration.
 const ROUNDING: f64 = 1e-15;
 
-/// The part of a motion whose size displaces what begins at zero.
+/// One in so many parts of the motion, whose size is the scale for the displacement of states that
+/// begin at zero.
 const BEGINNING: u32 = 100;
 
 /// The relative error at which the sixth digit is lost.
 const SIX_DIGITS: f64 = 1e-6;
 
 impl Trajectory {
-    /// The time until which its states are known to six digits of their sizes, one of two thousand
-    /// in the motion; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
-    /// if they are known to the end. Costs as much as the motion.
+    /// The time until which the states are known to six digits of their sizes, among two thousand
+    /// instants of the motion; later, a start with the relative displacement [`DISPLACEMENT`] leads
+    /// elsewhere. `None` if they are known to the end. The cost is that of the motion.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
@@ -73,7 +74,8 @@ impl Trajectory {
             let (one, other) = (self.states_at(time)?, displaced.states_at(time)?);
             let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
-            // One moment alone may lie between two jumps of one force.
+            // A single instant may lie between two jumps of the force, so that two in a row are
+            // required.
             match (is_lost, doubtful) {
                 (true, true) => return Some(known),
                 (true, false) => doubtful = true,

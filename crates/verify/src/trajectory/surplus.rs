@@ -1,32 +1,33 @@
-//! More frictions at rest than velocities that are independent: a body that sticks to the floor and
-//! to another that sticks to the floor too.
+//! More frictions at rest than independent velocities: a body that sticks to the floor and to
+//! another that sticks to the floor too.
 //!
 //! ```text
 //! A s = r,  |s_i| <= 1                 du_i/dt = 0 on every surface: the shares s are not determined where A is singular, s = s0 + N z
 //! min over z of max |s_i|  =  max over w of |w^T s0| / sum |w_i|,    w^T N = 0,  w with as few entries as possible
 //! ```
 //!
-//! All stick as long as any shares within the bounds hold them (J. J. Moreau, *Unilateral contact
-//! and dry friction in finite freedom dynamics*, CISM 302, Springer 1988), so those with the least
-//! of the largest are taken. By the duality of linear programming (A. Schrijver, *Theory of Linear
-//! and Integer Programming*, Wiley 1986, chapters 7 and 8) the largest ones are those of a `w`: the
-//! slip that is nearest. All of its surfaces have a share of one size, with the sign of `w_i`, and
-//! reach their bounds together. What is left open then is decided alike.
+//! All surfaces stick as long as there are shares within the bounds (J. J. Moreau, *Unilateral
+//! contact and dry friction in finite freedom dynamics*, CISM 302, Springer 1988), so the shares
+//! with the smallest maximum are taken. By the duality of linear programming (A. Schrijver, *Theory
+//! of Linear and Integer Programming*, Wiley 1986, chapters 7 and 8) the maximum is attained for a
+//! `w`, the slip that is nearest. All of its surfaces have shares of equal size, with the sign of
+//! `w_i`, and reach their bounds together. Shares that are still undetermined are found in the same
+//! way.
 
-/// A part of the largest entry that counts as zero.
+/// Largest entry, relative to the largest of all, that counts as zero.
 const NOTHING: f64 = 1e-9;
 
 /// Largest number of combinations of slips that are tried.
 const MOST_SLIPS: usize = 20_000;
 
-/// The shares that have one size, each by its number with a sign, for as many as the equations
-/// leave open; `None` if they contradict each other, or are too many.
+/// The groups of shares of equal size, each share by its number with a sign, until no share is
+/// undetermined; `None` if the equations contradict each other, or there are too many.
 pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
     let (mut shares, mut open) = solutions(matrix, right)?;
     let mut groups = Vec::new();
     while !open.is_empty() {
         let (size, slip) = nearest_slip(&shares, &open)?;
-        // Within what is open these have that size, and the rest is left.
+        // The shares of the slip are fixed at that size; the remaining directions stay open.
         let rows: Vec<Vec<f64>> = slip.iter().map(|(index, _)| row(&open, *index)).collect();
         let wanted: Vec<f64> =
             slip.iter().map(|(index, sign)| *sign as f64 * size - shares[*index]).collect();
@@ -140,7 +141,7 @@ fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f6
             for (entry, of_pivot) in row.iter_mut().zip(&leading) {
                 *entry -= factor * of_pivot;
             }
-            // Zero by construction, and no pivot again.
+            // The entry is zero by construction, and must not become a pivot by rounding.
             row[column] = 0.0;
         }
         rows[done] = leading;

@@ -1,9 +1,10 @@
-//! Many motions of one equation: a parameter, or a start, takes value after value, and each motion
-//! leaves its section behind.
+//! Many motions of one equation, for a sequence of values of parameters or initial values; each
+//! motion is recorded by its points on a section.
 //!
 //! In: a [`TrajectoryRequest`] and the values of some of its names. Out: a [`SweptMotion`] each, in
-//! their order, whatever the number of threads; where somebody asks to stop, those that were begun.
-//! With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+//! their order, independent of the number of threads; after an interrupt, only the motions that
+//! were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation
+//! diagram.
 
 use super::{Crossing, TrajectoryError, TrajectoryRequest};
 use crate::parallel::{par_map, threads};
@@ -13,7 +14,7 @@ use crate::system::{Integrator, LANES, PathEnd};
 /// The record of one motion of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptMotion {
-    /// The values of what is varied, in the order of the names.
+    /// The values of the varied names, in their order.
     pub values: Vec<f64>,
     /// The time at which it ended.
     pub end: f64,
@@ -29,13 +30,13 @@ pub struct SweptMotion {
     pub reason: PathEnd,
 }
 
-/// Follows the course at every one of the values; `progress` is called after each motion. Costs a
-/// motion each, or less where eight of them go side by side, on all cores. Once the interrupt of
-/// the course asks for it, no other motion is begun; those that had come past the time `after` are
-/// handed back.
+/// Follows the course at every one of the values; `progress` is called after each motion. The cost
+/// is that of the motions, or less where eight of them are integrated side by side, on all cores.
+/// After an interrupt no other motion is begun; those that have passed the time `after` are
+/// returned.
 ///
 /// # Errors
-/// The number, counted from zero, of the first motion that cannot begin, and why.
+/// The number, counted from zero, of the first motion that cannot begin, and the reason.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -55,7 +56,8 @@ pub fn sweep(
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
     let at = |values: &[f64]| {
-        let mut course = course.clone();
+        // The energies of a sweep are not used.
+        let mut course = TrajectoryRequest { energy: None, ..course.clone() };
         for (name, value) in names.iter().zip(values) {
             match course.rates.states.iter().position(|state| state == name) {
                 Some(place) => course.start[place] = *value,
@@ -66,9 +68,9 @@ pub fn sweep(
         }
         course
     };
-    // The equations are made ready once, if they can be, and take other numbers for each motion.
+    // The equations are compiled once, if possible, and take other numbers for each motion.
     let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
-    // Side by side on one thread, and on all threads.
+    // Motions are integrated side by side on each thread, and on all threads.
     let size = grid.len().div_ceil(threads()).clamp(1, LANES);
     let numbered: Vec<_> = grid.iter().enumerate().collect();
     let together = |group: &&[(usize, &Vec<f64>)]| {
@@ -81,7 +83,8 @@ pub fn sweep(
         for ((number, values), motion) in group.iter().zip(motions) {
             let motion = motion.map_err(|error| (*number, error))?;
             progress();
-            // One that was cut off before it counts, or before it moved, has nothing to show.
+            // A motion that was interrupted before the time `after`, or before its first step, is
+            // left out.
             let end = motion.end();
             if motion.reason() == PathEnd::Interrupted && (end < course.after || end == 0.0) {
                 continue;

@@ -22,8 +22,8 @@ use crate::exact::{Integer, Rational};
 /// Bits behind the point.
 const BITS: usize = 768;
 
-/// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as there are of the force;
-/// `force[k]` belongs to `y^k`, `force[1]` is one. `None` if a number is not finite.
+/// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as the force has; `force[k]`
+/// belongs to `y^k`, `force[1]` is one. `None` if a number is not finite.
 pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     let fixed = |value: f64| Some(to_integer(&from_f64(value)?));
     // 2 V/y^2: the coefficient of y^(k-1) is 2 f_k/(k+1).

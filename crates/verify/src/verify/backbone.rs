@@ -1,5 +1,5 @@
 //! The backbone curve: the true frequency against the amplitude, and the amplitudes at which it may
-//! turn fast.
+//! vary on a short scale.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::symbol::Symbol;
 /// The true frequency as a function of the amplitude, each value computed once.
 pub(super) struct TrueBackbone<'a> {
     amplitude: Symbol,
-    /// The values asked for.
+    /// The values of the symbols.
     pub(super) numbers: &'a BTreeMap<Symbol, f64>,
     physics: Option<NumericOscillator>,
     known: RefCell<BTreeMap<u64, Option<f64>>>,
@@ -33,12 +33,13 @@ const FARTHEST: f64 = 100.0;
 const FARTHEST_BY_STEPS: f64 = 2.0;
 
 /// Evaluations of the force that one true frequency may take, and all of them together: some
-/// seconds of work. A force that waves thousands of times along a motion is looked at less far.
+/// seconds of work. For a force that oscillates thousands of times along a motion the range is
+/// shorter.
 const MOST_FOR_ONE: f64 = 3e7;
 const MOST: u64 = 100_000_000;
 
 impl<'a> TrueBackbone<'a> {
-    /// The backbone of the motions that are meant, in a well if it has an end.
+    /// The backbone of the motions of `meant`, in their well if it has an end.
     pub(super) fn new(
         oscillator: &'a Oscillator,
         meant: &OrbitTarget,
@@ -92,8 +93,7 @@ impl<'a> TrueBackbone<'a> {
         self.well.map_or(0.0, |well| well.smallest_amplitude())
     }
 
-    /// Whether the motions run over hilltops beyond the equilibrium, of a force that goes up and
-    /// down again and again.
+    /// Whether the motions run over hilltops beyond the equilibrium, for an oscillating force.
     pub(super) fn has_waves_of_hilltops(&self) -> bool {
         let inner = self.well.and_then(|well| well.inner);
         let rest = self.physics.as_ref().map(|physics| &physics.rest);
@@ -102,7 +102,7 @@ impl<'a> TrueBackbone<'a> {
             .is_some_and(|(inner, rest)| inner.place != rest.equilibrium() && rest.waves())
     }
 
-    /// The end of what is looked at.
+    /// The largest amplitude of the search.
     pub(super) fn search_limit(&self) -> f64 {
         f64::min(0.999 * self.largest_amplitude(), self.times * self.given_amplitude().abs())
             .max(self.given_amplitude().abs().min(self.largest_amplitude()))
@@ -124,15 +124,15 @@ impl<'a> TrueBackbone<'a> {
     }
 
     /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place.
-    /// Of the many of a force that waves all the way some are enough, for between points the error
-    /// is followed by halving.
+    /// For a force that oscillates everywhere a selection suffices, because the error between
+    /// points is followed by bisection.
     fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
         const MOST_PLACES: usize = 64;
-        /// A root takes about as many turning points.
+        /// Number of turning points that the search for a root takes.
         const FOR_A_ROOT: u64 = 8;
         let physics = self.physics.as_ref()?;
         let at_once = FOR_A_ROOT * physics.rest.evaluations();
-        // These places only say where to look, and leave most of the work to what is found there.
+        // These places only guide the search, and may take a quarter of the work.
         let affordable = || physics.rest.evaluations() + at_once < MOST / 4;
         let (side, farthest) = (self.given_amplitude().signum(), self.search_limit());
         let mut sizes: Vec<f64> = Vec::new();
@@ -159,7 +159,7 @@ impl<'a> TrueBackbone<'a> {
         Some(sizes.iter().copied().step_by(sizes.len().div_ceil(MOST_PLACES).max(1)).collect())
     }
 
-    /// Sizes of the amplitude from rest to the end of what is looked at, in order.
+    /// Sizes of the amplitude from rest to the end of the search, in order.
     pub(super) fn amplitudes(&self) -> Vec<f64> {
         const PER_DECADE: i32 = 4;
         const LINEAR: usize = 8;

@@ -1,10 +1,10 @@
-//! The condition of the max-min approach, decided at given numbers: whether `f(x)/x` runs from its
-//! value at rest to that at the turning point without leaving what lies between, and its least and
-//! largest value where it does.
+//! The condition of the max-min approach, decided at given numbers: whether `f(x)/x` stays between
+//! its values at rest and at the turning point, and its least and largest value if it does not.
 //!
 //! By the comparison theorem of C. Sturm the true omega^2 of an odd force lies between the least
-//! and the largest of `f(x)/x` over `0 < x <= A`, whatever happens between (E. A. Coddington, N.
-//! Levinson, *Theory of Ordinary Differential Equations*, McGraw-Hill 1955, chapter 8).
+//! and the largest of `f(x)/x` over `0 < x <= A`, whatever its course between them (E. A.
+//! Coddington, N. Levinson, *Theory of Ordinary Differential Equations*, McGraw-Hill 1955, chapter
+//! 8).
 
 use std::collections::BTreeMap;
 
@@ -86,7 +86,7 @@ pub(super) fn bounds(
 /// has no value.
 fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     const LINEAR: i32 = 512;
-    /// Towards rest by decades.
+    /// Number of decades towards rest.
     const DECADES: i32 = 6;
     const PER_DECADE: i32 = 16;
     let mut places: Vec<f64> =
@@ -95,7 +95,7 @@ fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
         (1..=DECADES * PER_DECADE)
             .map(|k| amplitude * 10.0_f64.powf(-f64::from(k) / f64::from(PER_DECADE))),
     );
-    // A jump has two sides.
+    // Both sides of a jump are sampled.
     let cuts = force.cuts(0.0, amplitude);
     places.extend(cuts.iter().flat_map(|cut| [cut * (1.0 - 1e-12), *cut, cut * (1.0 + 1e-12)]));
     places.retain(|place| *place > 0.0 && *place <= amplitude);

@@ -1,4 +1,4 @@
-//! Every method on one equation, judged against one true motion.
+//! Comparison of all methods for one equation with its true motion.
 //!
 //! In: an equation, numbers for its symbols, a tolerance. Out: a [`Comparison`], a row for each
 //! method that applies and a reason for each that does not; from it omega against the amplitude, a
@@ -32,10 +32,10 @@ pub struct ComparisonRow {
     pub solution: Solution,
     /// omega by the formula; `None` if there is none.
     pub frequency: Option<f64>,
-    /// The reason why there is none.
+    /// The reason why there is no frequency.
     pub reason: Option<NoNumbers>,
-    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
-    /// they were solved for.
+    /// Values that the formula leaves open: the chosen hbar, or the solved coefficients of a
+    /// balance.
     pub chosen: Vec<(Symbol, f64)>,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
@@ -49,7 +49,7 @@ pub struct ComparisonRow {
 }
 
 impl ComparisonRow {
-    /// The convergence-control parameter that was chosen for the numbers, where it was.
+    /// The convergence-control parameter and its chosen value; `None` if the row has none.
     pub fn chosen_hbar(&self) -> Option<(Symbol, f64)> {
         let hbar = convergence_control(&self.solution);
         let own = self.chosen.iter().filter(|_| self.solution.method == Method::HomotopyAnalysis);
@@ -58,7 +58,7 @@ impl ComparisonRow {
 }
 
 impl Comparison {
-    /// The letters of its formulas: those of the first answer.
+    /// The symbols of amplitude and frequency in its formulas, those of the first answer.
     pub fn letters(&self) -> ResultSymbols {
         let first = self.rows.first().map(|row| row.solution.letters());
         first.unwrap_or_else(|| ResultSymbols::avoiding(&[], false))
@@ -84,7 +84,7 @@ pub struct Comparison {
     pub at: Values,
     /// omega of the true motion; `None` if it cannot be computed.
     pub true_frequency: Option<f64>,
-    /// The reason why it cannot.
+    /// The reason why it cannot be computed.
     pub reason: Option<VerificationError>,
     /// The tolerance of verdicts and ranges, relative: 0.01 is 1 %.
     pub tolerance: f64,
@@ -105,7 +105,7 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
     let default = |method| Options {
         method: Some(method),
         small: small.map(str::to_owned),
-        // Of a motion that loses nothing every row has the same amplitude.
+        // Without damping every row uses the same amplitude.
         amplitude: (method == Method::Averaging && conserves)
             .then_some(AmplitudeConvention::Initial),
         ..Options::default()
@@ -149,7 +149,8 @@ pub fn compare(
     tolerance: f64,
 ) -> Result<Comparison, VerificationError> {
     let _letters = oscillator.letters().in_force();
-    // A force too long to be written out stops every method at the same place: once is enough.
+    // A force too long to be expanded stops every method with the same error, which is reported
+    // once.
     if let Err(error) = oscillator.parts() {
         let reason = Refusal::from(error);
         let refused = Method::ALL.map(|method| Refused { method, reason: reason.clone() });
@@ -172,7 +173,7 @@ pub fn compare(
         });
     }
     super::periodic(first)?;
-    // Every row has the motion that starts at A, whatever its formula measures.
+    // Every row is about the motion that starts at A, whatever the amplitude in its formula means.
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
     super::check_digits(oscillator, first, &numbers)?;
@@ -202,8 +203,8 @@ pub fn compare(
     })
 }
 
-/// Answers of all methods: periodic motions, slow ones that do not settle, and the refusals of
-/// those that give neither.
+/// Answers of all methods: periodic motions, transients that do not settle, and the refusals of the
+/// other methods.
 fn answers(
     oscillator: &Oscillator,
     at: &Values,
@@ -219,8 +220,7 @@ fn answers(
         };
         let mut found = solved(&options);
         if found.is_err() && in_a_parameter {
-            // If the default small parameter leaves a method nothing to expand in, the amplitude
-            // may serve.
+            // If the default small parameter does not suit a method, the amplitude may.
             let by_amplitude = solved(&Options {
                 small: Some(AmplitudeConvention::Initial.symbol().to_string()),
                 ..options.clone()
@@ -241,7 +241,7 @@ fn answers(
             }
         }
         match (found, options.method) {
-            // Slow equations are compared where their motion settles, as the others are.
+            // Slow equations are compared by the periodic motion on which they settle.
             (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {
                 Some(settled) => solutions.push(settled),
                 None => slow.push(solution),
@@ -271,8 +271,8 @@ fn answers(
     (solutions, slow, refused)
 }
 
-/// The values with `A` as the amplitude of the first harmonic, which is its leading term, where no
-/// method measures `A` itself.
+/// The values with `A` used as the amplitude of the first harmonic, to which it is equal to leading
+/// order, if no method uses `A` itself.
 fn by_start(first: &Solution, at: &Values) -> Values {
     let [initial, own] =
         [AmplitudeConvention::Initial, first.amplitude].map(AmplitudeConvention::symbol);
@@ -424,7 +424,7 @@ fn row(
     }
 }
 
-/// One curve of omega against the amplitude.
+/// A curve of omega against the amplitude.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Backbone {
     /// The methods that share it.
@@ -433,8 +433,8 @@ pub struct Backbone {
     pub points: Vec<(f64, f64)>,
 }
 
-/// omega against the amplitude: the truth, and every method of the table; methods with one and the
-/// same curve together.
+/// omega against the amplitude: the truth, and every method of the table; methods with the same
+/// curve share one.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -470,14 +470,14 @@ pub fn backbones(
     let numbers = checked_numbers(first, &by_start(first, &comparison.at))?;
     let truth = validity::backbone(oscillator, first, &numbers);
     let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
-    // To the escape, or to twice the amplitude asked for.
+    // The curves extend to the escape, or to twice the amplitude asked for.
     let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);
     // Motions over several wells begin at the separatrix.
     let inner = truth.smallest_amplitude();
     let amplitudes: Vec<f64> =
         (1..=POINTS).map(|k| inner + (last - inner) * k as f64 / POINTS as f64).collect();
     let curve = |of: &dyn Fn(f64) -> Option<f64>| -> Vec<(f64, f64)> {
-        // A formula may have its first real frequency above.
+        // A formula may have real frequencies only at larger amplitudes.
         let without = amplitudes
             .iter()
             .take_while(|&&amplitude| inner > 0.0 && of(amplitude).is_none())

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! An estimate is given only where two windows of coefficients, the last ones and those before,
-//! agree on it. Where a solution has exact coefficients enough they [say it themselves](converges),
-//! with as many digits as they support.
+//! agree on it. If a solution has enough exact coefficients, the radius follows [from
+//! these](converges), with as many digits as they support.
 
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ use crate::series::{FourierSeries, singularity};
 use crate::solution::{AmplitudeConvention, Convergence, Counts, Note, Solution};
 use crate::symbol::Symbol;
 
-/// Coefficients of the series from which its radius of convergence is estimated.
+/// Number of coefficients from which the radius of convergence is estimated.
 const SERIES_TERMS: usize = 24;
 
 /// The estimate of a series' nearest singularity.
@@ -46,7 +46,7 @@ pub struct Singularity {
     pub angle: f64,
 }
 
-/// Coefficients to which a law of ratios is fitted.
+/// Number of coefficients to which a law of ratios is fitted.
 const WINDOW: usize = 8;
 
 /// Relative agreement of the radii by two windows of coefficients that is required.
@@ -75,8 +75,8 @@ pub fn converges(solution: &Solution) -> Option<Convergence> {
     })
 }
 
-/// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that
-/// it ends, or that they fall faster than the powers of any number; `None` if they say neither.
+/// The note that the series of omega^2 in a solution has no singularity, by its own exact
+/// coefficients: it ends, or they fall faster than any power. `None` if neither is the case.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -101,14 +101,15 @@ pub fn converges_everywhere(solution: &Solution) -> Option<Note> {
 /// The series of omega^2 in the highest power of its variable that all of its terms have, with
 /// exact coefficients.
 fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> {
-    // Rounded coefficients have no more digits to give than those that are computed below.
+    // Rounded coefficients are no more accurate than those that are computed below.
     if solution.numerical {
         return None;
     }
     let (mut variable, mut coefficients) =
         PowerSeries::from_solution(solution, true).in_one_variable()?;
     if solution.method.counts() == Counts::Powers {
-        // The powers to the order of the answer that are not in the law are zero.
+        // Powers up to the order of the answer that do not occur in the law have the coefficient
+        // zero.
         let count = solution.order as usize
             / usize::try_from(PowerSeries::from_solution(solution, true).step).ok()?;
         coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
@@ -218,8 +219,8 @@ fn in_the_amplitude(
     let taylor = |unit: f64, degree: usize| {
         numeric_taylor(&force, oscillator.coordinate, equilibrium, unit, degree)
     };
-    // First in the unit of the amplitude, then in that of the nonlinearity, in which powers neither
-    // vanish nor explode.
+    // The first unit is the amplitude, the second that of the nonlinearity, in which powers neither
+    // underflow nor overflow.
     let mut unit = amplitude.abs();
     for degree in [few, highest] {
         let rate = unit_of_growth(&taylor(unit, degree)?);
@@ -243,7 +244,8 @@ fn in_the_amplitude(
     Some(FrequencySeries { coefficients: amplitude_series(&coefficients)?, unit })
 }
 
-/// In a parameter, at the amplitude given: secular terms removed in floating-point numbers.
+/// The series in a parameter at the given amplitude, by elimination of secular terms in
+/// floating-point numbers.
 fn in_a_parameter(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -254,7 +256,7 @@ fn in_a_parameter(
     // The frequency of most limit cycles has even powers alone.
     let highest = if cycle.is_some() { 2 * SERIES_TERMS } else { SERIES_TERMS };
     let amplitude = match cycle {
-        // To leading order, which is where the series of a limit cycle begins.
+        // The series of a limit cycle begins with the leading amplitude.
         Some(cycle) => {
             let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
             solution.evaluate(&solution.leading(&cycle.amplitude), &value_of).ok()?
@@ -289,15 +291,16 @@ fn forget_odd_noise(coefficients: &mut [f64]) {
 }
 
 /// The terms of the force at an amplitude, in units of the linear frequency and of a value of the
-/// small parameter that makes the largest one; and that value. `None` if the force is none of a few
-/// powers.
+/// small parameter that makes the largest one; and that value. `None` if the force is not a sum of
+/// a few powers.
 fn in_numbers(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
     (small, highest): (Symbol, usize),
     amplitude: f64,
 ) -> Option<(Vec<ForceTerm<Doubles>>, f64)> {
-    /// Longer products would cost more than the rest of the answer.
+    /// Largest number of terms: with more, the products would cost more than the rest of the
+    /// answer.
     const MOST_TERMS: usize = 8;
     const HIGHEST_POWER: u32 = 9;
     let numerical = with_numbers(oscillator, numbers, small)?;
@@ -409,7 +412,7 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
     for row in 0..ROWS {
         let k = first + row;
         let [own, one, two] = [0, 1, 2].map(|back| coefficients[k - back]);
-        // Every row counts alike, however fast the coefficients grow.
+        // Rows are normalised, so that they have equal weight however fast the coefficients grow.
         let size = own.abs().max(one.abs()).max(two.abs());
         let inverse = 1.0 / k as f64;
         let columns = [

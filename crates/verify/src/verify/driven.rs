@@ -1,7 +1,7 @@
-//! Steady motions of a driven oscillator against true ones: periodic motions of the equation as it
-//! was typed, found by shooting.
+//! Verification of the steady motions of a driven oscillator by true ones: periodic motions of the
+//! equation as it was typed, found by shooting.
 //!
-//! The slow equations say which steady motions there are and where to begin the search; the true
+//! The slow equations give the list of steady motions and the starts of the search; the true
 //! motion, its amplitude and its Floquet multipliers come from Runge-Kutta on the original equation
 //! alone.
 //!
@@ -12,9 +12,10 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
 //!
-//! If two steady motions lead to the same true motion, it belongs to the nearer of those of the
-//! same stability; for the other one the search is repeated away from the known motions, and a
-//! result counts if it is nearer to this steady motion than to any other of the same stability.
+//! If two steady motions lead to the same true motion, it is assigned to the nearer one, and
+//! preferably to one of the same stability; for the other one the search is repeated away from the
+//! known motions, and a result counts if it is nearer to this steady motion than to any other of
+//! the same stability.
 //!
 //! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by
 //! `delta^n`, which is the slope to expect. It may be more where a coefficient of the error
@@ -49,7 +50,7 @@ pub struct JudgedState {
     pub true_amplitude: Option<f64>,
     /// Whether the true motion attracts, by its Floquet multipliers.
     pub true_stable: Option<bool>,
-    /// `amplitude / true amplitude - 1`; `None` for a motion without a part of its own.
+    /// `amplitude / true amplitude - 1`; `None` for a motion without a resonant part.
     pub relative_error: Option<f64>,
     /// Largest deviation of the motion over one period, over the largest true displacement.
     pub max_deviation: Option<f64>,
@@ -92,7 +93,7 @@ pub(super) fn motions(
 struct DrivenComparison<'a> {
     solution: &'a Solution,
     numbers: BTreeMap<Symbol, f64>,
-    /// omega of the motion itself.
+    /// omega of the resonant part of the motion.
     frequency: f64,
     truth: Truth,
     motion: SteadyFormula,
@@ -152,9 +153,10 @@ impl<'a> DrivenComparison<'a> {
         Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
     }
 
-    /// Every steady motion beside a true one; of two that lead to the same one, that has it which
-    /// is as stable or else nearer. Of those at an amplitude at which the series does not converge
-    /// only what has a true motion of its own near by, and how many have none.
+    /// Every steady motion with its true one. If two lead to the same true motion, it is assigned
+    /// to the one of the same stability, or else to the nearer one. Steady motions at an amplitude
+    /// at which the series does not converge are kept only if a true motion is near; the number of
+    /// the others is returned.
     fn judged_states(&self) -> (Vec<JudgedState>, usize) {
         /// Largest relative error of the true amplitude.
         const NEAR: f64 = 0.3;
@@ -239,17 +241,18 @@ fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
     found.as_ref().map(|found| found.phase_point_at(0.0))
 }
 
-/// All that is small is halved again and again, and the deviation of the same steady motion
-/// measured.
+/// The exponent of the error: all small quantities are halved repeatedly, and the deviation of the
+/// same steady motion is measured.
 fn slope(
     oscillator: &Oscillator,
     question: &DrivenComparison,
     judged: &JudgedState,
 ) -> Option<f64> {
     const HALVINGS: i32 = 3;
-    /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
+    /// The true motion is accurate to 1e-10, and a deviation a hundred times larger is measured to
+    /// one per cent.
     const FLOOR: f64 = 1e-8;
-    /// The relative change of the amplitude beyond which it is another motion.
+    /// Largest relative change of the amplitude; beyond it the motion is another one.
     const OTHER: f64 = 0.5;
     let deviation = |halvings: i32| {
         if halvings == 0 {
@@ -294,7 +297,7 @@ pub(super) fn judge(
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
     let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
         let agrees = judged.true_stable == Some(judged.state.is_stable());
-        // A motion without a part of its own has the drive's alone.
+        // A motion without a resonant part is judged by its deviation.
         let error = judged.relative_error.or(judged.max_deviation);
         agrees && error.is_some_and(|error| error.abs() <= tolerance)
     });
@@ -303,6 +306,7 @@ pub(super) fn judge(
         judged.filter(|judged| judged.true_amplitude.is_some() && judged.max_deviation.is_some());
     Ok(Verification {
         at: at.clone(),
+        tolerance,
         frequency: Some(question.frequency),
         reason: None,
         true_frequency: question.frequency,
@@ -326,7 +330,7 @@ pub(super) fn judge(
     })
 }
 
-/// A motion that dry friction holds where it is.
+/// The verdict on a state that dry friction holds at rest.
 fn held_state(state: SteadyState) -> JudgedState {
     JudgedState {
         state,
@@ -360,8 +364,8 @@ impl Truth {
         Ok(Self { force: CompiledFunction::new(&force, &arguments)?, period, own, drives })
     }
 
-    /// Whether what is at rest at a place stays there at all times, since it is driven back
-    /// whichever way it begins to move.
+    /// Whether a mass at rest at a position stays there at all times, because friction exceeds the
+    /// force in either direction.
     fn is_held(&self, place: f64) -> bool {
         const TIMES: usize = 64;
         const SPEED: f64 = 1e-12;
@@ -373,8 +377,8 @@ impl Truth {
         times.all(jumps)
     }
 
-    /// The true periodic motion to which Newton's method leads from one by the formula, none of
-    /// those that begin at the known places.
+    /// The true periodic motion to which Newton's method leads from that of the formula, other than
+    /// those with a known start.
     fn by_newton(
         &self,
         motion: &SteadyFormula,
@@ -388,8 +392,8 @@ impl Truth {
         periodic_motion(&acceleration, self.period, start, size, known)
     }
 
-    /// The true periodic motion near one by the formula; where a second one is near that is as
-    /// stable as it, and the first is not, that one.
+    /// The true periodic motion near that of the formula; if its stability differs, a second one of
+    /// the same stability if that is near.
     fn as_stable(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// Largest relative error of the amplitude of the second motion.
         const NEAR: f64 = 0.3;
@@ -414,7 +418,7 @@ impl Truth {
         let size = if size > 0.0 { size } else { 1.0 };
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
         let found = periodic_motion(&acceleration, self.period, start, size, &[]);
-        // Near a fold the search may miss what a motion settles on all the same.
+        // Near a fold the search may fail although a simulation settles.
         let settled = || {
             let [x, v] = start;
             let options = IntegrationOptions::with_tolerance(1e-9);
@@ -438,8 +442,8 @@ impl Truth {
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
-        // From there, and from half-way to each motion that is known: near a fold the one that is
-        // looked for lies between.
+        // Further starts are half-way to each known motion: near a fold the wanted one lies
+        // between.
         let half_way = |known: &[f64; 2]| [0, 1].map(|index| 0.5 * (start[index] + known[index]));
         let mut starts = std::iter::once(start).chain(known.iter().map(half_way));
         let search = || {

@@ -1,4 +1,4 @@
-//! Why a formula could not be judged.
+//! Errors of the verification of a formula.
 
 use super::comparison::Refused;
 use crate::decimal::decimal;
@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 use crate::trajectory::TrajectoryError;
 
-/// Why a formula could not be judged, or formulas not compared.
+/// The reason why a formula could not be verified, or formulas not compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerificationError {
@@ -25,7 +25,17 @@ pub enum VerificationError {
         /// The names that do occur.
         known: Vec<Symbol>,
     },
-    /// An amplitude so large that the force has no digits there.
+    /// The formula is that of another equation.
+    #[error(
+        "the formula answers `{answered}`, not `{asked}`, and is judged on the equation that it answers alone"
+    )]
+    OtherEquation {
+        /// The equation that the formula answers.
+        answered: String,
+        /// The equation on which it was to be judged.
+        asked: String,
+    },
+    /// An amplitude so large that the force has no significant digits there.
     #[error(transparent)]
     LostDigits(#[from] LostDigits),
     /// The equation has no motion to compare with at these values.
@@ -34,7 +44,7 @@ pub enum VerificationError {
     /// The equation has no limit cycle to compare with at these values.
     #[error(transparent)]
     LimitCycle(#[from] NoLimitCycle),
-    /// The equation could not be taken apart.
+    /// The terms of the equation could not be separated.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// The equation could not be evaluated.
@@ -46,7 +56,7 @@ pub enum VerificationError {
     /// A motion whose amplitude changes.
     #[error("the amplitude of the motion changes, so it has no period to be compared with")]
     NotPeriodic,
-    /// A motion under drives whose frequencies have no ratio.
+    /// A motion under drives whose frequencies are incommensurable.
     #[error(
         "under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with"
     )]
@@ -54,13 +64,13 @@ pub enum VerificationError {
     /// The equation cannot be followed.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// A motion that ends where it begins.
+    /// A motion whose integration ends before it can be compared.
     #[error("the true motion cannot be followed past t = {}: a state or its rate has no value there", decimal(*time))]
     NotFollowed {
-        /// When it ends.
+        /// The time at which it ends.
         time: f64,
     },
-    /// A motion whose period alone is known.
+    /// A motion of which only the period is known.
     #[error(
         "Runge-Kutta does not follow the true motion, of which the energy tells the period alone: there is no path to compare with"
     )]
@@ -85,13 +95,13 @@ pub enum VerificationError {
     /// No method applies, each for its reason; the message has that of the first.
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
-    /// No curve of omega against the amplitude: why not, in words.
+    /// There is no curve of omega against the amplitude, for this reason.
     #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
     NoBackbone(&'static str),
 }
 
 impl VerificationError {
-    /// Whether there may be a true motion all the same: it was not found, or could not be followed.
+    /// Whether a true motion may exist nevertheless, because it was only not found or not followed.
     pub(super) fn leaves_the_truth_open(&self) -> bool {
         match self {
             Self::Period(error) => matches!(
@@ -111,7 +121,7 @@ impl VerificationError {
     }
 }
 
-/// The letters that there are, after "does not occur in the formula".
+/// The list of known symbols, for the end of the message "does not occur in the formula".
 fn letters_of(known: &[Symbol]) -> String {
     let names: Vec<&str> = known.iter().map(|name| name.written()).collect();
     match names.is_empty() {

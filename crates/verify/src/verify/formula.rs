@@ -1,4 +1,4 @@
-//! The numbers of a formula: its frequency, its motion, and the digits that are left of them.
+//! The numbers of a formula: its frequency, its motion, and their loss of digits.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 
-/// omega by the formula: the root of omega^2, `None` where that is not positive.
+/// omega by the formula: the root of omega^2; `None` if that is not positive.
 pub(super) fn formula_frequency(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -24,7 +24,7 @@ pub(super) fn formula_frequency(
     formula_frequency_along(oscillator, solution, numbers, &NumbersCache::default())
 }
 
-/// As [`formula_frequency`] for one amplitude after the other, all else being the same.
+/// Like [`formula_frequency`], for a sequence of amplitudes with all other values fixed.
 pub(super) fn formula_frequency_along(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -35,7 +35,7 @@ pub(super) fn formula_frequency_along(
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
 }
 
-/// The numbers of a formula whose frequency is real, or why there are none.
+/// The numbers of a formula whose frequency is real, or the reason why there are none.
 pub(super) fn numbers_or_reason(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -66,14 +66,14 @@ fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
     law.overflow(numbers).is_some()
 }
 
-/// omega by its own series, where the formula has one of omega^2 as well.
+/// omega by its own series, if the formula has series of both omega and omega^2.
 pub(super) fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     solution.law.frequency_squared()?;
     let series = solution.law.frequency()?;
     solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
 }
 
-/// omega, the motion by the formula in theta, and what was chosen for it.
+/// omega, the motion by the formula in theta, and the values that were chosen for it.
 pub(super) fn formula_motion(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -83,16 +83,16 @@ pub(super) fn formula_motion(
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
 
-/// The loss of digits of the verdict by cancellation, where the formula is summed far out.
+/// The loss of digits by cancellation, if the formula is evaluated far outside its range.
 pub(super) fn cancellation(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     found: Option<&Numbers>,
     max_deviation: Option<f64>,
 ) -> Vec<validity::Range> {
-    /// Relative errors of less are said to be less.
+    /// Smaller relative errors are only reported to be smaller than this.
     const SHOWN: f64 = 1e-9;
-    /// Deviations have three digits.
+    /// Half a unit in the third digit, to which deviations are printed.
     const OF_DEVIATION: f64 = 5e-4;
     let said = |what: &str, rounding: f64, of: &str| validity::Range {
         text: format!(

@@ -1,9 +1,8 @@
-//! The true motion that is not periodic: the equation as it was typed, followed from rest at its
-//! start.
+//! The true motion that is not periodic: the equation as it was typed, integrated from rest.
 //!
-//! In: the equation, numbers, where and how long. Out: a [`FreeMotion`] with its turning points and
-//! its crossings of the equilibrium. How a formula came about is not known here, and
-//! `tests/library/layers.rs` holds that wall.
+//! In: the equation, numbers, start and duration. Out: a [`FreeMotion`] with its turning points and
+//! its crossings of the equilibrium. This module does not use the derivation of a formula;
+//! `tests/library/layers.rs` checks that.
 
 use std::collections::BTreeMap;
 
@@ -56,16 +55,16 @@ fn evaluated(
     ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
 }
 
-/// A motion with what is read off it.
+/// A motion with its turning points and crossings.
 pub(super) struct FreeMotion {
     motion: FreePath,
     equilibrium: f64,
     end: f64,
-    /// Whether it could not be followed as long as it was asked for.
+    /// Whether it could not be followed for the whole duration.
     ends_early: bool,
     /// Times and distances from the equilibrium at which it turns, the start left out.
     pub(super) turns: Vec<(f64, f64)>,
-    /// Time and position, from the equilibrium, at which friction takes hold of it.
+    /// Time and position, from the equilibrium, at which friction begins to hold it.
     held: Option<(f64, f64)>,
     /// Times at which it goes through the equilibrium.
     pub(super) crossings: Vec<f64>,
@@ -81,7 +80,8 @@ impl FreeMotion {
         numbers: &BTreeMap<Symbol, f64>,
         start: &Start,
     ) -> Result<Self, VerificationError> {
-        /// A millionth of the deviations that are told apart.
+        /// Tolerance of the integration, a millionth of the smallest deviation that is
+        /// distinguished.
         const TOLERANCE: f64 = 1e-11;
         let mut course = TrajectoryRequest::of_equation(oscillator);
         let parameters = course.parameters();
@@ -118,7 +118,7 @@ impl FreeMotion {
         Ok(followed)
     }
 
-    /// The reason why there is no swing where it goes through its equilibrium less than twice.
+    /// The error for a motion that passes its equilibrium less than twice.
     pub(super) fn why_no_swing(&self) -> VerificationError {
         match self.ends_early {
             true => VerificationError::NotFollowed { time: self.end },
@@ -144,7 +144,7 @@ impl FreeMotion {
 
     /// Finds where it turns and where it crosses.
     fn take_sample(&mut self, step: f64) {
-        /// More looks than any motion here needs.
+        /// Largest number of samples, more than any motion here needs.
         const MOST: usize = 1_000_000;
         let count = (self.end / step).ceil();
         let count = if count.is_finite() { (count as usize).min(MOST) } else { 0 };
@@ -159,7 +159,7 @@ impl FreeMotion {
             {
                 crossings.push(t);
             }
-            // At the very start it is at rest, and where friction holds it it does not turn.
+            // The start at rest is no turn, nor is the beginning of sticking.
             let turned = v0 * v1 < 0.0;
             if turned && let Ok(t) = find_root(|t| self.phase_point_at(t).1, t0, t1) {
                 turns.push((t, self.phase_point_at(t).0));
@@ -174,16 +174,17 @@ impl FreeMotion {
         self.crossings = crossings;
     }
 
-    /// The time at which the velocity becomes zero and stays so, between a time at which it moves
-    /// and one at which it is held.
+    /// The time at which sticking begins, between a time at which the mass moves and one at which
+    /// it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
         let [_, begin] =
             bisect(|t| self.phase_point_at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
         begin
     }
 
-    /// The time at which the line through the sizes at the turning points, and where it is held,
-    /// straight on the logarithm, comes down to this size.
+    /// The time at which the envelope through the turning points and the position of sticking falls
+    /// to this size; `None` if it does not. Between two points the envelope is exponential, or
+    /// linear if the point before fits that better.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
         let start = (0.0, self.phase_point_at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)
@@ -194,7 +195,7 @@ impl FreeMotion {
         let index = points.windows(2).position(|pair| pair[1].1 <= size && pair[0].1 > size)?;
         let [(t0, x0), (t1, x1)] = [points[index], points[index + 1]];
         // Dry friction takes the same difference every half swing, viscous damping the same ratio:
-        // whichever the turning point before says.
+        // the turning point before decides which applies.
         let by_difference = index.checked_sub(1).is_some_and(|before| {
             let earlier = points[before].1;
             (earlier - x0 - (x0 - x1)).abs() < (x0 * x0 / earlier - x1).abs()

@@ -1,11 +1,12 @@
-//! The judge of a motion that is known as a function of time: the equation as it was typed,
-//! followed from the same start.
+//! Verification of a motion that is known as a function of time, by integration of the equation as
+//! it was typed from the same start.
 //!
 //! ```text
 //! x(0) = A, x'(0) = 0:   max_deviation = max |x_formula(t) - x_true(t)|/max |x_true - x_eq|
 //! ```
 //!
-//! A free motion begins at A = 1 where no amplitude is given, a driven one at rest.
+//! If no amplitude is given, a free motion begins at A = 1, and a driven one at rest in the
+//! equilibrium.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -36,7 +37,7 @@ struct SampledMotions {
     /// The angular frequencies of the drives.
     drives: Vec<f64>,
     equilibrium: f64,
-    /// The root mean square of what the formula leaves of the equation, over that of the force.
+    /// The root mean square residual of the formula in the equation, over that of the force.
     residual: f64,
 }
 
@@ -111,7 +112,7 @@ impl SampledMotions {
     /// The largest deviation over the largest displacement.
     fn deviation(&self) -> Option<f64> {
         let largest = |values: &mut dyn Iterator<Item = f64>| {
-            // NaN stays.
+            // NaN propagates, unlike in `f64::max`.
             values.fold(0.0_f64, |largest, value| if value <= largest { largest } else { value })
         };
         let pairs = self.formula.iter().zip(&self.truth);
@@ -122,7 +123,7 @@ impl SampledMotions {
     }
 }
 
-/// The rates at which time turns the drives.
+/// The angular frequencies of the drives.
 fn frequencies(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -140,7 +141,7 @@ fn frequencies(
     Ok(found)
 }
 
-/// Judges a motion in time.
+/// Verifies a motion that is given as a function of time.
 ///
 /// # Errors
 /// Missing or unknown values; the motion cannot be followed.
@@ -159,6 +160,7 @@ pub(super) fn judge(
     let start = numbers[&AmplitudeConvention::Initial.symbol()];
     Ok(Verification {
         at: at.clone(),
+        tolerance,
         frequency: Some(frequency),
         reason: None,
         true_frequency: frequency,

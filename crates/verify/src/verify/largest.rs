@@ -4,12 +4,12 @@ use crate::numeric::ode::root::find_minimum;
 
 use super::orbit::SAMPLES;
 
-/// The largest value from 0 to a period of what is never negative: among samples, and beside one
-/// from which the next are lower by more than a thousandth, between them. NaN where a sample has no
-/// value.
+/// The largest value of a function without negative values from 0 to a period: the largest sample,
+/// refined between samples at a peak whose neighbours are lower by more than a thousandth. NaN if a
+/// sample has no value.
 pub(super) fn largest_over(period: f64, function: impl Fn(f64) -> f64) -> f64 {
-    /// A peak is looked for where its sample is at least this part of the largest one, and the next
-    /// are lower by more than this part.
+    /// A peak is refined if its sample is at least the first fraction of the largest one, and a
+    /// neighbour is lower by more than the second fraction.
     const LARGE: f64 = 0.5;
     const CLOSE: f64 = 1e-3;
     let time = |index: usize| period * index as f64 / SAMPLES as f64;

@@ -102,6 +102,8 @@ impl Verdict {
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
+    /// The relative error up to which it passes.
+    pub tolerance: f64,
     /// omega by the formula, in the unit of time of the equation; `None` if there is none.
     pub frequency: Option<f64>,
     /// The reason why there is none.
@@ -156,15 +158,16 @@ pub struct Verification {
 impl Verification {
     /// The verdict with what it was reached on: of a motion that changes frequency and amplitude
     /// both; of one that passes by its frequency while the motion is further off, that as well.
-    pub fn verdict_in_words(&self, tolerance: f64) -> String {
-        let within = significant(100.0 * tolerance, 3);
-        self.verdict_on_both(tolerance)
+    pub fn verdict_in_words(&self) -> String {
+        let within = significant(100.0 * self.tolerance, 3);
+        self.verdict_on_both()
             .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
     }
 
     /// The verdict with the two numbers that it is about; `None` if the frequency alone says all of
     /// it.
-    pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
+    pub fn verdict_on_both(&self) -> Option<String> {
+        let tolerance = self.tolerance;
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
         let said = |what: &str, error: Option<f64>| match error.map(f64::abs) {
@@ -192,7 +195,8 @@ impl Verification {
 /// Judges `solution` at the values `at`.
 ///
 /// # Errors
-/// Missing or unknown values, or no true periodic motion there.
+/// A formula that answers another equation, missing or unknown values, or no true periodic motion
+/// there.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -211,33 +215,41 @@ pub fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    judge_to(oscillator, solution, at, tolerance, VerificationScope::Range)
+    judge_with(oscillator, solution, at, (tolerance, VerificationScope::Range))
 }
 
-/// The extent of a verification.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VerificationScope {
-    /// The motion at the values given, and nothing else: where motions are periodic, neither how
-    /// its error grows nor how far the formula is good, which takes most of the time.
-    Motion,
-    /// All of it.
-    Range,
-}
-
-/// As [`judge`], to this extent.
+/// As [`judge`], of the motion at the values given and nothing else: where motions are periodic,
+/// neither how its error grows nor how far the formula is good, which takes most of the time.
 ///
 /// # Errors
 /// As for [`judge`].
-pub fn judge_to(
+pub fn judge_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     at: &Values,
     tolerance: f64,
-    extent: VerificationScope,
+) -> Result<Verification, VerificationError> {
+    judge_with(oscillator, solution, at, (tolerance, VerificationScope::Motion))
+}
+
+/// The extent of a verification.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum VerificationScope {
+    /// The motion at the values given.
+    Motion,
+    /// The growth of its error and the range of the formula too.
+    Range,
+}
+
+fn judge_with(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    (tolerance, scope): (f64, VerificationScope),
 ) -> Result<Verification, VerificationError> {
     let _letters = solution.letters().in_force();
     if let Some(relative) = in_another_coordinate(oscillator, solution)? {
-        return judge_to(&relative, solution, at, tolerance, extent);
+        return judge_with(&relative, solution, at, (tolerance, scope));
     }
     if let Some(motion) = solution.in_time() {
         return in_time::judge(oscillator, solution, motion, at, tolerance);
@@ -247,10 +259,10 @@ pub fn judge_to(
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
-        return judge_to(oscillator, &moving, at, tolerance, extent);
+        return judge_with(oscillator, &moving, at, (tolerance, scope));
     }
     if let Some((converted, in_words)) = in_convention_of(oscillator, solution, at)? {
-        let mut judged = judge_to(oscillator, solution, &converted, tolerance, extent)?;
+        let mut judged = judge_with(oscillator, solution, &converted, (tolerance, scope))?;
         let text = in_words;
         judged.ranges.insert(0, validity::Range { text, outside: false });
         return Ok(judged);
@@ -294,11 +306,12 @@ pub fn judge_to(
         symbols.values.retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
         symbols.values.extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
     }
-    let ranged = extent == VerificationScope::Range;
+    let ranged = scope == VerificationScope::Range;
     let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
     let far = far.into_iter().flatten();
     Ok(Verification {
         at: at.clone(),
+        tolerance,
         frequency,
         reason,
         true_frequency: truth.frequency,
@@ -349,9 +362,18 @@ fn in_another_coordinate(
     oscillator: &Oscillator,
     solution: &Solution,
 ) -> Result<Option<Oscillator>, VerificationError> {
-    match solution.coordinate() == oscillator.coordinate {
-        true => Ok(None),
-        false => Ok(Some(Oscillator::from_equation(&solution.equation)?)),
+    let own = oscillator.equation();
+    if solution.coordinate() == oscillator.coordinate && solution.equation.left == own.left {
+        return Ok(None);
+    }
+    // Driven through its base, the answer may be one of the displacement relative to that.
+    let is_driven = oscillator.force.contains(Symbol::new("t"));
+    match is_driven && solution.coordinate() != oscillator.coordinate {
+        true => Ok(Some(Oscillator::from_equation(&solution.equation)?)),
+        false => Err(VerificationError::OtherEquation {
+            answered: solution.equation.to_string(),
+            asked: own.to_string(),
+        }),
     }
 }
 

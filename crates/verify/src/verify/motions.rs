@@ -1,4 +1,4 @@
-//! The motion by a formula beside the true one, sampled over a period.
+//! The motion by a formula and the true one, sampled over a period.
 
 use std::collections::BTreeMap;
 
@@ -19,11 +19,11 @@ pub type TimedState = (f64, f64, f64);
 
 /// The motion by the formula and the true one, at the same instants of one true period.
 pub struct Motions {
-    /// By the formula.
+    /// The motion by the formula.
     pub formula: Vec<TimedState>,
-    /// By Runge-Kutta.
+    /// The true motion by Runge-Kutta.
     pub truth: Vec<TimedState>,
-    /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
+    /// Motions whose amplitude changes: times and positions of the two envelopes of the formula.
     pub envelope: Option<[Vec<(f64, f64)>; 2]>,
 }
 

@@ -1,6 +1,7 @@
 //! The true motion of an equation as it was typed: its period from the energy or the Runge-Kutta
-//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`OrbitTarget`]);
-//! how a formula came about is not known here, and `tests/library/layers.rs` holds that wall.
+//! return, its path from Runge-Kutta. The wanted motion is described by plain data
+//! ([`OrbitTarget`]). This module does not use the derivation of a formula;
+//! `tests/library/layers.rs` checks that.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -17,7 +18,7 @@ use crate::oscillator::Oscillator;
 use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 
-/// Points per period on which motions are compared and their harmonics taken.
+/// Number of points per period at which motions are compared and from which harmonics are computed.
 pub(super) const SAMPLES: usize = 1024;
 
 /// The true motion that an answer is compared with.
@@ -28,8 +29,8 @@ pub(super) struct OrbitTarget {
     pub(super) convention: AmplitudeConvention,
     /// The neighbourhood of a limit cycle; `None` for a member of a family of periodic motions.
     pub(super) limit_cycle: Option<NearCycle>,
-    /// Approximate omega if the energy does not give the period: it only limits the time of the
-    /// return.
+    /// Approximate omega if the energy does not give the period; it only limits the time of the
+    /// search for the return.
     pub(super) frequency: Option<f64>,
 }
 
@@ -43,8 +44,8 @@ pub(super) struct NearCycle {
 }
 
 impl OrbitTarget {
-    /// The amplitude among the numbers; one where there is none, as for a frequency that is free of
-    /// it.
+    /// The amplitude among the numbers; one if there is none, as for a frequency that does not
+    /// depend on it.
     pub(super) fn amplitude_at(&self, numbers: &BTreeMap<Symbol, f64>) -> f64 {
         numbers.get(&self.convention.symbol()).copied().unwrap_or(1.0)
     }
@@ -73,7 +74,7 @@ impl Orbit {
     }
 }
 
-/// The true periodic motion that a formula is meant for.
+/// The true periodic motion that a formula approximates.
 pub(super) struct TrueMotion {
     /// omega.
     pub(super) frequency: f64,
@@ -86,7 +87,7 @@ pub(super) struct TrueMotion {
 }
 
 impl TrueMotion {
-    /// The motion that is meant, of the equation as it was typed.
+    /// The motion described by the target, of the equation as it was typed.
     ///
     /// # Errors
     /// There is none, or it cannot be followed.
@@ -108,7 +109,8 @@ impl TrueMotion {
         }
         let start = physics.start(meant.amplitude_at(numbers))?;
         if physics.by_energy() && meant.convention == AmplitudeConvention::Initial {
-            // The energy knows first whether there is an orbit at all, and says why not.
+            // The energy decides first whether there is a periodic orbit, and gives the reason if
+            // not.
             let period = physics.period(start);
             let period = period.map_err(|error| physics.rest.why_no_period(start, error))?;
             let path = physics.swing(start, 2.0 * period).ok();
@@ -150,7 +152,7 @@ impl TrueMotion {
         Self { frequency, orbit: Some(orbit), shift, amplitude }
     }
 
-    /// The limit cycle, where the motion is one.
+    /// The limit cycle, if the motion is one; `None` otherwise.
     pub(super) fn limit_cycle(&self) -> Option<&NumericalLimitCycle> {
         match &self.orbit {
             Some(Orbit::LimitCycle(cycle)) => Some(cycle),
@@ -158,8 +160,8 @@ impl TrueMotion {
         }
     }
 
-    /// The amplitude of this free motion by the other convention: of a release the first harmonic,
-    /// of a first harmonic the release; `None` if its path is not known.
+    /// The amplitude of this free motion by the other convention: the first harmonic for a release,
+    /// the release for a first harmonic; `None` if its path is not known.
     pub(super) fn amplitude_by_the_other(
         &self,
         convention: AmplitudeConvention,
@@ -177,7 +179,7 @@ impl TrueMotion {
         self.orbit.is_some()
     }
 
-    /// The time after which it begins again.
+    /// The period.
     pub(super) fn period(&self) -> f64 {
         self.orbit.as_ref().map_or(TAU / self.frequency, Orbit::period)
     }
@@ -191,7 +193,7 @@ impl TrueMotion {
     }
 }
 
-/// The equation with numbers for its parameters, seen from its equilibrium.
+/// The equation with numbers for its parameters, in the distance from its equilibrium.
 pub(super) struct NumericOscillator {
     /// The force at rest.
     pub(super) rest: CentredForce,
@@ -230,8 +232,8 @@ impl NumericOscillator {
             longest: f64::INFINITY,
             convention: meant.convention,
         };
-        // A thousand periods as long as the answer expects, or of a linear force as strong at the
-        // start: a motion that has not turned by then is not swinging.
+        // The limit is a thousand periods by the approximate frequency, or by a linear force as
+        // strong at the start: a motion that has not turned by then does not oscillate.
         let slowest = match meant.frequency.filter(|_| !physics.by_energy()) {
             Some(frequency) => frequency,
             None => {
@@ -243,8 +245,7 @@ impl NumericOscillator {
         Ok(physics)
     }
 
-    /// Whether the force grows without end towards rest, as `1/x` does; a motion as large as this
-    /// is meant.
+    /// Whether the force is infinite at rest, as `1/x` is; `amplitude` is the scale of the motion.
     pub(super) fn is_infinite_at_rest(&self, amplitude: f64) -> bool {
         grows_towards_zero(&|y| self.force_at(y, 0.0), amplitude)
     }
@@ -266,7 +267,7 @@ impl NumericOscillator {
         self.rest.between_turning_points(start, |force, end| period_between(force, start, end))
     }
 
-    /// omega of the true motion that a formula of this amplitude means.
+    /// omega of the true motion with this amplitude.
     ///
     /// # Errors
     /// There is none, or it cannot be followed.
@@ -279,7 +280,7 @@ impl NumericOscillator {
         Ok(TAU / period)
     }
 
-    /// One swing by Runge-Kutta, in positions.
+    /// One swing by Runge-Kutta, in positions, not in distances from the equilibrium.
     fn swing(&self, start: f64, longest: f64) -> Result<Swing, PeriodError> {
         let end = match self.by_energy() {
             true => self.rest.turning_point(start)?,
@@ -360,7 +361,7 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 
-/// omega of the true motion, without its path where energy alone gives it.
+/// omega of the true motion; its path is not computed if the energy gives the frequency.
 pub(super) fn true_frequency(
     oscillator: &Oscillator,
     meant: &OrbitTarget,

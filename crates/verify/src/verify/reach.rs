@@ -1,10 +1,10 @@
 //! The amplitude range of a formula: the first amplitude at which the error of its frequency
 //! crosses the tolerance.
 //!
-//! The error is followed from rest outwards. Between two points it is taken to be as straight as
-//! its value in the middle says: where that leaves room for a crossing the stretch is halved. Where
-//! the force, or the formula, may turn fast (corners, narrow bumps, poles) there are points of
-//! their own, and the amplitude asked for is always among them.
+//! The error is followed from rest outwards. Between two points its curvature is estimated from the
+//! value in the middle: an interval that may contain a crossing is halved. Where the force, or the
+//! formula, may vary on a short scale (corners, narrow bumps, poles) there are additional points,
+//! and the amplitude asked for is always among them.
 
 use std::collections::BTreeMap;
 
@@ -20,8 +20,8 @@ use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 
-/// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed
-/// form.
+/// Sizes of the amplitude at which a law may vary on a short scale: the poles and narrow features
+/// of its closed form.
 pub(super) fn places_of_law(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
@@ -37,7 +37,7 @@ pub(super) fn places_of_law(
     }
     let features = Features::new(&law, symbol, numbers);
     let mut cuts = features.cuts(0.0, to);
-    // On both sides of a pole, close by.
+    // Points on both sides of a pole, close to it.
     let poles: Vec<f64> = features
         .between(0.0, to)
         .iter()
@@ -55,14 +55,14 @@ pub enum AmplitudeReach {
     Everywhere(f64),
     /// Amplitudes up to this one.
     UpTo(f64),
-    /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a
-    /// law that is outside near rest.
+    /// Between two amplitudes, for motions over several wells, which do not begin at rest, and for
+    /// a law that is outside the tolerance near rest.
     Between {
         /// The lower end.
         from: f64,
         /// The upper end, or the end of the search.
         to: f64,
-        /// Whether no crossing was found up there.
+        /// Whether no crossing was found at the upper end.
         open: bool,
     },
     /// No amplitude.
@@ -70,7 +70,7 @@ pub enum AmplitudeReach {
 }
 
 impl AmplitudeReach {
-    /// Whether an amplitude is outside.
+    /// Whether an amplitude lies outside the range.
     pub fn leaves_out(self, amplitude: f64) -> bool {
         match self {
             Self::Between { from, to, open } => {
@@ -82,7 +82,7 @@ impl AmplitudeReach {
         }
     }
 
-    /// The end of the range, where there is one.
+    /// The end of the range; `None` if it has none.
     pub fn end(self) -> Option<f64> {
         match self {
             Self::UpTo(end) | Self::Between { to: end, open: false, .. } => Some(end),
@@ -127,15 +127,15 @@ pub(super) fn amplitude_reach(
     truth: &TrueBackbone,
     tolerance: f64,
 ) -> Option<AmplitudeReach> {
-    // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve
-    // to follow.
+    // There is no curve to follow if the amplitude changes, or is that of a limit cycle or a
+    // response.
     let fixed =
         solution.limit_cycle.is_some() || solution.response.is_some() || solution.slow().is_some();
     if fixed {
         return None;
     }
-    // Over the many hilltops of a force that waves a balance has many solutions, and following it
-    // finds one or another.
+    // Over the many hilltops of an oscillating force a balance has many solutions, and continuation
+    // may find any of them.
     if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Balance
         && truth.has_waves_of_hilltops()
     {
@@ -151,7 +151,7 @@ pub(super) fn amplitude_reach(
         Some(frequency.map_or(f64::INFINITY, |frequency| frequency / true_frequency - 1.0))
     };
     if solution.method == Method::Exact {
-        // It is the truth wherever there is one.
+        // The exact method agrees with the true motion wherever there is one.
         let good = error(asked.abs())?.abs() <= tolerance;
         let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
         return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
@@ -187,21 +187,21 @@ pub(super) fn amplitude_reach(
     let last = points.last()?.0;
     let follow = Follow { error: &error, tolerance, evaluations: std::cell::Cell::new(0) };
     let signed = |size: f64| size.copysign(asked);
-    // From rest to the smallest of them the law may change at any scale.
+    // Between rest and the smallest amplitude the law may vary on any scale.
     const SMALLEST: f64 = 1e-6;
     let first = points[0];
     let scales = std::iter::successors(Some(SMALLEST * first.0), |size| Some(2.0 * size));
     let smaller: Vec<(f64, f64)> = scales
         .take_while(|size| *size < first.0)
         .map_while(|size| Some((size, error(size)?)))
-        // So close to rest that a formula has no digits left.
+        // Very close to rest a formula may have no digits left.
         .skip_while(|point| point.1.is_infinite())
         .collect();
     match smaller.first() {
         Some(tiny) if tiny.1.abs() <= tolerance => {
             points.splice(0..0, smaller);
         }
-        // A law that is no good near rest may be so further out.
+        // A law outside the tolerance near rest may be within it farther out.
         _ if first.1.abs() > tolerance => {
             return about_the_amplitude(&error, &amplitudes, asked, tolerance);
         }
@@ -216,14 +216,14 @@ pub(super) fn amplitude_reach(
 }
 
 /// The range about the amplitude asked for in which the frequency stays within the tolerance, or,
-/// where it is not within it there, the outermost.
+/// if it is not within it there, the outermost such range.
 fn about_the_amplitude(
     error: &dyn Fn(f64) -> Option<f64>,
     amplitudes: &[f64],
     asked: f64,
     tolerance: f64,
 ) -> Option<AmplitudeReach> {
-    // Close to the separatrix the truth may have no digits.
+    // Close to the separatrix the true frequency may have no digits.
     let points: Vec<(f64, f64)> =
         amplitudes.iter().filter_map(|&size| Some((size, error(size)?))).collect();
     let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
@@ -260,11 +260,11 @@ struct Follow<'a> {
 impl Follow<'_> {
     /// The first crossing between two points, of which the first is good.
     fn first_crossing(&self, from: (f64, f64), to: (f64, f64)) -> Option<f64> {
-        /// Largest number of bisections in all, and of one interval.
+        /// Largest number of bisections in total, and of one interval.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
         /// Ratio of the error to the tolerance beyond which one sample in the middle is not enough,
-        /// because the error may bend to both sides.
+        /// because the error may bend either way.
         const CLOSE: f64 = 0.3;
         const LOOKS: usize = 3;
         let mut open = vec![(from, to, 0)];

@@ -13,7 +13,7 @@ use crate::symbol::Symbol;
 
 /// The exponent with which the error of the frequency vanishes: the small parameter is halved until
 /// rounding begins to matter, and the slopes between halvings, which approach their limit linearly,
-/// are carried on to zero.
+/// are extrapolated to zero.
 pub(super) fn slope(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -29,8 +29,8 @@ pub(super) fn slope(
         Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),
         None => (oscillator, solution, numbers),
     };
-    // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an
-    // error hundreds of times that is measured to less than a per cent.
+    // The true frequency is accurate to 1e-15 by quadrature, 1e-12 by quadrature in pieces and
+    // 1e-11 by Runge-Kutta: errors hundreds of times larger are measured to less than one per cent.
     let conservative = oscillator.of_position_alone();
     let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
@@ -55,8 +55,8 @@ pub(super) fn slope(
             true_frequency(oscillator, &orbit_target(oscillator, solution, &numbers), &numbers)
                 .ok()?;
         let error = (formula / truth - 1.0).abs();
-        // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
-        // the last bits does to it is no error of the formula.
+        // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: the effect of a
+        // change of the last bits is not an error of the formula.
         let shakes = if solution.law.closed_form().is_some() { 4 } else { 0 };
         let shaken = (1..=shakes).filter_map(|k| formula_at(factor * (1.0 + f64::from(k) * 1e-14)));
         let noise = shaken.map(|(shaken, _)| (shaken / formula - 1.0).abs()).fold(0.0, f64::max);
@@ -67,8 +67,8 @@ pub(super) fn slope(
     slopes_of(&errors)
 }
 
-/// The exponent of errors of which each belongs to half of what the one before does: the slopes
-/// between them, which approach their limit linearly, carried on to zero.
+/// The exponent of a sequence of errors at successively halved parameters: the slopes between them,
+/// which approach their limit linearly, are extrapolated to zero.
 pub(super) fn slopes_of(errors: &[f64]) -> Option<f64> {
     let slopes: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     match *slopes.as_slice() {
@@ -78,9 +78,9 @@ pub(super) fn slopes_of(errors: &[f64]) -> Option<f64> {
     }
 }
 
-/// Where the small parameter marks terms with numbers before them: the equation with that parameter
-/// in it, so that it can be varied. What is not the linear restoring force is multiplied by
-/// `delta / value`.
+/// The equation with the bookkeeping parameter inserted, so that it can be varied, if the small
+/// terms have numbers for coefficients: all but the linear restoring force is multiplied by `delta
+/// / value`.
 fn with_small_parameter(
     oscillator: &Oscillator,
     solution: &Solution,

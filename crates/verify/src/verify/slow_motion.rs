@@ -1,5 +1,4 @@
-//! Slow equations of amplitude and phase with numbers, solved from their start: the motion that a
-//! formula says.
+//! The motion by the slow equations of amplitude and phase with numbers, solved from their start.
 //!
 //! ```text
 //! x = X(a, theta),   x' = V = a' X_a + theta' X_theta,   x'' = a' V_a + theta' V_theta
@@ -17,11 +16,11 @@ use crate::solution::modulation::Release;
 use crate::solution::{AmplitudeConvention, Method, Modulation, Solution};
 use crate::symbol::Symbol;
 
-/// Periods after which a motion is left.
+/// Largest number of periods that are followed.
 const MOST_PERIODS: f64 = 50.0;
-/// Periods that are always followed.
+/// Least number of periods that are followed.
 const LEAST_PERIODS: f64 = 3.0;
-/// Samples of a motion per period.
+/// Number of samples of a motion per period.
 pub(super) const LOOKS: f64 = 32.0;
 
 /// The slow equations with numbers, solved from the start.
@@ -31,22 +30,22 @@ pub(super) struct SlowMotion {
     /// The motion about the equilibrium in amplitude and phase, and its rate.
     place: CompiledFunction,
     speed: CompiledFunction,
-    /// The rate of that, where it can be written down.
+    /// The second time derivative, if it has an expression.
     acceleration: Option<CompiledFunction>,
     pub(super) equilibrium: f64,
     /// The amplitude at the start.
     start: f64,
-    /// An angle added to the initial phase: pi for a negative amplitude, whose size the formula
-    /// takes.
+    /// An angle added to the initial phase: pi for a negative amplitude, because the formula takes
+    /// the absolute value.
     turn: f64,
     /// 2 pi over the rate of the phase there.
     pub(super) period: f64,
-    /// The amplitudes that stay.
+    /// The steady amplitudes.
     steady: Vec<f64>,
     /// The time at which the amplitude is zero, by its closed form.
     ends: f64,
-    /// Whether the order is so high that it tells by how much the motion turns beside the phases 0
-    /// and pi, for its amplitude drifts.
+    /// Whether the order is high enough to give the shift of the turning points from the phases 0
+    /// and pi that the drift of the amplitude causes.
     drift_counts: bool,
 }
 
@@ -63,8 +62,8 @@ enum SlowSolution {
 
 /// The numbers of a motion released at rest.
 struct ReleaseValues {
-    /// Parameters, definitions and the amplitude at the start, which is the size of one that is
-    /// turned.
+    /// Parameters, definitions and the amplitude at the start, positive even if a negative one is
+    /// given and counts as half a turn.
     known: BTreeMap<Symbol, f64>,
     /// These values as exact numbers.
     exact: BTreeMap<Symbol, Expr>,
@@ -119,7 +118,7 @@ impl ReleaseValues {
         })
     }
 
-    /// Amplitude and phase in closed form, where there is one that holds.
+    /// Amplitude and phase in closed form; `None` if there is none that holds here.
     fn closed_form(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
         let transient = modulation.transient.as_ref().filter(|_| self.closed_forms_hold)?;
         let compiled = |expression: &Expr| {
@@ -142,7 +141,7 @@ fn displacement(solution: &Solution, theta: Symbol) -> Result<Expr, ExprError> {
 
 impl SlowMotion {
     /// # Errors
-    /// A value is missing, or the phase does not turn.
+    /// A value is missing, or the rate of the phase is not positive.
     pub(super) fn new(
         solution: &Solution,
         modulation: &Modulation,
@@ -196,7 +195,7 @@ impl SlowMotion {
         })
     }
 
-    /// Amplitude and phase; the amplitude zero once it has come down to that.
+    /// Amplitude and phase at a time; the amplitude stays zero once it has reached zero.
     fn slow_at(&self, t: f64) -> [f64; 2] {
         let [amplitude, phase] = match &self.slow {
             SlowSolution::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
@@ -215,14 +214,14 @@ impl SlowMotion {
         }
     }
 
-    /// The rate of the velocity; `None` if it cannot be written down.
+    /// The acceleration; `None` if it has no expression.
     pub(super) fn acceleration(&self, t: f64) -> Option<f64> {
         let acceleration = self.acceleration.as_ref()?;
         let at = self.slow_at(t);
         Some(if at[0] == 0.0 { 0.0 } else { acceleration.call(&at) })
     }
 
-    /// Distance from the equilibrium at the amplitude of a time and any phase.
+    /// Distance from the equilibrium for the amplitude at this time and any phase.
     pub(super) fn at_phase(&self, t: f64, phase: f64) -> f64 {
         let [a, _] = self.slow_at(t);
         if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
@@ -260,12 +259,13 @@ impl SlowMotion {
         found
     }
 
-    /// The time at which the amplitude comes down to a size.
+    /// The time at which the amplitude has fallen to a size.
     pub(super) fn falls_to(&self, size: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.slow_at(t)[0].abs(), size, longest)
     }
 
-    /// The time at which the turning points come down to a distance from the equilibrium.
+    /// The time at which the distance of the turning points from the equilibrium has fallen to a
+    /// size.
     pub(super) fn turns_at(&self, distance: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.turned(t, 1.0).abs(), distance, longest)
     }
@@ -325,7 +325,7 @@ fn followed(
     let [amplitude, phase] = rates.each_ref().map(|rate| CompiledFunction::new(rate, &[a]));
     let (amplitude, phase) = (amplitude?, phase?);
     let rates = move |_: f64, values: &[f64; 2], rates: &mut [f64; 2]| {
-        // Below zero nothing is left of the motion.
+        // The motion is over once the amplitude has changed its sign.
         let over = values[0] * start[0] <= 0.0;
         *rates = match over {
             true => [0.0, 0.0],

@@ -1,5 +1,5 @@
-//! The problem with all small quantities halved again and again, from which the order of an error
-//! is measured.
+//! The problem with all small quantities halved repeatedly, by which the order of an error is
+//! measured.
 //!
 //! ```text
 //! small letters            their values halved, among them those of a drive that counts as small, and the detuning
@@ -8,9 +8,8 @@
 //!                          damping, detuning and a small drive by the power of s that the nonlinear terms have, s^4 for x^5 alone
 //! ```
 //!
-//! Numbers in an equation are no letters, so that the answer to the smaller question is derived
-//! again. A drive far from resonance is not small and stays; time in a drive runs by the frequency
-//! with half of the detuning.
+//! If the small quantities are numbers, the answer to the smaller problem is derived again. A drive
+//! far from resonance is not small and stays; a drive gets the frequency with half of the detuning.
 
 use std::collections::BTreeMap;
 
@@ -27,14 +26,14 @@ use crate::solution::modulation::Resonance;
 use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
 
-/// A question and its answer.
+/// A problem and its answer.
 pub(super) struct Smaller {
     pub(super) oscillator: Oscillator,
     pub(super) solution: Solution,
     pub(super) numbers: BTreeMap<Symbol, f64>,
 }
 
-/// All that is small halved this many times; `None` if that cannot be done.
+/// The problem with all small quantities halved this many times; `None` if that is not possible.
 pub(super) fn smaller(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -46,7 +45,7 @@ pub(super) fn smaller(
         .or_else(|| by_numbers(oscillator, solution, numbers, factor))
 }
 
-/// Whether the amplitude is what is small.
+/// Whether the amplitude is the small quantity.
 pub(super) fn is_small_in_amplitude(solution: &Solution) -> bool {
     solution.small_parameter == solution.amplitude.symbol()
 }
@@ -67,8 +66,8 @@ fn resonance(solution: &Solution) -> Option<&Resonance> {
     solution.modulation.as_ref()?.resonance.as_ref()
 }
 
-/// The quantities that are small beside the small parameters of a driven motion, the detuning
-/// aside.
+/// The quantities, except the detuning, that count as small in addition to the small parameters of
+/// a driven motion.
 fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Expr> {
     let detuning = Expr::from(resonance.detuning.symbol);
     let notes = solution.validity.iter();
@@ -79,7 +78,7 @@ fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Ex
     small.flatten().filter(|small| **small != detuning).collect()
 }
 
-/// The driving frequency with so much of its detuning left.
+/// The driving frequency with this fraction of its detuning.
 fn retuned(
     solution: &Solution,
     resonance: &Resonance,
@@ -94,7 +93,7 @@ fn retuned(
     Some([driving, less])
 }
 
-/// Small letters by their values.
+/// The smaller problem if the small quantities are parameters: their values are halved.
 fn by_letters(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -111,7 +110,7 @@ fn by_letters(
             let [letter] = letters.as_slice() else {
                 return None;
             };
-            // Halved with the letter: a multiple of it.
+            // A drive that is a multiple of the parameter is halved with it.
             let zero = drive.substitute(*letter, &Expr::zero()).ok()?;
             let slope = drive.differentiate(*letter).ok()?;
             if !zero.is_zero() || slope.contains(*letter) {
@@ -133,7 +132,7 @@ fn by_letters(
     Some(Smaller { oscillator: oscillator.clone(), solution: solution.clone(), numbers: smaller })
 }
 
-/// Numbers in the equation, seen from the equilibrium.
+/// The smaller problem if the small quantities are numbers in the equation, about the equilibrium.
 fn by_numbers(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -166,7 +165,7 @@ fn by_numbers(
     let at_rest = |part: &Expr| part.substitute(v, &Expr::zero())?.substitute(x, &Expr::zero());
     let restoring = seen(&parts.restoring).ok()?;
     let restoring = &restoring - &at_rest(&restoring).ok()?;
-    // A force that has no linear part restores as a whole.
+    // Without a linear part the whole force counts as restoring.
     let stiffness = restoring.differentiate(x).and_then(|slope| at_rest(&slope)).ok();
     let linear = match stiffness.filter(|stiffness| !stiffness.is_zero()) {
         Some(stiffness) => &stiffness * &Expr::from(x),
@@ -217,7 +216,7 @@ fn by_numbers(
     Some(Smaller { oscillator: question, solution: answer.off_cycle().unwrap_or(answer), numbers })
 }
 
-/// The rate at which time turns the wave of a driven term.
+/// The angular frequency of the wave of a driven term.
 fn rate_of(term: &Expr) -> Option<f64> {
     let t = Symbol::new("t");
     let (_, factors) = term.factors();
@@ -230,7 +229,7 @@ fn rate_of(term: &Expr) -> Option<f64> {
 }
 
 /// The factor of a driven term in the smaller problem: a force far from resonance scales with the
-/// amplitude, any other with the terms that it has to balance.
+/// amplitude, any other with the terms that balance it.
 fn drive_left(
     term: &Expr,
     own: [Symbol; 2],
@@ -243,15 +242,15 @@ fn drive_left(
     let Some((scale, power)) = scale else {
         return Some(if hard { 1.0 } else { factor });
     };
-    // The scale has its power of the degree less one already.
+    // The substitution has already given the power of the degree less one.
     let wanted = if hard { 0 } else { i32::max(degree - 1, power) };
     Some(scale.powi(wanted - (degree - 1)))
 }
 
-/// The lowest power of the coordinate and the velocity together; `None` if they stand in what has
+/// The lowest power of the coordinate and the velocity together; `None` if a function of them has
 /// no series.
 fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
-    /// The series of a function begins below.
+    /// Largest degree at which the series of a function may begin.
     const HIGHEST: u32 = 4;
     let (_, factors) = term.factors();
     let mut sum = ratio(0, 1);

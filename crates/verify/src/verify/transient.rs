@@ -1,4 +1,4 @@
-//! The judge of motions that are not periodic: slow equations of amplitude and phase against the
+//! Verification of motions that are not periodic: slow equations of amplitude and phase against the
 //! equation as it was typed.
 //!
 //! ```text
@@ -68,10 +68,10 @@ pub struct Followed {
     pub true_tenth: Option<f64>,
 }
 
-/// Judges slow equations from a start.
+/// Verifies slow equations from a start.
 ///
 /// # Errors
-/// The motion cannot be followed, or it does not swing.
+/// The motion cannot be followed, or it does not oscillate.
 pub(super) fn judge(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -110,6 +110,7 @@ pub(super) fn judge(
     });
     Ok(Verification {
         at: at.clone(),
+        tolerance,
         frequency,
         reason: frequency.is_none().then_some(NoNumbers::NoValue),
         true_frequency,
@@ -172,14 +173,14 @@ pub(super) fn motions(
     })
 }
 
-/// Enough points for the eye and for the largest deviation.
+/// The number of samples, enough for a figure and for the largest deviation.
 fn samples(until: f64, period: f64) -> usize {
     const PER_PERIOD: f64 = 64.0;
     let count = (PER_PERIOD * until / period).ceil();
     if count.is_finite() { (count as usize).clamp(64, 8192) } else { 64 }
 }
 
-/// The largest of numbers that are all finite; `None` if there is none.
+/// The largest of the numbers; `None` if there are none or one is not finite.
 fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     let found = values.fold(None, |largest: Option<f64>, value| {
         Some(match largest {
@@ -216,12 +217,12 @@ impl TransientPair {
     ) -> Result<Self, VerificationError> {
         let slow = SlowMotion::new(solution, modulation, numbers)?;
         let (until, reason) = slow.duration();
-        // The true amplitude may come down to a tenth a little later.
+        // The true amplitude may fall to a tenth a little later.
         let longer = until + f64::max(slow.period, 0.1 * until);
         Self::followed(oscillator, numbers, slow, (until, reason), longer)
     }
 
-    /// Both from the start, the true motion as long as asked.
+    /// Formula and truth from the start, the true motion for the given time.
     fn followed(
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,
@@ -286,8 +287,8 @@ struct Slopes {
     deviation: Option<f64>,
 }
 
-/// Measures the exponents of the errors: the small quantities are halved again and again, and the
-/// motion is followed twice as long each time.
+/// Measures the exponents of the errors: the small quantities are halved repeatedly, and the motion
+/// is followed twice as long each time.
 fn slopes(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -297,7 +298,8 @@ fn slopes(
     const HALVINGS: i32 = 4;
     /// Duration of the first motion in periods; it is doubled with each halving.
     const PERIODS: f64 = 8.0;
-    /// The truth is good to 1e-11, and a hundred times that is measured to a per cent.
+    /// The true motion is accurate to 1e-11, and a deviation a hundred times larger is measured to
+    /// one per cent.
     const FLOOR: f64 = 1e-9;
     let first = judged.until.min(PERIODS * judged.slow.period);
     let error = |halving: i32| {
@@ -319,7 +321,7 @@ fn slopes(
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
-    // Without the first error the others are not needed.
+    // The sequence of halvings ends at the first error that cannot be measured.
     for halving in 0..HALVINGS {
         match error(halving) {
             Some(found) => errors.push(found),

@@ -52,7 +52,7 @@ pub(super) fn ranges(
         let found = (series && feeds).then(|| convergence(oscillator, solution, numbers)).flatten();
         ranges.extend(found.map(|range| {
             match range.outside && solution.method == Method::LindstedtPoincare {
-                // A quotient has poles where the series ends.
+                // A quotient can represent the poles that limit the series.
                 true => Range {
                     text: format!(
                         "{}; beyond it a Pade approximant of the series holds farther",
@@ -90,7 +90,7 @@ pub(super) fn ranges(
     ranges
 }
 
-/// The escape from the well; `None` for motions without an energy that is known in closed form.
+/// The escape from the well; `None` if the energy has no closed form.
 pub(super) fn of_equation(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -101,7 +101,7 @@ pub(super) fn of_equation(
     let beyond = well.on_side(amplitude).is_some_and(|end| amplitude.abs() >= end.amplitude.abs())
         || amplitude.abs() < well.smallest_amplitude();
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
-    // Past the edge of one well the motion may still be periodic, over several.
+    // Beyond the edge of one well the motion may still be periodic, over several wells.
     let over_all = beyond
         && super::orbit::true_frequency(
             oscillator,
@@ -131,7 +131,7 @@ fn integral_error(
     })
 }
 
-/// The true frequency against the amplitude, of the motions that an answer is meant for.
+/// The true frequency against the amplitude, for the motions that an answer is about.
 pub(super) fn backbone<'a>(
     oscillator: &'a Oscillator,
     solution: &Solution,
@@ -141,8 +141,7 @@ pub(super) fn backbone<'a>(
     TrueBackbone::new(oscillator, &orbit_target(oscillator, solution, numbers), numbers, well)
 }
 
-/// Whether the motions that an answer is meant for do not begin at rest, but run over several
-/// wells.
+/// Whether the motions that an answer is about run over several wells and do not begin at rest.
 pub(super) fn is_over_several_wells(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -151,7 +150,7 @@ pub(super) fn is_over_several_wells(
     well_of(oscillator, solution, numbers).is_some_and(|well| well.inner.is_some())
 }
 
-/// The well of the motion that an answer is meant for.
+/// The well of the motion that an answer is about.
 fn well_of(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -172,8 +171,8 @@ fn well_of(
 }
 
 /// The reason why there is no motion to judge by, with the amplitudes at which there is one where
-/// the inertia depends on the position: Runge-Kutta alone does not know them. Where energy is
-/// conserved as it stands the error says so already.
+/// the inertia depends on the position: Runge-Kutta alone does not give these. For a force of the
+/// position alone the error contains them already.
 pub(super) fn why_no_motion(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -258,8 +257,8 @@ fn vanishing(
     if solution.method == Method::Exact || solution.law.is_solved_by_numbers() {
         return None;
     }
-    // A law beyond the escape of the true motion is of no use, but where it ends is still its own
-    // affair.
+    // A law is of no use beyond the escape of the true motion, but its own end is reported all the
+    // same.
     let farthest = if limit.is_finite() {
         f64::max(1.5 * limit, amplitude.abs())
     } else {
@@ -279,7 +278,7 @@ fn vanishing(
     let reference = squared(1e-3 * amplitude.abs()).abs();
     for place in places {
         let value = squared(place);
-        // A law that has died away to nothing has no zero there.
+        // A law that has underflowed has no zero there.
         if value == 0.0 && value_before < 1e-100 * reference {
             return None;
         }

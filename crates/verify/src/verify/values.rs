@@ -1,4 +1,4 @@
-//! The values at which a formula is judged: those that it needs, and the numbers that they are.
+//! The values at which a formula is verified: the symbols that it needs, and their numbers.
 
 use std::collections::BTreeMap;
 
@@ -24,13 +24,14 @@ use crate::values::Values;
 pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     let mut needed = solution.parameters.clone();
     if solution.slow().is_some() {
-        // A motion that settles may be judged where it does.
+        // A motion that settles may be verified in its steady state, without an initial amplitude.
         if solution.on_cycle().is_none() {
             needed.push(AmplitudeConvention::Initial.symbol());
         }
         return needed;
     }
-    // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
+    // A law such as omega^2 = 1 for x'' + x + x^2 = 0 does not contain A although the true motion
+    // depends on it.
     let linear = || {
         let oscillator = Oscillator::from_equation(&solution.equation);
         oscillator.is_ok_and(|oscillator| matches!(oscillator.polynomial_degree(), Ok(Some(0 | 1))))
@@ -42,7 +43,7 @@ pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
     needed
 }
 
-/// What the amplitude among the values is called: that of the start, where it changes.
+/// The symbol of the amplitude among the values: that of the start if the amplitude changes.
 fn amplitude_symbol(solution: &Solution) -> Symbol {
     match solution.slow() {
         Some(_) => AmplitudeConvention::Initial.symbol(),
@@ -59,7 +60,7 @@ pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError
 }
 
 /// Refuses an amplitude at which the force has no digits left. The distance from the equilibrium
-/// counts, which is exact where the equilibrium is.
+/// decides, which is exact if the equilibrium is.
 ///
 /// # Errors
 /// [`LostDigits`].
@@ -107,7 +108,8 @@ pub(super) fn checked_numbers(
     if !missing.is_empty() {
         return Err(VerificationError::Missing(missing));
     }
-    // Where the frequency does not depend on the amplitude, any will do to compare the motion.
+    // If the frequency does not depend on the amplitude, any amplitude serves for the comparison of
+    // the motion.
     let amplitude_symbol = amplitude_symbol(solution);
     let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
     let may_rest = solution.limit_cycle.is_some() || solution.in_time().is_some();
@@ -117,7 +119,7 @@ pub(super) fn checked_numbers(
     Ok(numbers)
 }
 
-/// The values as numbers, the amplitude 1 where it is left out.
+/// The values as numbers, with the amplitude 1 if none is given.
 pub(super) fn numbers_of_motion(solution: &Solution, at: &Values) -> BTreeMap<Symbol, f64> {
     let symbol = amplitude_symbol(solution);
     at.with(symbol, at.get(symbol).unwrap_or(1.0))

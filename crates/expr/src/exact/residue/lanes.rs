@@ -1,4 +1,4 @@
-//! Eight residues side by side, and what sums their products.
+//! Eight residues side by side, and the arithmetic that sums their products.
 
 use pulp::NullaryFnOnce;
 
@@ -9,7 +9,7 @@ pub const WIDTH: usize = 8;
 
 /// Eight residues, of one prime or of eight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-// One line of the cache, so that no load touches two.
+// The alignment is a cache line, so that no load touches two.
 #[repr(C, align(64))]
 pub struct Lanes(pub [u64; WIDTH]);
 
@@ -27,9 +27,9 @@ pub trait Arithmetic: Copy + Send + Sync {
     const BITS: u32;
     /// The radix of `Modulus::new`.
     const RADIX: u32;
-    /// Digits that may be multiplied by a residue and summed as residues are.
+    /// Number of bits of a digit that may be multiplied by a residue and summed like a residue.
     const DIGIT: u32;
-    /// After this many products a sum has to be [carried](Self::carry).
+    /// Number of products after which a sum has to be [carried](Self::carry).
     const RUN: usize;
     /// Eight sums of products.
     type Sum: Copy;
@@ -38,17 +38,18 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn none(self) -> Self::Sum;
     /// `sum + left right`.
     fn add_product(self, sum: Self::Sum, left: &Lanes, right: &Lanes) -> Self::Sum;
-    /// `sum + left right` with the same `left` for all.
+    /// `sum + left right` with the same `left` in all lanes.
     fn add_multiple(self, sum: Self::Sum, left: u64, right: &Lanes) -> Self::Sum;
     /// Makes room for another [run](Self::RUN): 2^13 products at most in all.
     fn carry(self, sum: Self::Sum) -> Self::Sum;
-    /// The sum of two that have not more products than one [run](Self::RUN) together.
+    /// Adds two sums that together have at most one [run](Self::RUN) of products.
     fn merge(self, left: Self::Sum, right: Self::Sum) -> Self::Sum;
-    /// The sum of two, each with room for another.
+    /// Adds two carried sums, each with room for the other.
     fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum;
     /// The low and the high parts of carried sums: `low + 2^RADIX high`.
     fn parts(self, sum: Self::Sum) -> (Lanes, Lanes);
-    /// The sums divided by `R` as residues, in Montgomery's form where both factors were.
+    /// The sums divided by `R`, as residues; in Montgomery's form if both factors of the products
+    /// were.
     fn reduce(self, sum: Self::Sum, moduli: &Moduli) -> Lanes;
     /// The products of residues.
     #[inline(always)]
@@ -57,7 +58,7 @@ pub trait Arithmetic: Copy + Send + Sync {
     }
     /// The sums of residues.
     fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes;
-    /// The differences.
+    /// The differences of residues.
     fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes;
     /// Runs a function compiled for this processor.
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output;

@@ -1,12 +1,12 @@
 //! Memory for long tables, in large pages where the system has them on request.
 //!
-//! The first touch of a page costs as much as a thousand products, and the columns of a long table
-//! lie in a page each: in large pages both cost next to nothing. Elsewhere, and for little, it is
-//! memory like any other.
+//! The first access to a page costs as much as a thousand products, and the columns of a long table
+//! lie in a page each: in large pages both cost next to nothing. Without large pages, and for short
+//! tables, ordinary memory is used.
 
 use super::Lanes;
 
-/// Room for this many lanes, all zero.
+/// Memory for a number of lanes, zero at first.
 pub struct Memory {
     pages: Pages,
 }
@@ -18,7 +18,7 @@ enum Pages {
 }
 
 impl Memory {
-    /// As much as that.
+    /// Allocates memory for `count` lanes of zeros.
     pub fn zeroed(count: usize) -> Self {
         #[cfg(target_os = "linux")]
         if let Some(large) = large::HugePages::zeroed(count) {
@@ -27,7 +27,7 @@ impl Memory {
         Self { pages: Pages::Usual(vec![Lanes::default(); count]) }
     }
 
-    /// All of it.
+    /// All lanes.
     pub fn lanes(&mut self) -> &mut [Lanes] {
         match &mut self.pages {
             Pages::Usual(lanes) => lanes,
@@ -50,14 +50,15 @@ mod large {
     /// Number of bytes below which the zeros of a whole large page cost more than it spares.
     const LEAST: usize = PAGE / 2;
 
-    /// A mapping with the bytes that are used, from the beginning of a large page on.
+    /// A mapping, and the range of its bytes that is used, which begins with a large page.
     pub struct HugePages {
         mapping: MmapMut,
         used: Range<usize>,
     }
 
     impl HugePages {
-        /// `None` if it is little, or if there is none.
+        /// Allocates memory for `count` lanes of zeros; `None` if it is too little for a large
+        /// page, or the mapping fails.
         pub fn zeroed(count: usize) -> Option<Self> {
             let bytes = count.checked_mul(size_of::<Lanes>())?;
             if bytes < LEAST {
@@ -65,7 +66,7 @@ mod large {
             }
             let mapping =
                 MmapMut::map_anon(bytes.checked_next_multiple_of(PAGE)?.checked_add(PAGE)?).ok()?;
-            // Without large pages it is as good as any other memory.
+            // If the system has no large pages, the mapping is ordinary memory.
             let _ = mapping.advise(Advice::HugePage);
             let start = mapping.as_ptr().align_offset(PAGE);
             let used = start..start.checked_add(bytes)?;

@@ -1,4 +1,4 @@
-//! Residues modulo primes of one word, and the way back to whole numbers.
+//! Residues modulo primes of one word, and the reconstruction of whole numbers from them.
 //!
 //! References: P. L. Montgomery, *Modular multiplication without trial division*, Math. Comp. 44
 //! (1985) 519-521; J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
@@ -9,12 +9,12 @@
 //! x = sum_i t_i M/p_i - q M,   M = p_1 ... p_r,   t_i = x (M/p_i)^-1 mod p_i     (Chinese remainders)
 //! ```
 //!
-//! A long exact computation is done modulo many primes, each by machine words alone, and put
-//! together at the end. In come [`Modulus`] and [`Tables`] of [`Lanes`], eight residues side by
-//! side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight products at a time
-//! are summed, by the processor's wide multiply-add where it has one ([`wide`]) and by plain words
-//! elsewhere ([`portable`]), with the same results after the [remainders](remainder) are put
-//! together.
+//! A long exact computation is done modulo many primes, for each of them in machine words only, and
+//! its result is reconstructed at the end. In come [`Modulus`] and [`Tables`] of [`Lanes`], eight
+//! residues side by side, most often of [eight primes](moduli); an [`Arithmetic`] sums eight
+//! products at a time, by the wide multiply-add of the processor if it has one ([`wide`]) and
+//! otherwise by ordinary words ([`portable`]), with the same results after
+//! [reconstruction](remainder).
 
 pub mod lanes;
 pub mod memory;
@@ -38,16 +38,16 @@ use num_traits::ToPrimitive;
 
 use super::Integer;
 
-/// Work that is written once for every arithmetic.
+/// A computation that is written once for every arithmetic.
 pub trait Work {
     /// The result of the work.
     type Output;
 
-    /// Does it.
+    /// Does the work with this arithmetic.
     fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
 }
 
-/// Does the work by the widest arithmetic of this processor.
+/// Does the work with the widest arithmetic of this processor.
 pub fn by_widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(wide) = wide::Wide::try_new() {
@@ -60,19 +60,19 @@ pub fn by_widest<W: Work>(work: W) -> W::Output {
     work.run(portable::Portable)
 }
 
-/// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and
-/// stand for themselves times `R = 2^radix`, except where they are called plain.
+/// A prime, and the constants of Montgomery's multiplication modulo it. Residues are below the
+/// prime and stand for themselves times `R = 2^radix`, except where they are called plain.
 #[derive(Clone, Copy, Debug)]
 pub struct Modulus {
     /// The prime, odd, below `2^(radix - 2)`.
     pub prime: u64,
-    /// One, which is `R` modulo the prime.
+    /// One in Montgomery's form: `R` modulo the prime.
     pub one: u64,
-    /// `R^2` modulo the prime: what a plain residue is multiplied by.
+    /// `R^2` modulo the prime: the factor that brings a plain residue into Montgomery's form.
     square: u64,
     /// `1/prime` modulo `R`.
     pub(super) inverse: u64,
-    /// `2^(2 radix - 7)/prime`, rounded down: the quotient by the prime is guessed with it.
+    /// `2^(2 radix - 7)/prime`, rounded down, for an estimate of a quotient by the prime.
     pub(super) quotient: u64,
     radix: u32,
 }
@@ -80,13 +80,13 @@ pub struct Modulus {
 impl Modulus {
     /// A prime with `R = 2^radix`, where the radix is that of an [`Arithmetic`].
     pub fn new(prime: u64, radix: u32) -> Self {
-        // Newton's iteration doubles the digits that are right; an odd number is its own inverse
-        // modulo 8.
+        // Newton's iteration doubles the number of correct digits; it starts with three, as an odd
+        // number is its own inverse modulo 8.
         let inverse = (0..5).fold(prime, |inverse, _| {
             inverse.wrapping_mul(2_u64.wrapping_sub(prime.wrapping_mul(inverse)))
         });
-        // A division of words, where they hold the number, is many times faster than one of double
-        // words.
+        // A division of words, if the number fits one, is many times faster than a division of
+        // double words.
         let quotient = |value: u128| match u64::try_from(value) {
             Ok(word) => word / prime,
             Err(_) => (value / u128::from(prime)) as u64,
@@ -114,10 +114,11 @@ impl Modulus {
         self.difference((product >> self.radix) as u64, taken)
     }
 
-    /// The difference.
+    /// The difference of two residues.
     #[inline(always)]
     pub fn difference(&self, left: u64, right: u64) -> u64 {
-        // Below zero a word is large, so the smaller of the two is the residue: no branch to guess.
+        // A word below zero wraps around to a large one, so the smaller of the two is the residue,
+        // without a branch.
         let difference = left.wrapping_sub(right);
         difference.min(difference.wrapping_add(self.prime))
     }
@@ -169,12 +170,12 @@ impl Modulus {
         power
     }
 
-    /// The inverse of a residue, by Fermat; zero of zero.
+    /// The inverse of a residue, by Fermat's theorem; zero for zero.
     pub fn inverse(&self, residue: u64) -> u64 {
         self.power(residue, self.prime - 2)
     }
 
-    /// The inverses of all of them with a single power; `None` if one of them is zero.
+    /// Replaces all residues by their inverses, with a single power; `None` if one of them is zero.
     pub fn invert(&self, residues: &mut [u64]) -> Option<()> {
         let mut product = self.one;
         let mut before = Vec::with_capacity(residues.len());
@@ -225,8 +226,8 @@ pub fn primes_up_to(last: u64) -> Vec<u64> {
     primes
 }
 
-/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^61`,
-/// the first four below `3 215 031 751`.
+/// Whether a number below `2^50` is prime, by the strong test: these bases decide it below `2^61`,
+/// and the first four below `3 215 031 751`.
 fn is_prime(number: u64) -> bool {
     /// Y. Jiang and Y. Deng, Math. Comp. 83 (2014) 2915-2924; the first four: Pomerance, Selfridge
     /// and Wagstaff, Math. Comp. 35 (1980) 1003-1026.

@@ -2,17 +2,17 @@
 //!
 //! The operations of a [`Modulus`], eight at a time: a whole computation runs modulo eight primes
 //! at once, and no number ever moves from one lane to another. The functions of this module are
-//! inlined into functions that are compiled for the processor, in which closures are not: hence
+//! inlined into functions that are compiled for the processor; closures would not be, hence the
 //! loops.
 
 use super::{Arithmetic, Lanes, Modulus, WIDTH, prime_factors};
 
-/// Eight primes, and what a [`Modulus`] keeps beside each.
+/// Eight primes, and the constants that a [`Modulus`] keeps for each.
 #[derive(Clone, Copy, Debug)]
 pub struct Moduli {
     /// The primes.
     pub prime: Lanes,
-    /// One.
+    /// One in Montgomery's form.
     pub one: Lanes,
     pub(super) square: Lanes,
     pub(super) inverse: Lanes,
@@ -36,7 +36,7 @@ impl Moduli {
     ///
     /// # Panics
     ///
-    /// Without any.
+    /// If there is no prime.
     pub fn from_primes(moduli: &[Modulus]) -> Self {
         let last = moduli.len() - 1;
         let lanes = |part: fn(&Modulus) -> u64| {
@@ -62,19 +62,19 @@ pub struct Residues<A> {
 }
 
 impl<A: Arithmetic> Residues<A> {
-    /// One.
+    /// One in Montgomery's form.
     #[inline(always)]
     pub fn one(&self) -> Lanes {
         self.moduli.one
     }
 
-    /// The sum.
+    /// The sum of residues.
     #[inline(always)]
     pub fn sum(&self, left: Lanes, right: Lanes) -> Lanes {
         self.arithmetic.sum(&left, &right, &self.moduli)
     }
 
-    /// The difference.
+    /// The difference of residues.
     #[inline(always)]
     pub fn difference(&self, left: Lanes, right: Lanes) -> Lanes {
         self.arithmetic.difference(&left, &right, &self.moduli)
@@ -86,7 +86,7 @@ impl<A: Arithmetic> Residues<A> {
         self.difference(Lanes::default(), residue)
     }
 
-    /// The product.
+    /// The product of residues.
     #[inline(always)]
     pub fn product(&self, left: Lanes, right: Lanes) -> Lanes {
         self.arithmetic.product(&left, &right, &self.moduli)
@@ -110,7 +110,7 @@ impl<A: Arithmetic> Residues<A> {
         self.product(residues, Lanes::all(1))
     }
 
-    /// Powers of each, with its own exponent.
+    /// The powers of residues, each with its own exponent.
     #[inline(always)]
     pub fn power(&self, base: Lanes, exponents: Lanes) -> Lanes {
         let mut any = 0;
@@ -130,7 +130,7 @@ impl<A: Arithmetic> Residues<A> {
         power
     }
 
-    /// The inverses, by Fermat; zero of zero.
+    /// The inverses, by Fermat's theorem; zero for zero.
     #[inline(always)]
     pub fn inverse(&self, residues: Lanes) -> Lanes {
         let mut exponents = self.moduli.prime;
@@ -140,11 +140,11 @@ impl<A: Arithmetic> Residues<A> {
         self.power(residues, exponents)
     }
 
-    /// The inverses of all of them with a single power; `None` if one of them is zero modulo some
-    /// prime.
+    /// Replaces all residues by their inverses, with a single power; `None` if one of them is zero
+    /// modulo some prime.
     #[inline(always)]
     pub fn invert(&self, residues: &mut [Lanes]) -> Option<()> {
-        /// Products that do not wait for each other.
+        /// Number of independent chains of products, which do not wait for each other.
         const CHAINS: usize = 4;
         let one = self.one();
         let mut products = [one; CHAINS];
@@ -177,12 +177,12 @@ impl<A: Arithmetic> Residues<A> {
         Some(())
     }
 
-    /// `1, base, base^2, ...`, so many of them.
+    /// Returns `count` powers `1, base, base^2, ...`.
     #[inline(always)]
     pub fn powers(&self, base: Lanes, count: usize) -> Vec<Lanes> {
         let mut powers = vec![self.one(); count];
         let mut next = base;
-        // Twice as many each time: none has to wait for the one before it.
+        // Their number doubles each time, so that no power has to wait for the one before it.
         let mut known = 1;
         while known < count {
             for place in 0..known.min(count - known) {
@@ -194,11 +194,11 @@ impl<A: Arithmetic> Residues<A> {
         powers
     }
 
-    /// Residues whose powers run through `order` values before they are one again; `None` if
-    /// `order` does not divide every prime minus one.
+    /// Returns primitive roots of unity of this order; `None` if `order` does not divide every
+    /// prime minus one.
     #[inline(always)]
     pub fn root_of_unity(&self, order: u64) -> Option<Lanes> {
-        /// A generator is among the first few numbers.
+        /// The largest base that is tried; one of the first few numbers leads to a primitive root.
         const LARGEST_BASE: usize = 1000;
         let mut exponents = self.moduli.prime;
         for exponent in &mut exponents.0 {

@@ -1,6 +1,5 @@
-//! Sums of products by the vectors of 256 binary digits that x86-64 processors have with AVX2: 32
-//! by 32 digits in words of 64, as in the [portable](super::portable) arithmetic, whose primes
-//! these are.
+//! Sums of products by the 256-bit vectors of x86-64 processors with AVX2: 32 by 32 bits in words
+//! of 64 bits, as in the [portable](super::portable) arithmetic, with the same primes.
 
 use std::arch::x86_64::__m256i as Register;
 
@@ -9,14 +8,14 @@ use pulp::x86::V3;
 
 use super::{Arithmetic, Lanes, Moduli};
 
-/// A processor with AVX2; that there is one is found out at run time.
+/// A processor with AVX2, detected at run time.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow(V3);
 
 /// Eight words.
 type EightWords = [Register; 2];
 
-/// Four primes, and what reduces modulo them.
+/// Four primes, and the constants that reduce modulo them.
 #[derive(Clone, Copy)]
 struct FourPrimes {
     prime: Register,
@@ -24,7 +23,8 @@ struct FourPrimes {
     quotient: Register,
 }
 
-/// Products not carried yet, and the sums of the low and of the high halves of those that are.
+/// The sum of the products not carried yet, and the sums of the low and of the high halves of those
+/// that are.
 #[derive(Clone, Copy)]
 pub struct NarrowSum {
     recent: EightWords,
@@ -33,7 +33,7 @@ pub struct NarrowSum {
 }
 
 impl Narrow {
-    /// `None` if the processor has no such vectors.
+    /// Detects AVX2; `None` if the processor does not have it.
     pub fn try_new() -> Option<Self> {
         V3::try_new().map(Self)
     }
@@ -92,13 +92,13 @@ impl Narrow {
     fn reduce_four(self, low: Register, high: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;
         let prime = four.prime;
-        // As in the wide arithmetic, with a high part below 2^42.
+        // The steps are those of the wide arithmetic, with a high part below 2^42.
         let high = v._mm256_add_epi64(high, v._mm256_srli_epi64::<32>(low));
         let guess = v._mm256_mul_epu32(v._mm256_srli_epi64::<10>(high), four.quotient);
         let multiple = v._mm256_mul_epu32(v._mm256_srli_epi64::<47>(guess), prime);
         let high = v._mm256_sub_epi64(high, multiple);
         let residue = v._mm256_sub_epi64(v._mm256_add_epi64(high, prime), self.taken(low, four));
-        // Half words are compared: of a difference below zero both halves are large.
+        // Half words are compared: both halves of a difference below zero are large.
         let once = v._mm256_min_epu32(residue, v._mm256_sub_epi64(residue, prime));
         v._mm256_min_epu32(once, v._mm256_sub_epi64(once, prime))
     }
@@ -109,12 +109,12 @@ impl Narrow {
         let v = self.0.avx2;
         let residue =
             v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, four));
-        // Below zero both halves are large, and the prime more than the residue above it makes up
-        // for that.
+        // Both halves of a residue below zero are large, so that the minimum is the one to which
+        // the prime was added.
         v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
     }
 
-    /// The number that Montgomery's step subtracts from the high part.
+    /// Returns the number that Montgomery's step subtracts from the high part.
     #[inline(always)]
     fn taken(self, low: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;
@@ -127,7 +127,7 @@ impl Arithmetic for Narrow {
     const BITS: u32 = 30;
     const RADIX: u32 = 32;
     const DIGIT: u32 = 30;
-    // Sixteen products of 60 digits fill a word.
+    // Sixteen products of 60 bits fill a word.
     const RUN: usize = 16;
     type Sum = NarrowSum;
 

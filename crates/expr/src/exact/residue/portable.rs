@@ -1,5 +1,5 @@
-//! Sums of products on any processor: residues of 30 binary digits, multiplied in words of 64,
-//! which compilers turn into the vector instructions that there are.
+//! Sums of products on any processor: residues of 30 bits, multiplied in words of 64 bits, which
+//! compilers turn into the vector instructions of the processor.
 
 use pulp::NullaryFnOnce;
 #[cfg(not(target_arch = "x86_64"))]
@@ -11,7 +11,8 @@ use super::{Arithmetic, Lanes, Moduli, WIDTH};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Portable;
 
-/// Products not carried yet, and the sums of the low and of the high halves of those that are.
+/// The sum of the products not carried yet, and the sums of the low and of the high halves of those
+/// that are.
 #[derive(Clone, Copy)]
 pub struct PortableSum {
     recent: Lanes,
@@ -19,7 +20,7 @@ pub struct PortableSum {
     high: Lanes,
 }
 
-/// The digits that a multiplication of half words sees.
+/// The lower half of a word, which is all that a multiplication of half words uses.
 #[inline(always)]
 fn half(word: u64) -> u64 {
     word & 0xffff_ffff
@@ -29,7 +30,7 @@ impl Arithmetic for Portable {
     const BITS: u32 = 30;
     const RADIX: u32 = 32;
     const DIGIT: u32 = 30;
-    // Sixteen products of 60 digits fill a word.
+    // Sixteen products of 60 bits fill a word.
     const RUN: usize = 16;
     type Sum = PortableSum;
 
@@ -87,7 +88,7 @@ impl Arithmetic for Portable {
         let mut residues = Lanes::default();
         for k in 0..WIDTH {
             let prime = moduli.prime.0[k];
-            // As in the wide arithmetic, with a high part below 2^42.
+            // The steps are those of the wide arithmetic, with a high part below 2^42.
             let low = half(sum.low.0[k]);
             let high = sum.high.0[k].wrapping_add(sum.low.0[k] >> 32);
             let guess = half(high >> 10).wrapping_mul(half(moduli.quotient.0[k])) >> 47;
@@ -120,8 +121,8 @@ impl Arithmetic for Portable {
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
-        // On x86-64 the arithmetics with more than the least vector instructions are others, so
-        // nothing is chosen here.
+        // On x86-64 the other arithmetics use the better vector instructions, so there is nothing
+        // to choose here.
         #[cfg(target_arch = "x86_64")]
         return function.call();
         #[cfg(not(target_arch = "x86_64"))]
@@ -129,7 +130,7 @@ impl Arithmetic for Portable {
     }
 }
 
-/// A function for every set of vector instructions.
+/// A function compiled for every set of vector instructions.
 #[cfg(not(target_arch = "x86_64"))]
 struct Vectorized<F>(F);
 

@@ -1,9 +1,9 @@
-//! Whole numbers from their residues: the Chinese remainder theorem, for many numbers over the same
-//! primes.
+//! Reconstruction of whole numbers from their residues by the Chinese remainder theorem, for many
+//! numbers over the same primes.
 //!
 //! The cofactors `M/p_i` are cut into digits once; a number is then a sum of digits times residues,
-//! which costs (primes)^2 word products. Eight numbers are put together side by side, which runs as
-//! fast as the recursion that gave the residues. A number nearer to zero than half of `M` is meant.
+//! which costs (primes)^2 word products. Eight numbers are reconstructed side by side, as fast as
+//! the recursion that gave the residues. The result is the number between `-M/2` and `M/2`.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
@@ -13,13 +13,14 @@ use super::sums::multiples;
 use super::{Arithmetic, Lanes, Moduli, Modulus, WIDTH};
 use crate::exact::Integer;
 
-/// Primes, and what brings residues modulo all of them together.
+/// Primes, and the constants that reconstruct a number from its residues modulo all of them.
 pub struct Remainders<A> {
     arithmetic: A,
     moduli: Vec<Modulus>,
-    /// The digits of `M/p_i`, eight at a time: of all primes the first eight, then of all the next.
+    /// The digits of `M/p_i`, eight at a time: the first eight for all primes, then the next eight
+    /// for all.
     cofactors: Vec<Lanes>,
-    /// The digits of `M`, as many as those.
+    /// The digits of `M`, as many as those of a cofactor.
     product: Vec<u64>,
     /// `(M/p_i)^-1` modulo `p_i`.
     inverses: Vec<u64>,
@@ -59,7 +60,8 @@ impl<A: Arithmetic> Remainders<A> {
         }
     }
 
-    /// Weights of plain residues before they are [lifted](Self::lift), times `factor`.
+    /// Returns the weights by which plain residues are multiplied when they are
+    /// [lifted](Self::lift): the inverse cofactors times `factor`.
     pub fn weights<'a>(
         &'a self,
         factor: impl Fn(&Modulus) -> u64 + 'a,
@@ -68,8 +70,8 @@ impl<A: Arithmetic> Remainders<A> {
         pairs.map(move |(modulus, inverse)| modulus.product(factor(modulus), *inverse))
     }
 
-    /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights);
-    /// the residues are used up.
+    /// Reconstructs eight numbers from their plain residues modulo each prime and the
+    /// [weights](Self::weights); the residues are overwritten.
     pub fn lift(
         &self,
         residues: &mut [Lanes],
@@ -80,7 +82,7 @@ impl<A: Arithmetic> Remainders<A> {
         self.arithmetic.vectorize(LiftRemainders(self, residues, weights, numbers));
     }
 
-    /// One number, from its plain residues.
+    /// Reconstructs one number from its plain residues.
     pub fn lift_one(&self, residues: impl Iterator<Item = u64>, weights: &[u64]) -> Integer {
         let mut residues: Vec<Lanes> = residues.map(Lanes::all).collect();
         let mut numbers = ReconstructedIntegers::default();
@@ -101,7 +103,7 @@ impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
 
     #[inline(always)]
     fn call(self) {
-        /// Digits whose sums are formed together: a residue is read once for all of them.
+        /// Number of digits whose sums are formed together: a residue is read once for all of them.
         const TOGETHER: usize = 4;
         let Self(remainders, residues, weights, numbers) = self;
         let arithmetic = remainders.arithmetic;
@@ -114,8 +116,8 @@ impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
                 *quotient += small_to_f64(residue) * reciprocal;
             }
         }
-        // Far from the middle between two integers where the number is small beside M, as it is
-        // where there are primes enough.
+        // The quotient q is the nearest integer. Rounding errors cannot change it if the number is
+        // small compared with M, as it is with enough primes.
         let mut times = Lanes::default();
         for (times, quotient) in times.0.iter_mut().zip(quotients) {
             *times = (quotient + 0.5) as u64;
@@ -136,7 +138,7 @@ impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
                         *sum = arithmetic.add_multiple(*sum, *digit, residue);
                     }
                 }
-                // A loop, for a closure would not be compiled for this processor.
+                // This is a loop because a closure would not be compiled for this processor.
                 for sum in &mut sums {
                     *sum = arithmetic.carry(*sum);
                 }
@@ -158,7 +160,8 @@ impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
     }
 }
 
-/// A whole number below `2^52`, without the instruction that not every processor has for words.
+/// Converts a whole number below `2^52`, without an instruction for words that not every processor
+/// has.
 #[inline(always)]
 fn small_to_f64(number: u64) -> f64 {
     const SHIFT: f64 = (1_u64 << 52) as f64;
@@ -177,8 +180,8 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
     (0..count).map(digit).collect()
 }
 
-/// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum
-/// with a power of a digit.
+/// Eight reconstructed integers, digit by digit; a negative one is kept as its complement, the sum
+/// with the power of the radix above its highest digit.
 #[derive(Clone, Debug, Default)]
 pub struct ReconstructedIntegers {
     digits: Vec<Lanes>,
@@ -186,8 +189,8 @@ pub struct ReconstructedIntegers {
 }
 
 impl ReconstructedIntegers {
-    /// Their plain residues; `powers` are the residues of the powers of a
-    /// [digit](Arithmetic::DIGIT), one more than there are digits.
+    /// Returns the plain residues of the eight integers; `powers` are the residues of the powers of
+    /// `2^DIGIT` ([`Arithmetic::DIGIT`]), one more than there are digits.
     pub fn residues<A: Arithmetic>(
         &self,
         arithmetic: A,
@@ -216,7 +219,7 @@ impl ReconstructedIntegers {
         residues
     }
 
-    /// One of them.
+    /// Returns the integer in this lane.
     pub fn integer<A: Arithmetic>(&self, place: usize) -> Integer {
         let mask = (1_u64 << A::DIGIT) - 1;
         let negative = self.negative[place];
@@ -243,9 +246,10 @@ impl ReconstructedIntegers {
     }
 }
 
-/// The fraction with this residue modulo `modulus`, between its two halves or positive, whose
-/// numerator and denominator together have at least 24 binary digits fewer than the modulus, so
-/// that another fraction with the same residue would be a coincidence; Wang's algorithm.
+/// Returns numerator and denominator of the fraction with this residue modulo `modulus`, by Wang's
+/// algorithm; the residue may be negative. Numerator and denominator together have at least 24 bits
+/// fewer than the modulus, so that another such fraction would be a coincidence; `None` if there is
+/// none.
 pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     const ROOM: u64 = 24;
     let bound = modulus.bits() / 2;

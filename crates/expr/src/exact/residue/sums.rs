@@ -1,33 +1,34 @@
-//! The sums of products that a series recursion consists of, eight at a time: each function here is
-//! compiled for the processor, or inlined into one that is.
+//! The sums of products of a series recursion, eight at a time: each function here is compiled for
+//! the processor, or inlined into one that is.
 
 use pulp::NullaryFnOnce;
 
 use super::{Arithmetic, Lanes, Residues, Tables};
 
-/// A product of two series, both and the product among the same tables.
+/// A product of two series; the factors and the product are tables of one set.
 #[derive(Clone, Copy, Debug)]
 pub struct Product {
-    /// One factor.
+    /// Index of the table of one factor.
     pub left: usize,
-    /// The other; the same for a square, which costs half.
+    /// Index of the table of the other; the same for a square, which costs half.
     pub right: usize,
     /// Index of the table of the product.
     pub to: usize,
-    /// The highest order that is wanted.
+    /// The highest order that is needed.
     pub needed: usize,
 }
 
-/// Orders whose sums over all orders before them are formed together: a row of the tables is read
-/// once for all of them.
+/// Number of orders whose sums over all orders before them are formed together: a row of the tables
+/// is read once for all of them.
 pub const TOGETHER: usize = 8;
 
-/// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a
-/// factor of those after it. The orders come one after the other, from zero on.
+/// Computes order `order` of every product, `sum_i left_i right_(order-i)`, at each point; a
+/// product may be a factor of the products after it. The orders must be computed one after the
+/// other, from zero on.
 ///
-/// The known part of a product at the orders that follow is kept in its own table, which may hold
-/// only the latest orders: [`TOGETHER`] of them and those that are asked for later. Cost: a
-/// multiplication for each pair of orders and each point, half of them for a square.
+/// The part of a product that is known in advance at the following orders is kept in its own table,
+/// which may hold only the latest orders: [`TOGETHER`] of them and those that are needed later.
+/// Cost: a multiplication for each pair of orders and each point, half of them for a square.
 #[inline(always)]
 pub fn convolve<A: Arithmetic>(
     residues: &Residues<A>,
@@ -42,9 +43,10 @@ pub fn convolve<A: Arithmetic>(
         fn call(self) {
             let Self(residues, products, tables, order) = self;
             let arithmetic = residues.arithmetic;
-            // The first orders are as fast one by one.
+            // At the first orders the sums are too short for blocks to pay.
             let start = if order < 2 * TOGETHER { 0 } else { order - order % TOGETHER };
-            // Point by point: what one product has read, the next finds in the cache.
+            // The loop runs point by point, so that a product finds in the cache what the one
+            // before it has read.
             for point in 0..tables.rows() {
                 if order == start && start > 0 {
                     for product in products {
@@ -86,8 +88,8 @@ pub fn convolve<A: Arithmetic>(
     residues.arithmetic.vectorize(Convolve(residues, products, tables, order));
 }
 
-/// The part of a product at the orders from `start` on in which both factors are of orders before
-/// it.
+/// Computes the part of a product at the orders from `start` on in which both factors have orders
+/// below `start`.
 #[inline(always)]
 fn prepare<A: Arithmetic>(
     residues: &Residues<A>,
@@ -102,7 +104,7 @@ fn prepare<A: Arithmetic>(
         let left = &tables.row(product.left, point)[..start];
         let right = &tables.row(product.right, point)[..start];
         let mut sums = [arithmetic.none(); 4];
-        // Of a square the terms below the middle, twice, and the middle.
+        // A square is twice the sum of the terms below the middle, plus the middle.
         let square = product.left == product.right;
         let end = if square { first / 2 } else { start };
         window(arithmetic, (left, right), (start, first), end, &mut sums);
@@ -144,7 +146,7 @@ fn window<A: Arithmetic>(
         }
         *sum = arithmetic.carry(*sum);
     }
-    // By name, so that they stay in registers.
+    // Sums with a name of their own stay in registers.
     let [mut a, mut b, mut c, mut d] = *sums;
     let mut from = shared;
     while from < end {
@@ -167,8 +169,9 @@ fn window<A: Arithmetic>(
     *sums = [a, b, c, d];
 }
 
-/// `sum_i left_i right_(n-i)` over so few, twice [those](TOGETHER), that nothing has to be carried:
-/// two sums run beside each other, for each has to wait for itself.
+/// `sum_i left_i right_(n-i)` over at most `2 * TOGETHER` terms, so few that nothing has to be
+/// carried. Two independent sums are computed side by side, so that no addition waits for the one
+/// before it.
 #[inline(always)]
 fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
     const { assert!(2 * TOGETHER <= A::RUN) };
@@ -196,7 +199,7 @@ fn square<A: Arithmetic>(arithmetic: A, orders: &[Lanes]) -> A::Sum {
     }
 }
 
-/// `sum_i left_i right_(n-i)` over as many as there are.
+/// `sum_i left_i right_(n-i)` over all terms.
 #[inline(always)]
 pub fn reversed_products<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
     let mut sum = arithmetic.none();
@@ -206,11 +209,11 @@ pub fn reversed_products<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[
     sum
 }
 
-/// `sum_i factors_i row_i` with factors that are the same for all eight.
+/// `sum_i factors_i row_i`, where each factor is the same in all eight lanes.
 #[inline(always)]
 pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[Lanes]) -> A::Sum {
     let none = arithmetic.none();
-    // By name, so that they stay in registers.
+    // Sums with a name of their own stay in registers.
     let (mut a, mut b) = (none, none);
     for (factors, row) in factors.chunks(2 * A::RUN).zip(row.chunks(2 * A::RUN)) {
         let (mut factors, mut row) = (factors.chunks_exact(2), row.chunks_exact(2));
@@ -232,13 +235,13 @@ pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[La
 pub struct MixtureTerm {
     /// The factor of the series.
     pub factor: Lanes,
-    /// Its place among the tables.
+    /// Index of the table of the series.
     pub table: usize,
     /// The order.
     pub order: usize,
 }
 
-/// `out = sum of factor table_order` over a few parts, at every point.
+/// `out = sum of factor table_order` over a few terms, at every point.
 #[inline(always)]
 pub fn mixture<A: Arithmetic>(
     residues: &Residues<A>,
@@ -260,7 +263,7 @@ pub fn mixture<A: Arithmetic>(
     }
 }
 
-/// One order of a table changed by `factor` times `change`, at every point.
+/// Adds `factor` times `change` to one order of a table, at every point.
 #[inline(always)]
 pub fn vary<A: Arithmetic>(
     residues: &Residues<A>,

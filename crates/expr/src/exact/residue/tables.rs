@@ -2,13 +2,13 @@
 
 use super::Lanes;
 
-/// Several tables with as many rows each, in one memory, where the rows of a point stand one after
-/// the other: what is formed of them at a point is formed of what lies together.
+/// Several tables with the same number of rows in one memory. The rows of all tables for one point
+/// lie next to each other, since they are used together.
 pub struct Tables<'m> {
     rows: usize,
-    /// The distance of the rows of one table.
+    /// The distance between consecutive rows of one table, in entries.
     stride: usize,
-    /// Start of the rows of each table behind those of the tables before it, and their length.
+    /// For each table the offset of its rows within those of a point, and their length.
     places: Vec<(usize, usize)>,
     entries: &'m mut [Lanes],
 }
@@ -36,8 +36,8 @@ impl<'m> Tables<'m> {
         self.rows
     }
 
-    /// Index of an order in the rows of a table; in rows too short for all orders it replaces an
-    /// earlier one.
+    /// Index of an order in the rows of a table; in rows too short for all orders a late order
+    /// takes the place of an earlier one.
     #[inline(always)]
     pub fn offset(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;
@@ -51,14 +51,14 @@ impl<'m> Tables<'m> {
         &self.entries[row.wrapping_mul(self.stride).wrapping_add(begin)..][..length]
     }
 
-    /// One entry, to be written.
+    /// One entry, for writing.
     #[inline(always)]
     pub fn entry(&mut self, table: usize, row: usize, place: usize) -> &mut Lanes {
         let begin = self.places[table].0;
         &mut self.entries[row.wrapping_mul(self.stride).wrapping_add(begin).wrapping_add(place)]
     }
 
-    /// Writes the same place of the first rows.
+    /// Writes the entries at one place of the first rows, one value for each row.
     #[inline(always)]
     pub fn write(&mut self, table: usize, place: usize, values: &[Lanes]) {
         let begin = self.places[table].0;

@@ -8,7 +8,7 @@ use pulp::NullaryFnOnce;
 use super::{Arithmetic, Lanes, Moduli};
 
 pulp::simd_type! {
-    /// A processor with the wide multiply-add; that there is one is found out at run time.
+    /// A processor with the wide multiply-add, detected at run time.
     pub struct Wide {
         sse: "sse",
         sse2: "sse2",
@@ -57,7 +57,7 @@ impl Arithmetic for Wide {
     const BITS: u32 = 50;
     const RADIX: u32 = 52;
     const DIGIT: u32 = 52;
-    // Of the low halves, 2^12 fill a word.
+    // A word has room for 2^12 low halves.
     const RUN: usize = 4095;
     /// The sums of the low halves, and those of the high ones.
     type Sum = (Register, Register);
@@ -99,13 +99,13 @@ impl Arithmetic for Wide {
         let (f, ifma) = (self.avx512f, self.avx512ifma);
         let (low, high) = self.carry(sum);
         let (zero, prime) = (self.all(0), pulp::cast(moduli.prime.0));
-        // The high part, below 2^62, loses a multiple of the prime: what is left is below twice the
-        // prime.
+        // A multiple of the prime is subtracted from the high part, which is below 2^62: the rest
+        // is below twice the prime.
         let upper = f._mm512_srli_epi64::<10>(high);
         let guess = ifma._mm512_madd52hi_epu64(zero, upper, pulp::cast(moduli.quotient.0));
         let multiple = ifma._mm512_madd52lo_epu64(zero, f._mm512_srli_epi64::<35>(guess), prime);
         let high = f._mm512_and_si512(f._mm512_sub_epi64(high, multiple), self.all((1 << 52) - 1));
-        // Montgomery's step: a multiple of the prime with the same low digits is taken away.
+        // Montgomery's step subtracts a multiple of the prime with the same low digits.
         let multiple = ifma._mm512_madd52lo_epu64(zero, low, pulp::cast(moduli.inverse.0));
         let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
         let residue = f._mm512_sub_epi64(f._mm512_add_epi64(high, prime), taken);
@@ -127,7 +127,7 @@ impl Arithmetic for Wide {
     fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
         let f = self.avx512f;
         let sum = f._mm512_add_epi64(pulp::cast(left.0), pulp::cast(right.0));
-        // Below zero a word is large.
+        // A word below zero wraps around to a large one.
         let less = f._mm512_sub_epi64(sum, pulp::cast(moduli.prime.0));
         Lanes(pulp::cast(f._mm512_min_epu64(sum, less)))
     }

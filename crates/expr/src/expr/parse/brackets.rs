@@ -1,8 +1,8 @@
 //! The terms of one side of an equation as they were typed, those inside scaled brackets one by
 //! one: of `2*(x'' + x + 0.5*x')` a message quotes `0.5*x'`.
 //!
-//! A bracket is opened where all else in its term is free of the motion: numbers and parameters.
-//! `-mu*(1 - x^2)*x'` is one term.
+//! A bracket is opened if the rest of its term consists of numbers and parameters;
+//! `-mu*(1 - x^2)*x'` stays one term.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,12 +13,14 @@ use crate::expr::Expr;
 use crate::expr::typed::{BracketContext, TypedTerm};
 use crate::symbol::Symbol;
 
-/// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by
-/// hand has fewer, and reading the text of a bracket again for each level costs little.
+/// The deepest nesting of brackets that are opened, and the largest number of terms of one.
+/// Equations typed by hand have fewer, so that reading the text of a bracket again for each level
+/// costs little.
 const DEEPEST: usize = 8;
 const MOST_TERMS: usize = 256;
 
-/// The terms of one side: for each the value that it adds there and its tokens, signs included.
+/// Returns the typed terms of one side, from the value of each term there and the range of its
+/// tokens, signs included.
 pub(super) fn typed_terms(
     text: &str,
     tokens: &[Token],
@@ -50,8 +52,8 @@ fn typed_term(
     TypedTerm { value, span: span(rest), negative, right, around }
 }
 
-/// The terms inside the one bracket of a term that the rest of it scales; `None` if there is no
-/// such bracket.
+/// Returns the terms inside the bracket of a term whose other factors only scale it; `None` if
+/// there is no such bracket.
 fn opened<'a>(
     text: &str,
     term: &TypedTerm,
@@ -84,8 +86,8 @@ fn opened<'a>(
     let (before, after) = (&text[whole.start..first.start], &text[last.end..whole.end]);
     let scale = parse_expression(&format!("{before}1{after}")).ok()?;
     let scale = if negative { -scale } else { scale };
-    // The factor around the bracket multiplies it, and so does the factor around the term in its
-    // turn.
+    // The scale of a nested bracket is the product of its own factor and that of the bracket around
+    // it.
     let (scale, outer) = match &term.around {
         Some(outer) => (&scale * &outer.scale, (&*outer.opening, &*outer.closing, outer.negative)),
         None => (scale, ("", "", false)),
@@ -111,7 +113,8 @@ fn opened<'a>(
     pieces.collect()
 }
 
-/// The signs before a term or a factor, whether they are a minus together, and what follows them.
+/// Strips the signs before a term or a factor. Returns whether they amount to a minus, and the
+/// tokens after them.
 fn unsigned(tokens: &[Token]) -> (bool, &[Token]) {
     let signs =
         tokens.iter().take_while(|token| matches!(token.kind, TokenKind::Plus | TokenKind::Minus));
@@ -123,8 +126,8 @@ fn span(tokens: &[Token]) -> Range<usize> {
     tokens.first().map_or(0, |token| token.start)..tokens.last().map_or(0, |token| token.end)
 }
 
-/// The ranges between the operators outside all brackets; a sign that stands where an operand is
-/// expected is none.
+/// Returns the ranges between the operators outside all brackets; a sign where an operand is
+/// expected is not an operator.
 fn split(tokens: &[Token], operator: impl Fn(TokenKind) -> bool) -> Vec<Range<usize>> {
     let (mut depth, mut start) = (0_usize, 0);
     let mut ranges = Vec::new();

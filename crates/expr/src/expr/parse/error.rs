@@ -1,4 +1,4 @@
-//! The error of reading, shown under the text.
+//! The syntax error, shown below the line of the text.
 
 use std::fmt;
 use std::ops::Range;
@@ -18,12 +18,12 @@ use super::lexer::printable;
 pub struct ParseError {
     /// The error in one line.
     pub message: String,
-    /// The bytes of the text that are meant.
+    /// The range of the error in the text, in bytes.
     pub span: Range<usize>,
     /// Advice on what to write instead; `None` if there is none.
     pub help: Option<String>,
-    /// The part of the text that can mean one thing only, and its spelling in the grammar; `None` if
-    /// it may mean several.
+    /// The part of the text that has only one possible meaning, and its spelling in the grammar;
+    /// `None` if it is ambiguous.
     pub(super) correction: Option<Box<(Range<usize>, String)>>,
     /// The line of the text, cut to what fits, and a line with carets.
     excerpt: Box<[String; 2]>,
@@ -51,13 +51,12 @@ impl ParseError {
         Self { message: message.to_string(), span, help, correction: None, excerpt }
     }
 
-    /// The error of a text in which this part can only mean what `replacement` says.
+    /// Returns the error with a correction: this part of the text can only mean `replacement`.
     pub(super) fn meaning(self, part: Range<usize>, replacement: impl Into<String>) -> Self {
         Self { correction: Some(Box::new((part, replacement.into()))), ..self }
     }
 
-    /// The error of a text in which the shown place can only mean what `replacement` says, if
-    /// anything.
+    /// Returns the error with a correction of the shown place, if there is a `replacement`.
     pub(super) fn meaning_here(self, replacement: Option<String>) -> Self {
         let place = self.span.clone();
         match replacement {
@@ -67,7 +66,8 @@ impl ParseError {
     }
 }
 
-/// The line around the place, at most about a hundred characters of it, and the carets below.
+/// Returns the line around the place, at most about a hundred characters of it, and a line of
+/// carets below.
 pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
     const WIDTH: usize = 100;
     let start = text[..span.start].rfind(['\n', '\r', '\u{feff}']);
@@ -88,7 +88,7 @@ pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
     [format!("{before}{shown}{after}"), format!("{}{}", " ".repeat(indent), "^".repeat(carets))]
 }
 
-/// The text, cut to what fits into a message.
+/// Returns the text, cut off to fit into a message.
 pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {

@@ -197,7 +197,7 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// The character itself, or `?` for one that a terminal would not simply show.
+/// The character itself, or `?` for a control character or one that a terminal would not show.
 pub(super) fn printable(letter: char) -> char {
     match letter {
         '\t' | '\r' | '\n' => ' ',

@@ -11,7 +11,7 @@ use crate::expr::Function;
 use crate::symbol::{GREEK, Symbol};
 
 /// Whether a name is a letter, Greek ones by name, with or without an index: `x`, `phi`, `q1`,
-/// `x_rel`. What else carries primes is most often a product without its sign.
+/// `x_rel`. Any other name with primes is most often a product without its sign.
 fn is_letter(name: &str) -> bool {
     let stem = match name.split_once('_') {
         Some((stem, _)) => stem,
@@ -21,7 +21,7 @@ fn is_letter(name: &str) -> bool {
 }
 
 impl Parser<'_> {
-    /// The letter that carries primes, after a look at every name.
+    /// Returns the letter that carries primes, after a check of every name.
     pub(super) fn coordinate(&self) -> Result<Symbol, ParseError> {
         let mut primed: Option<(Token, &str)> = None;
         for token in self.tokens.iter().filter(|token| token.kind == TokenKind::Name) {
@@ -68,7 +68,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Derivatives spelt otherwise: `dx/dt`, `d2x/dt2`, `d^2x/dt^2`, `x_dot`, `diff(x, t)`.
+    /// Refuses other spellings of derivatives: `dx/dt`, `d2x/dt2`, `d^2x/dt^2`, `x_dot`,
+    /// `diff(x, t)`.
     pub(super) fn refuse_other_derivatives(&self) -> Result<(), ParseError> {
         let text = |token: &Token| &self.text[token.span()];
         for (index, token) in
@@ -90,7 +91,7 @@ impl Parser<'_> {
             let is_time = |place: usize| {
                 rest.get(place).is_some_and(|token| ["dt", "dt2"].contains(&text(token)))
             };
-            // d, d2x, dx over dt; then d^2 x over dt^2.
+            // The numerator is d, d2x or dx over dt, or else d^2 x over dt^2.
             let numerator = name.strip_prefix('d');
             let (quotient, letter, order) = match kinds.as_slice() {
                 [TokenKind::Name, TokenKind::Divide, TokenKind::Name, ..] if is_time(2) => {
@@ -147,7 +148,7 @@ impl Parser<'_> {
         self.error(span, &message, &help).meaning_here(meaning)
     }
 
-    /// Two operands side by side.
+    /// The error of two operands side by side.
     pub(super) fn missing_sign(&self) -> ParseError {
         let Some(previous) = self.previous() else {
             return self.unexpected();
@@ -192,7 +193,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the operand that ends with this token and the one after it can only be factors.
+    /// Whether the operand that ends with this token and the one after it can only be factors of a
+    /// product.
     fn is_product(&self, left: Token) -> bool {
         let right = self.token();
         let [left_text, right_text] = [left, right].map(|token| &self.text[token.span()]);
@@ -247,7 +249,8 @@ impl Parser<'_> {
         }
     }
 
-    /// `sin^2(x)`, the square of the sine; not `sin^-1(x)`, which is its inverse or its reciprocal.
+    /// Corrects `sin^2(x)`, the square of the sine; not `sin^-1(x)`, which may be the inverse or
+    /// the reciprocal.
     fn raised_call(&self, name: Token) -> Option<(Range<usize>, String)> {
         let [_, exponent, open] = self.tokens.get(self.next..self.next + 3)? else {
             return None;
@@ -261,8 +264,8 @@ impl Parser<'_> {
         Some((name.start..close.end, format!("{name_text}{argument}^{exponent}")))
     }
 
-    /// The meaning of a name before a parenthesis that is not a function: the coordinate at the time t,
-    /// or a factor. `None` if it may be either a factor or a function.
+    /// The meaning of a name before a parenthesis that is not a function: the coordinate at the
+    /// time t, or a factor. `None` if it may be either a factor or a function.
     fn called_name(&self, token: Token) -> Option<(Range<usize>, String)> {
         let name = &self.text[token.span()];
         let bare = name.trim_end_matches('\'');
@@ -286,7 +289,7 @@ impl Parser<'_> {
             .iter()
             .skip(1)
             .any(|token| matches!(token.kind, TokenKind::Plus | TokenKind::Minus));
-        // Names of functions that an equation of motion is driven or stepped by.
+        // Usual names of functions in an equation of motion, such as excitations.
         const FUNCTIONS: [&str; 10] = ["f", "g", "h", "F", "G", "u", "U", "d", "delta", "theta"];
         let is_parameter = (is_letter(bare) || bare == "eps" || bare == "pi")
             && !FUNCTIONS.contains(&bare)
@@ -295,7 +298,7 @@ impl Parser<'_> {
         (is_coordinate || is_parameter).then(|| (token.end..token.end, "*".to_owned()))
     }
 
-    /// A name before a parenthesis that is no function.
+    /// The error of a name before a parenthesis that is not a function.
     pub(super) fn unknown_function(&self, token: Token) -> ParseError {
         let error = self.without_such_function(token);
         match self.called_name(token) {
@@ -343,7 +346,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A token that nothing can continue with.
+    /// The error of a token that cannot continue the text.
     pub(super) fn unexpected(&self) -> ParseError {
         let token = self.token();
         match token.kind {
@@ -410,7 +413,7 @@ fn matching_open(tokens: &[Token], close: usize) -> Option<usize> {
     None
 }
 
-/// `x_dot`, `xdot`, `x_ddot`: the letter and the order of the derivative.
+/// Reads `x_dot`, `xdot`, `x_ddot`: returns the letter and the order of the derivative.
 fn dotted(name: &str) -> Option<(&str, usize)> {
     let letter = name.get(..1)?;
     match name.get(1..)?.trim_start_matches('_') {
@@ -420,7 +423,7 @@ fn dotted(name: &str) -> Option<(&str, usize)> {
     }
 }
 
-/// The function that has this name, in small letters, elsewhere.
+/// The function that other programs call by this name, given in small letters.
 fn other_name(name: &str) -> Option<&'static str> {
     Some(match name {
         "ln" => "log",

@@ -1,10 +1,10 @@
 //! Notations of print and of other programs, put into the grammar where they mean one thing only:
 //! `ẍ + 2ζẋ + ω₀²x = 0` is `x'' + 2*zeta*x' + omega0^2*x = 0`.
 //!
-//! Every error of reading knows what its place means, where that can be one thing only. The text is
-//! read, corrected at the first such error, and read again, until there is none. What may mean two
-//! things stays an error: `k(x)` is a product or a function, `sin^-1(x)` an inverse or a
-//! reciprocal, `2e` a product or half an exponent.
+//! A syntax error knows the meaning of its place, if there is only one. The text is read, corrected
+//! at the first such error, and read again, until there is none. An ambiguous notation stays an
+//! error: `k(x)` is a product or a function, `sin^-1(x)` an inverse or a reciprocal, `2e` a product
+//! or half an exponent.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -13,14 +13,13 @@ use super::error::ParseError;
 use super::{parse_equation, parse_expression};
 use crate::expr::Function;
 
-/// The most corrections of one text.
-const MOST_CORRECTIONS: usize = 256;
-/// The longest text that is corrected, in bytes: each correction reads it anew.
+/// The longest text that is corrected, in bytes, and the largest number of corrections, each of
+/// which reads it anew.
 const LONGEST: usize = 4096;
 
 /// Returns an equation of motion with the notations of print in the spelling of the grammar; the
-/// text itself where there are none. A text that is no equation comes back with an error at another
-/// place or the same one.
+/// text itself if there are none. A text that cannot be made an equation is returned as far as it
+/// could be corrected.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -34,7 +33,7 @@ pub fn equation_in_grammar(text: &str) -> Cow<'_, str> {
 }
 
 /// Returns an expression with the notations of print in the spelling of the grammar; the text
-/// itself where there are none.
+/// itself if there are none.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -49,7 +48,7 @@ pub fn expression_in_grammar(text: &str) -> Cow<'_, str> {
 
 fn corrected<'a>(text: &'a str, error: impl Fn(&str) -> Option<ParseError>) -> Cow<'a, str> {
     let mut corrected = Cow::Borrowed(text);
-    for _ in 0..MOST_CORRECTIONS {
+    for _ in 0..LONGEST {
         let found = error(&corrected).and_then(|error| error.correction);
         match found {
             Some(correction) if corrected.len() <= LONGEST => {
@@ -139,8 +138,8 @@ pub(super) fn help(letter: char) -> String {
     }
 }
 
-/// The part of the text that a character outside of the grammar stands for, and its spelling; `None`
-/// if it may mean several things at its place. Everything left of it is in the grammar.
+/// The part of the text that belongs to a character outside the grammar, and its spelling; `None`
+/// if it is ambiguous. Everything left of it is in the grammar.
 pub(super) fn meaning(text: &str, start: usize, letter: char) -> Option<(Range<usize>, String)> {
     let end = start + letter.len_utf8();
     let (before, after) = (&text[..start], &text[end..]);
@@ -158,7 +157,7 @@ pub(super) fn meaning(text: &str, start: usize, letter: char) -> Option<(Range<u
             match exponent.strip_prefix('-') {
                 _ if !named => None,
                 None => Some((start..run, format!("^{exponent}"))),
-                // Of a function it would be its inverse to some, its reciprocal to others.
+                // On a function it could mean the inverse or the reciprocal.
                 Some(_) if Function::from_name(last_name(before)).is_some() => None,
                 Some(digits) if digits.parse::<u32>().is_ok() => {
                     Some((start..run, format!("^(-{digits})")))
@@ -173,7 +172,8 @@ pub(super) fn meaning(text: &str, start: usize, letter: char) -> Option<(Range<u
             if !spelling.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
                 return here(spelling);
             }
-            // A letter: what stands directly beside it is another factor, unless it is its index.
+            // The character is a letter: an adjoining letter or digit is another factor, unless it
+            // is its index.
             let times_before = if last_name(before).is_empty() { "" } else { "*" };
             let times_after = match after.chars().next() {
                 Some(next) if next.is_ascii_alphabetic() => match is_factor(after) {
@@ -208,15 +208,16 @@ fn last_name(text: &str) -> &str {
     }
 }
 
-/// Whether a text begins with a usual coordinate or a function, which are no index of the letter
-/// before them; `n` may be one.
+/// Whether a text begins with a usual coordinate or a function, which cannot be an index of the
+/// letter before it; `n` can be one.
 fn is_factor(text: &str) -> bool {
     let length = text.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(text.len());
     let name = &text[..length];
     ["x", "y", "z", "q", "u"].contains(&name) || Function::from_name(name).is_some()
 }
 
-/// `√(...)`, `√2`, `√x`: the length of what stands below the root, and the call.
+/// Reads the operand after a root sign, `√(...)`, `√2` or `√x`: returns its length and the call of
+/// `sqrt`.
 fn root(after: &str) -> Option<(usize, String)> {
     if after.starts_with('(') {
         return Some((0, "sqrt".to_owned()));

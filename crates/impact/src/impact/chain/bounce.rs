@@ -11,11 +11,11 @@
 //! tau_0 = 2 int dy/sqrt(1 - y^(5/2)),  tau_1 = dtau/dp at 0,  tau_0 + tau_1 + tau_2 = 4
 //! ```
 //!
-//! The last is exact at both ends and within 1.3 % between them, where the contact is a graze.
-//! There the damping of the contact counts for less: lambda v in the first line is taken in
+//! The duration is exact at p = 0 and p = 1 and within 1.3 % between them, where the contact is a
+//! graze. There the damping of the contact counts for less: lambda v in the first line is taken in
 //! proportion to its work along the undamped contact, (1 - p) i(p)/i(0) with i(p) from int y^(3/2)
-//! sqrt(1 - p y - (1 - p) y^(5/2)) dy, a straight line between its ends. What viscous damping and
-//! dry friction take while in contact is their work along the undamped contact too.
+//! sqrt(1 - p y - (1 - p) y^(5/2)) dy, a straight line between its ends. The losses by viscous
+//! damping and dry friction in contact are also their work along the undamped contact.
 //!
 //! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440; see [`hunt_crossley`].)
 
@@ -63,18 +63,18 @@ static NUMBERS: LazyLock<ContactConstants> = LazyLock::new(|| {
 });
 
 /// The share of the force of the swing in holding the pendulum against the barrier beyond which a
-/// contact is no bounce: there it leans.
+/// contact is not a bounce, because the pendulum leans on the barrier.
 const LEANS: f64 = -0.3;
 
 /// The greatest depth, rad, at which the force of the swing may count as constant.
 const DEEPEST: f64 = 0.3;
 
-/// A barrier and what counts while it is touched.
+/// A barrier with the numbers that determine its contacts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChainBarrier {
     /// The side of the barrier.
     pub side: Side,
-    /// Its place, positive towards it from the bottom.
+    /// Its angle from the bottom, positive on its own side.
     pub spot: SwingAngle,
     gamma: f64,
     /// gamma^(-2/5).
@@ -127,7 +127,8 @@ impl ChainBarrier {
             return None;
         }
         let ContactConstants { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
-        // The less the barrier takes of the work, the less is lost in it.
+        // lambda v counts in proportion to the work of the damping, which is less if the force of
+        // the swing takes a share.
         let loss = hunt_crossley::loss(
             product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),
         );
@@ -146,8 +147,8 @@ impl ChainBarrier {
 
     /// The depth at which the barrier and the force of the swing have done this work.
     fn depth(&self, work: f64) -> f64 {
-        // Without the force of the swing; with it Newton's steps come down on the root, which is
-        // one of a convex function.
+        // The start neglects the force of the swing; the function is convex, so that Newton's steps
+        // then descend to the root.
         let mut depth = self.softness * (2.5 * work).powf(0.4);
         if self.push == 0.0 {
             return depth;
@@ -164,5 +165,5 @@ impl ChainBarrier {
     }
 }
 
-/// Newton doubles the digits each time; a graze needs some steps to come down.
+/// Largest number of Newton's steps: each doubles the digits, but a graze needs some steps before.
 const MOST_STEPS: usize = 60;

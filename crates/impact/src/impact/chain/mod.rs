@@ -14,12 +14,12 @@
 //! ```
 //!
 //! Before and after a reference energy the stretches mirror each other. Damping of the opposite
-//! sign runs the motion backwards, so errors of even order cancel: one swing errs by the third
-//! power of zeta T.
+//! sign runs the motion backwards, so errors of even order cancel: the error of one swing is of the
+//! third power of zeta T.
 //!
 //! In: a model, a start, settings. Out: a [`Simulation`] like any other, whose pieces are
-//! [`ClosedForm`]s. What has none is integrated, and said: from there on, where the pendulum comes
-//! to lean on a barrier, goes deep into a soft one, or sticks on its way.
+//! [`ClosedForm`]s. Where the pendulum leans on a barrier, goes deep into a soft one, or sticks on
+//! its way, no closed form exists: from there on the motion is integrated, and the result says so.
 
 mod bounce;
 mod swing;
@@ -155,14 +155,14 @@ struct Leg {
     length: f64,
     /// Delay of the arrival by damping at the same phase, to first order.
     lag: f64,
-    /// The part of that which is dry friction's.
+    /// The part of the delay that is due to dry friction.
     rubbed: f64,
     /// The sine and cosine of the phase at its end away from the turning point.
     phase: (f64, f64),
 }
 
 impl Leg {
-    /// A leg of the free swing, of so much time and area, on which friction does nothing.
+    /// A leg of the free swing without friction, with this time and area.
     fn free(time: f64, area: f64) -> Self {
         Self { time, area, length: 0.0, lag: 0.0, rubbed: 0.0, phase: (0.0, 1.0) }
     }
@@ -176,8 +176,8 @@ enum StretchKind {
     FromTurn,
 }
 
-/// The reference energy of the last stretch of a kind in parts of that before it, and by how much
-/// that changed: the next one is near.
+/// The ratio of the reference energies of the last two stretches of a kind, and its change, from
+/// which the next one is estimated.
 #[derive(Debug, Clone, Copy)]
 struct EnergyRatio {
     ratio: f64,
@@ -254,7 +254,7 @@ impl<'a> Chain<'a> {
         self.model.alpha > 0.0 && x.sin().abs() <= self.model.alpha
     }
 
-    /// E_before - E of a leg, and how fast that grows with E.
+    /// E_before - E of a leg, and its derivative with respect to E.
     fn above(&self, leg: &Leg, swing: &UndampedSwing) -> (f64, f64) {
         let Model { zeta, alpha, .. } = *self.model;
         let growth = (2.0 * zeta * (leg.time - leg.lag)).exp_m1();
@@ -273,8 +273,8 @@ impl<'a> Chain<'a> {
             - leg.area / leg.time * (-2.0 * self.model.zeta * (leg.time + leg.lag)).exp_m1()
     }
 
-    /// The swing from whose reference energy this leg, run backwards, leads to this energy; nothing
-    /// where there is none.
+    /// The swing from whose reference energy this leg, run backwards, leads to this energy; `None`
+    /// if there is none.
     fn reference(
         &mut self,
         energy: f64,
@@ -301,8 +301,8 @@ impl<'a> Chain<'a> {
                 return None;
             }
             if error.abs() <= NEAR * energy {
-                // The areas grow with the energy as the times; what is left out is of the order of
-                // the square.
+                // The derivative of an area with respect to the energy is the time; the neglected
+                // terms are of second order.
                 swing.energy = reference;
                 swing.quarter.area -= swing.quarter.time * step;
                 leg.area -= leg.time * step;
@@ -362,7 +362,7 @@ impl<'a> Chain<'a> {
             });
             let leg = leg(self.model, &swing, &ahead.spot, reach);
             if !is_positive(leg.time) {
-                // It rests on the barrier and is pressed into it.
+                // The pendulum rests on the barrier and is pressed into it.
                 return self.integrate();
             }
             let arrived = energy - self.below(&leg);
@@ -431,7 +431,7 @@ impl<'a> Chain<'a> {
             false => turn_after_friction(SwingAngle::turn(before.energy).x, self.model.alpha),
         };
         if angle <= 0.0 {
-            // It comes to rest before the bottom, where friction holds it.
+            // The pendulum comes to rest before the bottom, where friction holds it.
             return None;
         }
         let after = UndampedSwing::new(SwingAngle::new(angle).energy);
@@ -439,7 +439,7 @@ impl<'a> Chain<'a> {
         if let Some(ahead) = self.barrier(to)
             && turn.x > ahead.spot.x
         {
-            // It was found not to get there.
+            // The swing does not reach the barrier.
             turn = ahead.spot;
         }
         if !is_positive(turn.energy) {
@@ -486,8 +486,8 @@ impl<'a> Chain<'a> {
         let lag = leg.lag - leg.rubbed + self.rub_lag(&back, energy, -1.0);
         let time = leg.time - lag + Self::later(&swing, leg.phase, &back, energy);
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
-        // The way back to a barrier that was left is the way there; a start between the barriers is
-        // not on one.
+        // The way back to a barrier that was left mirrors the way from it; a start between the
+        // barriers has no such way.
         let leaves = |barrier: &ChainBarrier| barrier.spot == back;
         let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
             let reach = Stretch {
@@ -570,7 +570,7 @@ impl<'a> Chain<'a> {
         self.advance(time, Regime::Free, || closed_form_between(energies, time, to, places));
     }
 
-    /// The clock goes on by so much, or to the end of the duration.
+    /// Advances the clock by `time`, or to the end of the duration.
     fn advance(&mut self, time: f64, regime: Regime, form: impl Fn() -> ClosedForm) {
         let (start, end) = (self.t, (self.t + time).min(self.settings.duration));
         if self.settings.keep_path && end > start {
@@ -727,8 +727,8 @@ fn closed_form_between(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]
     let mean = (moduli[0] * moduli[1]).sqrt();
     let parameter = mean * mean;
     let middle = UndampedSwing::new(2.0 * parameter);
-    // The time from the bottom of the swing of mean energy to the phase that the place has in its
-    // own.
+    // The time from the bottom, in the swing of mean energy, to the phase that the place has in the
+    // swing of its own energy.
     let phase = |energy: f64, place: f64| {
         let (sine, _) = SwingAngle::new(place).phase(energy);
         middle.stretch_to(&SwingAngle::new(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
@@ -744,14 +744,14 @@ fn closed_form_between(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]
     }
 }
 
-/// Impacts that there is room for from the beginning.
+/// Number of impacts for which memory is reserved.
 const MANY: usize = 32;
 
 /// Relative error of the reference energy up to which one more step needs no further elliptic
 /// integral.
 const NEAR: f64 = 5e-4;
 
-/// The most turns of an iteration that closes in within a few.
+/// Largest number of iterations; a few are enough.
 const MOST_NEWTON: usize = 60;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The free swing of the pendulum in elliptic integrals: how long it takes from the bottom to an
-//! angle, and the area it leaves there in the phase plane.
+//! The free swing of the pendulum in elliptic integrals: the time from the bottom to an angle, and
+//! the area in the phase plane up to there.
 //!
 //! ```text
 //! x'^2/2 + 2 sin^2(x/2) = E = 2 m,   sin(x/2) = sqrt(m) sin phi,   x' = 2 sqrt(m) cos phi
@@ -81,8 +81,8 @@ impl UndampedSwing {
         let parameter = 0.5 * energy;
         let time = ellpk(1.0 - parameter);
         let area = match parameter < SMALL {
-            // The difference has lost the digits: pi m 2F1(1/2, 1/2; 2; m) instead (DLMF
-            // 19.5.1, 19.5.2).
+            // The difference loses its digits for small m: it is computed as pi m 2F1(1/2, 1/2; 2;
+            // m) (DLMF 19.5.1, 19.5.2).
             true => {
                 let series = 1.0
                     + parameter * (0.125 + parameter * (3.0 / 64.0 + parameter * 25.0 / 1024.0));
@@ -114,8 +114,8 @@ impl UndampedSwing {
 fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
     let (mut x, mut y, mut z) = (x, y, 1.0_f64);
     let (mut sum, mut power) = (0.0, 1.0);
-    // Each turn brings the three four times closer; the terms left out are of the sixth order in
-    // their distance.
+    // Each step divides the distances of the three arguments by four; the terms left out are of the
+    // sixth order in these distances.
     for _ in 0..MOST_DUPLICATIONS {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = a * (b + c) + b * c;
@@ -148,7 +148,8 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
     (first, power * series / (mean * mean.sqrt()) + 3.0 * sum)
 }
 
-/// m below which the area of a quarter is a series: its first term left out is 0.015 m^4.
+/// Value of m below which the area of a quarter is computed by a series, whose first term left out
+/// is 0.015 m^4.
 const SMALL: f64 = 1e-3;
 
 /// Relative distance of the arguments, over their sum, below which the series are used: a deviation

@@ -44,7 +44,7 @@ use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_part, nodes_and_weights};
 use crate::numeric::ode::root::find_root;
 
-/// A harmonic beyond it is worth a parabola of its own.
+/// Largest number of odd, and of even, sines of a series.
 const MOST_HARMONICS: usize = 64;
 
 /// Parts of equal time in which a motion is sampled for its sines.
@@ -253,8 +253,8 @@ impl SineSeries {
     /// The series of a motion from touch to release, given at any time and as deep as `depth`: as
     /// many sines as stay within `tolerance` of that, at most 64 odd and 64 even ones.
     ///
-    /// `parabola` is half of what bends the motion back at touch and at release; without it the
-    /// sines go on for longer. What is left is in [`SineSeries::deviation`].
+    /// `parabola` is half of the deceleration at touch and at release; with zero the series needs
+    /// more sines. The remaining error is [`SineSeries::deviation`].
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -288,7 +288,7 @@ impl SineSeries {
             if number % 2 == 0 && is_mirrored {
                 continue;
             }
-            // The trapezium is exact but for harmonics beyond twice the number of parts.
+            // The trapezoidal rule is exact except for harmonics beyond twice the number of parts.
             let sum: f64 = (1..PARTS).map(|part| left[part - 1] * sine(number, part)).sum();
             let coefficient = 2.0 / PARTS as f64 * sum;
             for part in 1..PARTS {
@@ -372,9 +372,9 @@ impl SineSeries {
 }
 
 /// An integral from zero at rising places, each from the one before: a corner or a jump on the way
-/// is met once, not by every integral beyond it. Who goes back to look closer has what was known
-/// beyond forgotten: a jump that a longer piece had at its very end, behind all points of the rule,
-/// is seen by a shorter one.
+/// is met once, not by every integral beyond it. A request at a smaller place discards the values
+/// beyond it: a shorter piece may resolve a jump that a longer piece had at its very end, behind
+/// all points of the rule.
 struct Running<F> {
     integrand: F,
     /// The size of the whole of which the integral is a part: errors count relative to it.
@@ -426,7 +426,7 @@ fn work_by_sections(
 /// The square root of the depth at which the force has first done the work v^2/2.
 fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactError> {
     let energy = 0.5 * speed * speed;
-    // A depth at which there is no force is too deep.
+    // A depth at which the force has no value is too deep.
     let left = |q: f64| match work(&force, q, energy) {
         Ok(work) => 1.0 - work / energy,
         Err(_) => -1.0,
@@ -447,13 +447,13 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
         }
     }
     let mut deepest = find_root(left, low, high)?;
-    // A force that turns it back before, by a hump that the search stepped over.
+    // The force may turn the motion back earlier, by a hump that the search stepped over.
     let earlier = (1..64).map(|part| deepest * f64::from(part) / 64.0).find(|&q| left(q) < 0.0);
     if let Some(beyond) = earlier {
         (low, high) = (beyond - deepest / 64.0, beyond);
         deepest = find_root(left, low, high)?;
     }
-    // A jump that one way of adding up the work has overlooked, the other has not.
+    // A jump that one way of summing the work misses is found by the other.
     let again = |q: f64| match work_by_sections(&force, q, energy) {
         Ok(work) => 1.0 - work / energy,
         Err(_) => -1.0,
@@ -464,7 +464,7 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
     // The edge of where the force is defined is no turning point.
     let beyond = deepest * (1.0 + 1e-9);
     match work(&force, beyond, energy) {
-        // No node of a rule need lie between the edge and there.
+        // The nodes of a rule need not include a point beyond the edge.
         Ok(_) if force(beyond * beyond).is_finite() => Ok(deepest),
         _ => Err(never(deepest)),
     }

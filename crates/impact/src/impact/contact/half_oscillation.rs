@@ -62,8 +62,8 @@ impl HalfOscillation<'_> {
     /// Omega^2 and the motion by homotopy or iteration, for the amplitude that begins with the
     /// speed of touch.
     pub(super) fn perturbed(&self, order: PerturbationOrder) -> Result<SineSeries, ContactError> {
-        // The square of d'(0), with the sign that tells on which side of an oscillation the
-        // amplitude lies.
+        // The square of d'(0), with a sign that is negative where the amplitude gives no
+        // oscillation.
         let squared_speed = |amplitude: f64| {
             let (square, sines) = self.perturbation(amplitude, order);
             let slope = sum_of_slopes(&sines);
@@ -117,7 +117,7 @@ impl HalfOscillation<'_> {
         (square, sines)
     }
 
-    /// The balance of so many odd harmonics, by Newton from that of one.
+    /// The balance of `count` odd harmonics, by Newton's method from that of one.
     pub(super) fn balanced(&self, count: usize) -> Result<SineSeries, ContactError> {
         let start = self.perturbed(PerturbationOrder::First)?;
         let (scale, frequency) = (start.harmonics[0], PI / start.duration);
@@ -145,7 +145,7 @@ impl HalfOscillation<'_> {
         let mut size = residual(&unknown).amax();
         for _ in 0..40 {
             let step = newton_step(residual, &unknown).ok_or(ContactError::NotOscillating)?;
-            // Halved until the residual falls.
+            // The step is halved until the residual decreases.
             let mut part = 1.0;
             let (mut next, mut next_size) = (&unknown - &step, f64::INFINITY);
             while part > 1e-3 {
@@ -184,13 +184,13 @@ fn sine_sum(harmonics: &[f64], phi: f64) -> f64 {
     harmonics.iter().enumerate().map(term).sum()
 }
 
-/// Its derivative at zero: sum of k b_k.
+/// The derivative of [`sine_sum`] at zero: the sum of k b_k.
 fn sum_of_slopes(harmonics: &[f64]) -> f64 {
     let term = |(number, harmonic): (usize, &f64)| harmonic * (2 * number + 1) as f64;
     harmonics.iter().enumerate().map(term).sum()
 }
 
-/// The place above zero at which a function that grows changes its sign, searched by doubling and
+/// The positive argument at which an increasing function changes its sign, searched by doubling and
 /// halving from one.
 fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);

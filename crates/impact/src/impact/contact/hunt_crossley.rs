@@ -114,7 +114,7 @@ impl HuntCrossley {
             ContactError::NotSmooth => ContactError::TooDamped { product: x },
             other => other,
         };
-        // d = D q^2, dt = 2 q dq D/(v |r|).
+        // With d = D q^2 the time element is dt = 2 q dq D/(v |r|).
         let side = |sign: f64| {
             let slowness = move |q: f64| {
                 let rate = 1.0 / motion.speed_ratio(sign * remaining(q * q, m)).abs();
@@ -313,8 +313,8 @@ fn signed_root(z: f64) -> f64 {
     z * (1.0 + excess(z)).max(0.0).sqrt()
 }
 
-/// 2 (G(-e x) - G(x))/x^2, the loss 1 - e beside e for its digits: it grows with e, at the rate 2
-/// e/(1 - e x), and has its zero at the restitution.
+/// 2 (G(-e x) - G(x))/x^2, where the loss 1 - e is given as well, for its digits: it grows with e,
+/// at the rate 2 e/(1 - e x), and has its zero at the restitution.
 fn imbalance(x: f64, e: f64, loss: f64) -> f64 {
     e * e * excess(-e * x) - excess(x) - loss * (2.0 - loss)
 }
@@ -345,7 +345,7 @@ pub(in crate::impact) fn loss(x: f64) -> f64 {
     loss
 }
 
-/// Newton doubles the digits each time.
+/// Largest number of Newton's steps, each of which doubles the digits.
 const MOST_NEWTON: usize = 6;
 
 /// e at lambda v = x, with all its digits however large x is.

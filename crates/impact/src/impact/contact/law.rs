@@ -1,13 +1,13 @@
-//! Every law of a contact, by name, in one table: lines, perturbation, balances, power law, exact.
+//! The table of the laws of a contact, by name: lines, perturbation, balances, power law, exact.
 //!
 //! In: a [`Touch`], the forces as closures and the speed. Out: by a [`ContactLaw`] a
-//! [`ContactMotion`], by all of them a [`comparison`] with the exact one. How each is computed
-//! stands in files of their own: the fitted lines in `line`, homotopy, iteration and the balances
-//! in `half_oscillation`, the power law and the exact contact in theirs.
+//! [`ContactMotion`], by all of them a [`comparison`] with the exact one. Each is computed in a
+//! file of its own: the fitted lines in `line`, homotopy, iteration and the balances in
+//! `half_oscillation`, the power law and the exact contact in theirs.
 //!
 //! `homotopy` of the first order, the first order of parameter expansion and of homotopy analysis,
-//! the variational and the Hamiltonian approach and the balance of one harmonic are one number
-//! here; `iteration` has the same Omega by A, but takes A from the speed of its own motion.
+//! the variational and the Hamiltonian approach and the balance of one harmonic give the same
+//! numbers here; `iteration` has the same Omega by A, but takes A from the speed of its own motion.
 //! `harmonic-balance` is the line of that name, over Hertz's depth. For the power law all errors
 //! are numbers that depend on n alone: those of the least-squares line of equation (15) are +1.6 %
 //! in T and 0 in D.
@@ -42,11 +42,12 @@ pub enum ContactLaw {
     TwoHarmonics,
     /// `harmonic-balance-3`: three odd sines.
     ThreeHarmonics,
-    /// `power-law`: exact for d^n, nothing else acting.
+    /// `power-law`: exact for d^n without other forces.
     PowerLaw,
-    /// `power-law-corrected`: that, and the force at touch and its slope to the second order.
+    /// `power-law-corrected`: the power law with the force at touch and its slope to the second
+    /// order.
     CorrectedPowerLaw,
-    /// `exact`: by energy and quadrature, whatever acts.
+    /// `exact`: by energy and quadrature, for any force.
     Exact,
 }
 
@@ -98,7 +99,7 @@ impl fmt::Display for ContactLaw {
     }
 }
 
-/// A name that is no law of a contact.
+/// The error of a name that is not a law of a contact.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "unknown contact law `{0}`: choose exact, power-law-corrected, power-law, harmonic-balance-3, harmonic-balance-2, homotopy-2, \
@@ -127,13 +128,14 @@ pub struct Touch<'a> {
     pub barrier: f64,
     /// The stiffness gamma of the contact.
     pub stiffness: f64,
-    /// f(x): what acts beside the contact, per unit of mass, positive out of the barrier.
+    /// f(x), the force other than that of the contact, per unit of mass, positive out of the
+    /// barrier.
     pub restoring_force: &'a dyn Fn(f64) -> f64,
     /// f'(x_c), its slope at the barrier, per time squared.
     pub slope: f64,
     /// F(d), the force of the contact per unit of gamma.
     pub elastic_force: &'a dyn Fn(f64) -> f64,
-    /// n, where F(d) is d^n but for a factor: without it the laws of a power have nothing to say.
+    /// n, if F(d) is proportional to d^n; without it the power laws do not apply.
     pub exponent: Option<f64>,
 }
 
@@ -218,7 +220,8 @@ impl Touch<'_> {
         PowerLaw::new(exponent, self.stiffness * (self.elastic_force)(1.0), self.speed)
     }
 
-    /// The line of the rule over the depth that the elastic force alone allows, and what it drives.
+    /// The contact under the line of the rule, which is fitted over the depth that the elastic
+    /// force alone allows.
     fn line(&self, rule: Rule) -> Result<LineContact, ContactError> {
         let energy = 0.5 * self.speed * self.speed / self.stiffness;
         let deepest = linearisation::greatest_depth(self.elastic_force, energy)?;
@@ -287,8 +290,8 @@ impl ContactMotion {
         self.phase_point_at(time).1
     }
 
-    /// The motion as a parabola and sines within `tolerance` of D, as far as 64 of them suffice:
-    /// elementary functions, whatever the law.
+    /// The motion, by any law, in elementary functions: a parabola and sines within `tolerance` of
+    /// D, if 64 of them suffice.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -319,7 +322,7 @@ impl ContactMotion {
 
     /// The formula in the usual form, this many significant digits: s is the time since touch. The
     /// exact motion is written as sines that stay within `tolerance` of D, as far as 64 of them do;
-    /// of the power law stands the time as a function of the depth, with I the regularised
+    /// for the power law the time is given as a function of the depth, with I the regularised
     /// incomplete beta function, for the way in.
     ///
     /// ```
@@ -394,11 +397,11 @@ pub struct ContactErrors {
 pub struct ContactRow {
     /// The law.
     pub law: ContactLaw,
-    /// The contact by it and its errors, or why it has none.
+    /// The contact by this law and its errors, or the reason why there is none.
     pub outcome: Result<(ContactMotion, ContactErrors), ContactError>,
 }
 
-/// Every law beside the exact one, in the order of [`ContactLaw::ALL`].
+/// Compares every law with the exact one, in the order of [`ContactLaw::ALL`].
 ///
 /// # Errors
 /// [`ContactError`] where there is no exact contact to compare with.

@@ -17,13 +17,13 @@ pub(in crate::impact) struct LineContact {
     pub(in crate::impact) speed: f64,
     /// w, in radians per time.
     pub(in crate::impact) frequency: f64,
-    /// b/w^2, how far in front of the barrier it turns about, in the unit of x.
+    /// b/w^2, the distance of the centre of oscillation in front of the barrier, in the unit of x.
     pub(in crate::impact) centre: f64,
 }
 
 impl LineContact {
-    /// The motion along this line, per unit of this stiffness, beside a force `at_barrier` that
-    /// grows with `slope`; `None` if it does not oscillate.
+    /// The motion along this line, per unit of this stiffness, with another force that is
+    /// `at_barrier` at the touch and has this `slope`; `None` if it does not oscillate.
     pub(in crate::impact) fn new(
         line: LinearContactForce,
         stiffness: f64,
@@ -34,7 +34,7 @@ impl LineContact {
         (square.is_finite() && square > 0.0).then(|| Self {
             speed,
             frequency: square.sqrt(),
-            // Not as the difference of the barrier and the point turned about, which cancels.
+            // The difference of the barrier and the centre would cancel.
             centre: (at_barrier + stiffness * line.at_touch) / square,
         })
     }
@@ -48,7 +48,7 @@ impl LineContact {
     pub(in crate::impact) fn depth(&self) -> f64 {
         let swing = self.speed / self.frequency;
         let amplitude = self.centre.hypot(swing);
-        // Without the difference of nearly equal numbers.
+        // This form avoids a difference of nearly equal numbers.
         if self.centre > 0.0 {
             swing / (amplitude + self.centre) * swing
         } else {

@@ -1,4 +1,4 @@
-//! Laws of one contact, all of one shape: how deep, how long, how hard, and where at any instant.
+//! Laws of one contact, with a common interface: depth, duration, peak force, and the motion.
 //!
 //! ```text
 //! d'' + a + k d + gamma F(d) = 0,   d(0) = 0, d'(0) = v > 0,   until d = 0 again
@@ -46,7 +46,7 @@ pub use law::{
 };
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
-/// The reason why there is no contact to speak of.
+/// The reason why a contact cannot be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ContactError {
@@ -84,7 +84,7 @@ pub enum ContactError {
         /// The value given.
         value: f64,
     },
-    /// A correction of more terms than are worth their rounding, or of none.
+    /// A correction of no order, or of so many orders that their terms are lost in rounding.
     #[error(
         "the correction has 1 to {highest} orders, not {order}: from there on the exact contact is the better answer"
     )]
@@ -165,14 +165,13 @@ fn in_range(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
     }
 }
 
-/// A time of the contact: before it the touch, which is that of no number too, after it the
-/// release.
+/// A time limited to the contact, from the touch (also for NaN) to the release.
 fn within(time: f64, duration: f64) -> f64 {
     if time > 0.0 { time.min(duration) } else { 0.0 }
 }
 
-/// Runge-Kutta on d'' = -force(d, d') from the touch to the release, or for this time: what the
-/// laws are held to. Its first event is the deepest point.
+/// Runge-Kutta on d'' = -force(d, d') from the touch to the release, or for this time: against
+/// which the laws are tested. Its first event is the deepest point.
 #[cfg(test)]
 fn by_runge_kutta(
     force: impl Fn(f64, f64) -> f64,

@@ -32,8 +32,8 @@
 //! ```
 //!
 //! The series of T converges for |e1| < m/n, that is 5/3 for Hertz, where e1 = 1 is a contact of
-//! which the force at touch alone takes up the whole energy; those of r for a little less. Of a
-//! soft barrier or a slow touch ask the exact contact.
+//! which the force at touch alone takes up the whole energy; those of r for a little less. For a
+//! soft barrier or a slow touch use the exact contact.
 
 use std::f64::consts::PI;
 
@@ -134,7 +134,8 @@ impl PowerLaw {
     ///
     /// # Errors
     /// [`ContactError::NoCorrection`] where the terms left out may be half of the depth or of the
-    /// duration; [`ContactError`] for numbers that are none and for an order that there is not.
+    /// duration; [`ContactError`] for numbers that are not finite and for an order that does not
+    /// exist.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -196,7 +197,7 @@ impl PowerLaw {
     }
 }
 
-/// The highest order of a correction: beyond it the terms of T lose digits to each other.
+/// The highest order of a correction: beyond it the terms of T cancel.
 pub const HIGHEST_ORDER: u32 = 6;
 
 /// A [`PowerLaw`] corrected for the force at touch and its slope. Made by [`PowerLaw::corrected`].
@@ -208,8 +209,8 @@ pub const HIGHEST_ORDER: u32 = 6;
 /// d(s) = (a/2) s (T - s) + (D - a T^2/8) Y(s/T),       Y the motion of the power law, of unit depth and duration
 /// ```
 ///
-/// D, T and the acceleration at touch are right in it, the speed of touch to the first order or so:
-/// how far it is from the exact motion is [`CorrectedPowerLaw::shape_error`].
+/// D, T and the acceleration at touch are exact in it, the speed of touch to about first order; its
+/// distance from the exact motion is [`CorrectedPowerLaw::shape_error`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct CorrectedPowerLaw {
@@ -286,8 +287,8 @@ fn greatest_depth(exponent: f64, stiffness: f64, speed: f64) -> f64 {
     (0.5 * (exponent + 1.0)).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse)
 }
 
-/// n, where this force is d^n but for a factor, as far as doubles tell at depths from 1e-9 to 4;
-/// else nothing.
+/// n, if this force is proportional to d^n at depths from 1e-9 to 4, to the accuracy of doubles;
+/// `None` otherwise.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -299,7 +300,7 @@ fn greatest_depth(exponent: f64, stiffness: f64, speed: f64) -> f64 {
 pub fn exponent_of(force: impl Fn(f64) -> f64) -> Option<f64> {
     let unit = force(1.0);
     let slope = (force(4.0) / unit).log2() / 2.0;
-    // Exponents are written with few digits; the logarithm has all but the last.
+    // Exponents have few digits; the logarithm has lost only the last ones.
     let written = (slope * 1e6).round() / 1e6;
     let exponent = if (slope - written).abs() < 1e-13 * written { written } else { slope };
     let is_power = |power: i32| {
@@ -327,7 +328,7 @@ pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     let (depth, velocity) = if since <= incbet(inverse, 0.5, 0.5) {
         let linear = since * 0.5 * duration_factor(exponent);
         let late = |y: f64| incbet(inverse, 0.5, y.powf(m)) - since;
-        // Below it the velocity has not changed, and further down x underflows.
+        // Below this depth the velocity is still v to double precision, and x would underflow.
         let depth = match linear.powf(m) < 1e-17 {
             true => linear,
             false => find_root(late, 0.0, 1.0).unwrap_or(linear),
@@ -341,7 +342,7 @@ pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     (depth, sign * velocity)
 }
 
-/// A series in two small quantities up to an order, and what may be missing in it: the terms of the
+/// A series in two small quantities up to an order, and an estimate of its error: the terms of the
 /// last order by their sizes, or those before them times the square of the quantities where the
 /// last happen to vanish.
 fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> f64) -> (f64, f64) {

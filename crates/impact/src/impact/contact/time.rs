@@ -15,7 +15,7 @@ const POINTS: usize = 20;
 /// The last coefficients of a series that is resolved, relative to its largest.
 const RESOLVED: f64 = 1e-13;
 
-/// A motion that needs more pieces is not that of a smooth force.
+/// Largest number of panels; a motion that needs more is not that of a smooth force.
 const MOST_PANELS: usize = 400;
 
 /// A smooth function on an interval as a Legendre series, and the time as the integral of it with a

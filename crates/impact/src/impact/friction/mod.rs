@@ -24,7 +24,7 @@ use super::model::DEFAULT_AMPLITUDE;
 use super::simulate::SimulationError;
 use crate::decimal::decimal;
 
-/// The question: a friction and a swing.
+/// The friction and the swing to be studied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionSetup {
     /// The friction alpha, between 0 and 1: dimensionless, the torque in units of m g L.
@@ -45,16 +45,16 @@ impl Default for FrictionSetup {
     }
 }
 
-/// The reason why there is nothing to say of a friction.
+/// The reason why a friction cannot be studied.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FrictionError {
-    /// A friction that is none, or that holds the pendulum everywhere.
+    /// A friction that is not positive, or that holds the pendulum everywhere.
     #[error(
         "alpha must lie above 0 and below 1, not {0}: at 1 friction holds the pendulum wherever it is"
     )]
     Alpha(f64),
-    /// A release that is none.
+    /// A release outside its range.
     #[error(
         "the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A"
     )]
@@ -74,7 +74,7 @@ pub enum FrictionError {
         /// The release, rad.
         amplitude: f64,
     },
-    /// A friction too weak to be followed to the end.
+    /// A friction so weak that the swing is not followed to its end.
     #[error("alpha = {} takes more steps to stop the swing than a run may have: give a larger one", decimal(*.0))]
     Restless(f64),
     /// A motion that cannot begin.
@@ -96,7 +96,7 @@ pub struct FrictionStudy {
 /// The arctangent beside Coulomb's law, at single speeds and in a swing.
 ///
 /// # Errors
-/// [`FrictionError`] names the number that makes no swing.
+/// [`FrictionError`] names the number that is not admissible.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;

@@ -9,8 +9,8 @@
 //! W/W_C = (sqrt(1 + k^2) - 1)/k                             the work of a harmonic swing of speed V = k/100 over Coulomb's
 //! ```
 //!
-//! The last is the average of averaging, (1/2) int_0^pi (2/pi) atan(k sin s) sin s ds. Every
-//! formula stands beside the number that the simulation of the whole equation gives.
+//! The last formula is by averaging, (1/2) int_0^pi (2/pi) atan(k sin s) sin s ds. Every formula is
+//! compared with the simulation of the whole equation.
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
@@ -69,7 +69,7 @@ pub struct Creep {
     pub rate_linear: f64,
     /// The rate of the simulated motion, when it is small; `None` if there is no motion.
     pub rate: Option<f64>,
-    /// Some states.
+    /// States at some times.
     pub samples: Vec<CreepSample>,
     without_inertia: Option<WithoutInertia>,
     /// The motion.
@@ -77,7 +77,7 @@ pub struct Creep {
 }
 
 impl Creep {
-    /// The place by the formula of the creep, this long after rest, rad, up to the end of the
+    /// The position by the formula of the creep, this long after rest, rad, up to the end of the
     /// motion; `None` if it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
         self.without_inertia.as_ref()?.position_at(t)
@@ -94,7 +94,7 @@ pub struct RestTimes {
 }
 
 impl RestTimes {
-    /// Rest time by the arctangent less that by Coulomb's law; `None` if one of them has none.
+    /// Rest time by the arctangent minus that by Coulomb's law; `None` if either is not known.
     pub fn difference(&self) -> Option<f64> {
         Some(self.arctangent.ok()? - self.coulomb.ok()?)
     }
@@ -138,8 +138,8 @@ pub fn slow_rate(damping: f64) -> f64 {
     }
 }
 
-/// The work that equation (6) takes of a harmonic swing of this greatest speed, over that of
-/// Coulomb's law.
+/// The work of the friction of equation (6) in a harmonic swing of this greatest speed, over that
+/// of Coulomb's law.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -278,7 +278,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
 fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     let determinant = x1 * x1 - x0 * x2;
     let decay = match determinant.abs() < 1e-6 * x1 * x1 {
-        // One exponential is left.
+        // Only one exponential remains.
         true => x1 / x0,
         false => {
             let (p, q) = ((x1 * x2 - x0 * x3) / determinant, (x1 * x3 - x2 * x2) / determinant);
@@ -291,7 +291,7 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     Some(-decay.ln() / step).filter(|rate| rate.is_finite())
 }
 
-/// The creep without inertia: alpha (2/pi) atan(100 x') = -sin x, where friction bears the whole
+/// The creep without inertia: alpha (2/pi) atan(100 x') = -sin x, where friction balances the
 /// weight.
 #[derive(Debug, Clone)]
 struct WithoutInertia {
@@ -332,8 +332,8 @@ fn creep_position(alpha: f64, log: f64) -> f64 {
     (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
 }
 
-/// On the default damper; as long as it takes four times to stop the swing without a barrier, and,
-/// by the arctangent, until it has crept from there to nothing, `creep` later.
+/// The rest times of the default damper; the duration is four times that of the swing without a
+/// barrier, and by the arctangent longer by `creep`, the time of the creep to rest.
 fn rest_times(
     alpha: f64,
     amplitude: f64,

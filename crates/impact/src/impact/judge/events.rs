@@ -1,4 +1,4 @@
-//! The judge: the same equation by the library's Runge-Kutta, one smooth right side at a time.
+//! Verification by the library's Runge-Kutta on the same equation, one smooth right side at a time.
 //!
 //! ```text
 //! free:      x'' = field(t, x) + damping(x')
@@ -31,7 +31,7 @@ struct HybridMode {
     direction: f64,
 }
 
-/// The meaning of an event.
+/// The action of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum JudgeEvent {
     Touch(Side),
@@ -51,7 +51,7 @@ const REGIONS: [Regime; 5] = [
     Regime::Detached(Side::Left),
 ];
 
-/// The speed at which friction lets go.
+/// The speed with which the motion starts when friction releases the pendulum.
 const NUDGE: f64 = 1e-14;
 
 /// Each region moving without Coulomb friction, rising, falling, and stuck.
@@ -86,7 +86,7 @@ impl Coordinate {
     }
 }
 
-/// All but friction, at rest, in the direction of x.
+/// The force other than friction at rest, in the direction of x.
 fn force_at_rest(model: &Model, region: Regime, t: f64, value: f64) -> f64 {
     let coordinate = Coordinate::for_region(model, region);
     let contact = match region {
@@ -96,7 +96,7 @@ fn force_at_rest(model: &Model, region: Regime, t: f64, value: f64) -> f64 {
     model.field(t, coordinate.x(value)) - coordinate.sign * contact
 }
 
-/// The phase in which a pendulum at rest goes on.
+/// The phase in which a pendulum at rest continues.
 fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
     let force = force_at_rest(model, region, t, value);
     let direction = force.signum();
@@ -108,7 +108,7 @@ fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
     index(HybridMode { region, direction }, false)
 }
 
-/// The contact that begins at rest on a barrier, where the motion sets off in this direction.
+/// The contact that begins at rest on a barrier, if the motion starts in this direction.
 fn pushed_into(model: &Model, region: Regime, x: f64, direction: f64) -> Option<Regime> {
     let on = |side: &Side| {
         region == Regime::Free && model.barrier(*side) == Some(x) && direction == side.sign()
@@ -116,8 +116,7 @@ fn pushed_into(model: &Model, region: Regime, x: f64, direction: f64) -> Option<
     [Side::Left, Side::Right].into_iter().find(on).map(Regime::Contact)
 }
 
-/// The region in which a motion begins, and how fast it moves there in the coordinate of that
-/// region.
+/// The region in which a motion begins.
 fn beginning(model: &Model, start: Start) -> Regime {
     if let Some((side, _)) = model.depth(start.x) {
         return match model.would_pull(side.sign() * start.velocity) {
@@ -125,7 +124,7 @@ fn beginning(model: &Model, start: Start) -> Regime {
             false => Regime::Contact(side),
         };
     }
-    // At rest the force decides, and where there is none yet, the one that comes.
+    // At rest the force decides, and if that is zero, its rate of change.
     let rates = [start.velocity, model.field(0.0, start.x), model.field_rate(0.0, start.x)];
     let held = model.sticks() && start.velocity == 0.0;
     rates
@@ -135,10 +134,10 @@ fn beginning(model: &Model, start: Start) -> Regime {
         .unwrap_or(Regime::Free)
 }
 
-/// An event, and what it means.
+/// An event and its action.
 type Watched<'a> = (Event<'a>, JudgeEvent);
 
-/// A phase of the run, and what its events mean in turn.
+/// A phase of the run, and the actions of its events in order.
 fn phase<'a>(
     model: &'a Model,
     settings: &Settings,
@@ -170,7 +169,7 @@ fn phase<'a>(
     (phase, meanings)
 }
 
-/// Held by friction, until all the other forces together exceed it.
+/// The event that ends sticking: the other forces together exceed the friction.
 fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'_> {
     let sign = Coordinate::for_region(model, region).sign;
     let excess = move |t: f64, value: f64, _: f64| {
@@ -178,8 +177,8 @@ fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'
     };
     let next = move |state: ode::State| {
         let direction = force_at_rest(model, region, state.t, state.x).signum();
-        // The acceleration is still zero: without a sign of its own that of the velocity would be
-        // arbitrary.
+        // The acceleration is still zero, so that the sign of the velocity would be arbitrary
+        // without this value.
         let v = NUDGE * direction * sign;
         let (region, state) = match pushed_into(model, region, state.x, direction) {
             Some(contact) => (contact, ode::State { x: 0.0, v: NUDGE, ..state }),
@@ -190,13 +189,14 @@ fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'
     (Event::switch(excess, next).rising(), JudgeEvent::LetGo)
 }
 
-/// In free flight: the barriers.
+/// The touches of the barriers in free flight.
 fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
     let touch = |side: Side| {
         let barrier = model.barrier(side)?;
         let next = move |state: ode::State| {
             let contact = HybridMode { region: Regime::Contact(side), direction };
-            // It moves inwards, whatever rounding says of one that rests there.
+            // The motion is inwards, even if rounding gives another sign for a pendulum at rest on
+            // the barrier.
             let v = (side.sign() * state.v).max(0.0);
             (index(contact, false), ode::State { x: 0.0, v, ..state })
         };
@@ -206,8 +206,8 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
     [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
 }
 
-/// Inside a barrier: back in place, and where the contact is damped, faster or no longer faster
-/// than the barrier.
+/// The events inside a barrier: the release, and for a damped contact the instants at which the
+/// pendulum becomes faster than the barrier or no longer is.
 fn ends_of_contact(
     model: &Model,
     HybridMode { region, direction }: HybridMode,
@@ -252,7 +252,7 @@ fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watch
     (turn, JudgeEvent::Turn)
 }
 
-/// The energy falls to that of rest, and the run ends.
+/// The event that ends the run: the energy falls to that of rest.
 fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> {
     let coordinate = Coordinate::for_region(model, region);
     let energy = move |_: f64, value: f64, v: f64| {

@@ -1,4 +1,4 @@
-//! The judge: the original equations by Runge-Kutta, one smooth right side at a time.
+//! Verification: the original equations by Runge-Kutta, one smooth right side at a time.
 //!
 //! In: the forces as they stand in the equation. Out: one undamped impact from release to return,
 //! its digits assured (`single`), or a whole motion of equation (7), event by event (`events`).
@@ -10,10 +10,10 @@
 //! contact   d'' = s a(t, x, x') - F(d, d')    d the depth: a shallow one keeps its digits
 //! ```
 //!
-//! They stay two drivers: a single impact counts its contact from the touch, in time as well, so
+//! There are two drivers: a single impact counts its contact from the touch, in time as well, so
 //! that the hardest barrier costs no digits, and mirrors the approach; a whole motion needs one
-//! clock. Nothing of the closed form and nothing of the Taylor series enters: no frequency law, no
-//! line, no regularised variable.
+//! clock. Neither the closed form nor the Taylor series is used: no frequency law, no line, no
+//! regularised variable.
 
 mod events;
 mod single;

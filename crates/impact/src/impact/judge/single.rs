@@ -1,4 +1,4 @@
-//! The true motion of an impact, and how far the closed form is from it.
+//! The true motion of an impact, and the deviation of the closed form from it.
 //!
 //! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at
 //! rest from x = -A; with contact damping gamma F (1 + lambda x') stands for gamma F, as long as
@@ -11,8 +11,7 @@
 //!
 //! Flight and contact are separate runs joined at the located touch; the flight back mirrors the
 //! approach where nothing is lost, and is a run of its own where the contact is damped; then the
-//! energy of the flights alone is watched. Nothing of the closed form enters: no frequency law, no
-//! line.
+//! energy of the flights alone is watched. The closed form is not used: no frequency law, no line.
 
 use super::Coordinate;
 use crate::impact::collision::{Collision, CollisionError};
@@ -22,7 +21,7 @@ use crate::impact::phases::ThreePhases;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::{self, Event, StopReason, Trajectory, integrate};
 
-/// One impact as it happens, from release to the next turning point.
+/// The true motion of one impact, from release to the next turning point.
 #[derive(Debug, Clone)]
 pub struct TrueImpact {
     /// First touch: time, x_c, speed; here and below in the units of the equation.
@@ -35,7 +34,7 @@ pub struct TrueImpact {
     pub penetration: f64,
     /// Duration of the contact.
     pub duration: f64,
-    /// Time from the release to the turning point after the impact: the period, where nothing is
+    /// Time from the release to the turning point after the impact: the period, if no energy is
     /// lost.
     pub period: f64,
     /// The path from the release to the touch, counted from the release; run backwards it is that
@@ -46,8 +45,8 @@ pub struct TrueImpact {
     /// The path from the exit to the turning point after it, place against the barrier and speed
     /// out of it against the time since the exit; `None` if it is the approach run backwards.
     pub back: Option<Trajectory>,
-    /// Largest change of the energy along the path, in flight alone where the contact is damped, as
-    /// a part of the kinetic energy at touch: how good the path is.
+    /// Largest change of the energy along the path, in flight alone where the contact is damped,
+    /// relative to the kinetic energy at touch: a measure of the accuracy of the path.
     pub energy_drift: f64,
 }
 
@@ -63,7 +62,7 @@ pub struct Deviation {
     pub aligned: [f64; 3],
 }
 
-/// Why the run gave up, and what to change in a problem.
+/// The message for a run that stopped early, with advice for the problem file.
 pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
     match reason {
         StopReason::MaximumSteps { time } => {
@@ -78,15 +77,15 @@ pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
 
 /// Follows the motion from its release until the barrier lets it go again. Without damping it
 /// leaves with the same speed: the flight back is the approach run backwards, so the period has as
-/// many digits as the approach, also where the release is near the top of the swing and forgets its
-/// energy. A damped contact is followed by a flight of its own to where it turns.
+/// many digits as the approach, also if the release is near the upright position, where its energy
+/// is lost in rounding. A damped contact is followed by a flight of its own to where it turns.
 ///
 /// The contact is counted from the touch, in depth and in time, so a hard barrier costs no digits.
 /// No step may err by more than the relative tolerance at the amplitude or at the depth, however
 /// large the absolute one is.
 ///
 /// # Errors
-/// [`ImpactError`]: the barrier is not reached, or the run ends early and says why.
+/// [`ImpactError`]: the barrier is not reached, or the run ends early.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -143,7 +142,7 @@ pub fn true_impact(
         return Err(ImpactError::Stopped(contact.stop_reason()));
     };
     let turn = contact.occurrences().iter().find(|found| found.event == 1);
-    // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
+    // In a graze too shallow for doubles to resolve a turning point, touch, turn and exit coincide.
     let deepest = turn.map_or(touched, |found| found.state);
     let exit = contact.end();
     let seen =
@@ -168,7 +167,7 @@ pub fn true_impact(
 }
 
 /// The largest change of the energy along a motion, over that of the release; a contact that loses
-/// some is left out, its way back not.
+/// energy is left out, but not the way back.
 fn energy_drift(
     collision: &Collision,
     approach: &Trajectory,
@@ -250,7 +249,7 @@ fn way_back(
     }
 }
 
-/// Largest difference from this energy along a path; `held` is what is not kinetic at a place.
+/// Largest difference from this energy along a path; `held` is the potential energy at a position.
 fn largest_change(
     path: &Trajectory,
     energy: f64,
@@ -263,12 +262,12 @@ fn largest_change(
     Ok(change)
 }
 
-/// A time no impact of interest takes; the number of steps is the real limit.
+/// A time longer than any impact of interest; the number of steps is the effective limit.
 const LONGEST_TIME: f64 = 1e9;
 
 /// The most that the quantities of an impact may change, relative to each, between a tolerance and
-/// one a hundred times closer. Errors go with the tolerance: what is left is about a hundredth of
-/// the change, and six digits are printed.
+/// one a hundred times closer. Errors go with the tolerance: the remaining error is about a
+/// hundredth of the change, and six digits are printed.
 const ACCURACY: f64 = 5e-5;
 
 /// The tightest tolerance worth trying in double precision.
@@ -279,7 +278,7 @@ const TIGHTEST: f64 = 1e-14;
 /// they differ the next one is tighter.
 ///
 /// # Errors
-/// As [`true_impact`], and [`ImpactError::NotSettled`] where double precision does not know six
+/// As [`true_impact`], and [`ImpactError::NotSettled`] if double precision does not give six
 /// digits.
 ///
 /// ```
@@ -339,13 +338,12 @@ impl TrueImpact {
         [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
     }
 
-    /// Speed out over speed in: 1 where nothing is lost.
+    /// Exit speed over entry speed: 1 if no energy is lost.
     pub fn restitution(&self) -> f64 {
         -self.exit.v / self.touch.v
     }
 
-    /// Displacement and velocity at a time between release and return, whose ends stand for all
-    /// before and after.
+    /// Displacement and velocity at a time between release and return, limited to that interval.
     pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let barrier = self.touch.x;
         let t = t.clamp(0.0, self.period);
@@ -395,14 +393,14 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     for (index, phase) in closed_form.phases.iter().enumerate() {
         let (from, to) = (true_limits[index], true_limits[index + 1]);
         phases[index] = largest(from, to, |t| closed_form.position_at(t) - true_position(t));
-        // As long as both last.
+        // The comparison covers the time that both phases have in common.
         let common = (to - from).min(phase.end - phase.start);
         aligned[index] = largest(0.0, common, |elapsed| {
             phase.phase_point_at(phase.start + elapsed).0 - true_position(from + elapsed)
         });
     }
-    // The contact of the closed form falls into another true phase and is short: seen there with a
-    // grid of its own.
+    // The short contact of the closed form may lie within another true phase, where it needs a grid
+    // of its own.
     let contact = &closed_form.phases[1];
     let inside = |t: f64| (0.0..=truth.period).contains(&t);
     let missed = largest(contact.start, contact.end, |t| {

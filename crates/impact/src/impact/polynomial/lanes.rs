@@ -1,5 +1,5 @@
-//! Several polynomials side by side: their values, how often each changes its sign, and where one
-//! that does so once.
+//! Several polynomials side by side: their values, the number of sign changes of each, and the
+//! position of a single one.
 //!
 //! ```text
 //! p(u h) = sum_i b_i C(m,i) u^i (1-u)^(m-i) + tail,  b_i = sum_(k<=i) C(i,k)/C(m,k) c_k h^k,  |tail| <= u^m sum_(k>m) |c_k| h^k
@@ -7,11 +7,11 @@
 //! ```
 //!
 //! The second line holds while the bound of the tail, which belongs to b_m alone, is smaller than
-//! b_m: then none and one are certain. (S. Bernstein's form and Descartes' rule of signs: R. T.
-//! Farouki, *Comput. Aided Geom. Design* 29 (2012) 379.) Every lane is computed as it would be
+//! b_m: then the numbers 0 and 1 are certain. (S. Bernstein's form and Descartes' rule of signs: R.
+//! T. Farouki, *Comput. Aided Geom. Design* 29 (2012) 379.) Every lane is computed as it would be
 //! alone: no operation is fused or reordered.
 
-/// The degree of Bernstein's form; what a series has beyond it is small on a step that fits its
+/// The degree of Bernstein's form; higher terms of a series are small on a step that meets its
 /// tolerance.
 const DEGREE: usize = 8;
 
@@ -83,7 +83,7 @@ pub(in crate::impact) fn values_and_slopes<const L: usize>(
             odd[lane] = odd[lane] * square[lane] + pair[1][lane];
         }
     }
-    // The slopes so far are those by u^2.
+    // The slopes so far are those with respect to u^2.
     for lane in 0..L {
         even_slope[lane] =
             2.0 * u[lane] * (even_slope[lane] + u[lane] * odd_slope[lane]) + odd[lane];
@@ -120,8 +120,8 @@ pub(in crate::impact) fn variations<const L: usize>(
     odd
 }
 
-/// One round of sums of neighbours, from this place on: with its number known beforehand no loop is
-/// left.
+/// One round of sums of neighbours, from this place on: the constant `FIRST` lets the compiler
+/// unroll the loop.
 #[inline(always)]
 fn neighbours<const FIRST: usize, const L: usize>(form: &mut [[f64; L]; DEGREE + 1]) {
     for i in (FIRST..=DEGREE).rev() {
@@ -197,8 +197,8 @@ pub(in crate::impact) fn crossings<const L: usize>(
     for lane in 0..L {
         let chord =
             from[lane] + (to[lane] - from[lane]) * (start[lane] / (start[lane] - end[lane]));
-        // From the beginning of the series: the parabola with the slope there is a better guess
-        // than the chord.
+        // At the beginning of the series the parabola with the slope there is a better guess than
+        // the chord.
         let bend = (end[lane] - start[lane] - slope[lane] * to[lane]) / (to[lane] * to[lane]);
         let root = (slope[lane] * slope[lane] - 4.0 * bend * start[lane]).sqrt();
         let guess = -2.0 * start[lane] / (slope[lane] + root.copysign(slope[lane]));
@@ -207,8 +207,8 @@ pub(in crate::impact) fn crossings<const L: usize>(
         u[lane] = if active[lane] { first } else { from[lane] };
         right[lane] = if active[lane] { to[lane] } else { from[lane] };
     }
-    // Newton's steps converge in a few, halvings in 60. One condition at a time: so it is done for
-    // all lanes at once.
+    // Newton's steps converge in a few, halvings in 60. Conditions are evaluated one at a time, so
+    // that they are vectorised over the lanes.
     for _ in 0..100 {
         let (sum, slope) = values_and_slopes(coefficients, &u);
         let mut widest = 0.0_f64;
@@ -222,8 +222,8 @@ pub(in crate::impact) fn crossings<const L: usize>(
             let inside = (newton - low) * (high - newton);
             let next = if inside > 0.0 { newton } else { 0.5 * (low + high) };
             let next = if height == 0.0 { here } else { next };
-            // The error of a step of Newton's is about the square of the one before; a halving says
-            // nothing.
+            // The error of a step of Newton's is about the square of the one before; a bisection
+            // step gives no such estimate.
             let error = if inside > 0.0 { (next - here).abs() } else { span };
             let error = if (next - low) * (high - next) > 0.0 { error } else { 0.0 };
             left[lane] = if error <= 1e-8 * span { next } else { low };

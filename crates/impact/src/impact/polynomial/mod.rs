@@ -120,11 +120,12 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
     search.found
 }
 
-/// Halvings after which an interval is called a point.
+/// Number of halvings after which an interval counts as a point.
 const DEEPEST: usize = 56;
 
-/// Intervals that a search looks at: a close pair of roots takes some hundred. Where rounding or
-/// underflow is all there is, no interval is ever clear, and what is left is called a point.
+/// Largest number of intervals in a search; a close pair of roots takes about a hundred. If the
+/// values are only rounding or underflow, no interval is ever decided, and the rest counts as a
+/// point.
 const MOST_LOOKS: usize = 400;
 
 /// A search from left to right.
@@ -132,7 +133,7 @@ struct RootSearch<'a> {
     coefficients: &'a [f64],
     /// A bound on |p''|.
     curvature: f64,
-    /// The sign of p just before the place that is looked at.
+    /// The sign of p just before the current place.
     sign: f64,
     looks: usize,
     found: Roots,
@@ -148,8 +149,8 @@ impl RootSearch<'_> {
         let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
         let (height, slope) = value_and_slope(self.coefficients, middle);
         if height.abs() > slope.abs() * radius + 0.5 * self.curvature * radius * radius {
-            // The sign is the same all over the interval; a change since the last one lies at its
-            // very beginning.
+            // The sign is the same all over the interval; a change of sign since the last interval
+            // lies at its very beginning.
             if height.signum() != self.sign {
                 self.add(from);
             }
@@ -201,7 +202,8 @@ pub(super) fn bracketed(
 pub(super) fn crossing_of(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     match find_root(&function, from, to) {
         Ok(root) => root,
-        // Rounding took the change of sign away: it happens where the function is closest to zero.
+        // If rounding has removed the change of sign, the end at which the function is closest to
+        // zero is returned.
         Err(_) if function(from).abs() < function(to).abs() => from,
         Err(_) => to,
     }

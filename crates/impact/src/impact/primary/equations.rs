@@ -6,7 +6,7 @@
 //! held:     y' = u, u' = b with v = v' = 0
 //! ```
 //!
-//! Beside the states run the energies that damping takes and the force gives: each its own rate.
+//! The energies taken by damping and supplied by the force are integrated with the states.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ use crate::mechanics::{MechanicsError, Mechanism};
 use crate::symbol::Symbol;
 use crate::system::System;
 
-/// The energies that run beside the states: viscous, friction, contact, dashpot, force.
+/// Number of energies integrated with the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
 
 /// The equations of motion of every case, from the energies.
@@ -32,7 +32,7 @@ struct Accelerations {
     held: Expr,
 }
 
-/// Derived once for all cases.
+/// The accelerations, derived once for all cases.
 static DERIVED: LazyLock<Result<Accelerations, MechanicsError>> = LazyLock::new(derive);
 
 /// The equations of one case.
@@ -40,7 +40,7 @@ pub(super) struct PrimaryEquations {
     accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
-    /// The phases that there were: a motion goes through the same ones again and again.
+    /// The systems of the phases met so far, because a motion repeats the same phases.
     built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
 }
 
@@ -48,14 +48,14 @@ pub(super) struct PrimaryEquations {
 /// which dry friction acts.
 type PhaseKey = (Option<Side>, f64);
 
-/// The system of a phase: its states, and behind them the accounts that change in it.
+/// The system of a phase: its states, followed by the energies that change in it.
 pub(super) struct PhaseSystem {
     pub(super) system: System,
     /// Indices of these accounts.
     pub(super) accounts: Vec<usize>,
 }
 
-/// An expression of this file.
+/// Parses an expression of this file.
 fn parsed(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
@@ -74,7 +74,7 @@ fn derive() -> Result<Accelerations, MechanicsError> {
     let [x, y] = accelerations.as_slice() else {
         return Err(MechanicsError::CoordinateCount(accelerations.len()));
     };
-    // Held, the second equation alone says how the main mass moves.
+    // With the pendulum held, the second equation alone determines the main mass.
     let at_rest: BTreeMap<Symbol, Expr> = [(Symbol::new("x'"), Expr::zero())].into();
     let (mass, rest) = (
         &equations.mass[1][1],
@@ -122,7 +122,7 @@ impl PrimaryEquations {
         Ok(followed)
     }
 
-    /// The torque of dry friction in this direction, and what it takes per time.
+    /// The torque of dry friction in this direction, and its power loss.
     fn friction(&self, direction: f64) -> [Expr; 2] {
         let torque = match self.case.model.friction {
             _ if self.case.model.alpha == 0.0 => Expr::zero(),
@@ -148,8 +148,8 @@ impl PrimaryEquations {
         Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
     }
 
-    /// The equations of these states and the accounts that change; `more` are numbers of this phase
-    /// alone.
+    /// The equations of these states and the accounts that change; `more` are additional numbers of
+    /// this phase.
     fn followed(
         &self,
         states: &[&str],
@@ -157,8 +157,7 @@ impl PrimaryEquations {
         right: &[Expr],
         more: &[(&str, f64)],
     ) -> Result<PhaseSystem, PrimaryError> {
-        // Terms with a zero factor and accounts that stand still are left out: they would cost
-        // time.
+        // Terms with a zero factor and energies that do not change are left out to save time.
         let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
         let absent: BTreeMap<Symbol, Expr> =
             absent.map(|(name, _)| (*name, Expr::zero())).collect();
@@ -177,7 +176,7 @@ impl PrimaryEquations {
         Ok(PhaseSystem { system, accounts })
     }
 
-    /// The numbers of the case, and these beside them.
+    /// The numbers of the case, and these in addition.
     fn numbers_and(&self, more: &[(&str, f64)]) -> BTreeMap<Symbol, f64> {
         let mut numbers = self.numbers.clone();
         numbers.extend(more.iter().map(|(name, value)| (Symbol::new(name), *value)));
@@ -190,7 +189,7 @@ impl PrimaryEquations {
         parsed("P") - parsed("sin(x)") - parsed("cos(x)") * self.accelerations.held.clone()
     }
 
-    /// Away from the barriers, moving in this direction where dry friction asks for one.
+    /// The system away from the barriers, moving in this direction if dry friction needs one.
     pub(super) fn flight(&self, direction: f64) -> Result<Rc<PhaseSystem>, PrimaryError> {
         self.cached_system((None, direction), || self.flight_system(direction))
     }
@@ -234,8 +233,8 @@ impl PrimaryEquations {
         self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("x_c", place)])
     }
 
-    /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
-    /// must hold.
+    /// The main mass alone with the pendulum held at x; friction must balance the torque on the
+    /// pendulum.
     pub(super) fn equations_when_held(
         &self,
         x: f64,

@@ -1,9 +1,9 @@
-//! From phase to phase: flight, contact, held by friction.
+//! Integration of the motion from phase to phase: flight, contact, held by friction.
 //!
 //! A flight ends at a touch, or where friction changes its direction; a contact ends where w is
-//! zero again, or where the barrier would have to pull and lets go; what is held ends where the
-//! torque on it is more than friction can bear. Every phase begins with the states that the last
-//! one left, exactly.
+//! zero again, or where the barrier would have to pull and lets go; a held phase ends where the
+//! torque exceeds the greatest friction. Every phase begins with the states that the last one left,
+//! exactly.
 //!
 //! At the onset of a slip x' and x'' are both zero, so that rounding decides in which direction x'
 //! leaves its zero. Therefore only crossings in one direction end a phase, and each such event has
@@ -26,7 +26,7 @@ use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
 use crate::system::{Event, Path, PathEnd, SystemOptions};
 
-/// Both bodies from their start until the duration is over.
+/// Follows both bodies from their start until the duration is over.
 ///
 /// # Errors
 /// [`PrimaryError`]; a motion that ends early says so by [`PrimaryMotion::stop`].
@@ -82,7 +82,7 @@ pub fn simulate_primary(
                 break PrimaryStop::Singular;
             }
         }
-        // Phases without length lead nowhere.
+        // Consecutive phases of length zero mean that the motion is stuck.
         run.idle = if run.t > before { 0 } else { run.idle + 1 };
         if run.idle > IDLE {
             break PrimaryStop::Singular;
@@ -94,20 +94,20 @@ pub fn simulate_primary(
 /// Largest number of consecutive phases of length zero.
 const IDLE: usize = 8;
 
-/// The torque or the speed that rounding leaves of zero, in parts of the friction.
+/// Largest torque or speed that counts as zero up to rounding, relative to the friction.
 const ROUNDING: f64 = 1e-12;
 
-/// The state of the pendulum as a mode; the direction is that of dry friction.
+/// The mode of the pendulum; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PrimaryRegime {
     Free(f64),
     Contact(Side, f64),
-    /// In a barrier that would have to pull.
+    /// Inside a barrier that exerts no force because it would have to pull.
     LetGo(Side, f64),
     Held,
 }
 
-/// A motion in the making.
+/// The state of an integration.
 struct PrimaryRun<'a> {
     case: PrimaryCase,
     settings: &'a PrimarySettings,
@@ -185,7 +185,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// The direction of dry friction: that of the motion, or of the torque on what is at rest;
-    /// `None` if friction holds it. A contact pushes with `contact`.
+    /// `None` if friction holds the pendulum. `contact` is the force of a contact.
     fn direction(&self, contact: f64) -> Option<f64> {
         if !self.case.sticks() {
             return Some(0.0);
@@ -198,8 +198,8 @@ impl<'a> PrimaryRun<'a> {
         (torque.abs() > self.case.model.alpha).then(|| torque.signum())
     }
 
-    /// On in this direction: into the barrier on whose surface it stands, where it moves or is
-    /// pushed that way, else free.
+    /// Continues in this direction: into the barrier on whose surface it is, if it moves or is
+    /// pushed that way, else in free flight.
     fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
         self.regime = PrimaryRegime::Free(direction);
         let PrimaryState { x, velocity, y, speed } = self.state;
@@ -208,8 +208,8 @@ impl<'a> PrimaryRun<'a> {
                 continue;
             }
             let push = match velocity == 0.0 {
-                // From rest it slips in the direction that friction opposes, if only with its third
-                // derivative.
+                // From rest it slips in the direction that friction opposes, possibly only with its
+                // third derivative.
                 true if direction != 0.0 => direction,
                 true => self.equations.acceleration(self.t, [x, velocity, y, speed], direction)?,
                 false => velocity,
@@ -229,18 +229,18 @@ impl<'a> PrimaryRun<'a> {
         }
     }
 
-    /// A barrier's place.
+    /// The position of a barrier.
     fn barrier_position(&self, side: Side) -> f64 {
         self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
-    /// The states, and behind them the accounts that change in this phase.
+    /// The states, followed by the energies that change in this phase.
     fn with_accounts(&self, states: &[f64], followed: &PhaseSystem) -> Vec<f64> {
         let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
         states.iter().copied().chain(accounts).collect()
     }
 
-    /// Takes back what stands behind the states.
+    /// Stores the energies that follow the states in `values`.
     fn keep_accounts(&mut self, values: &[f64], followed: &PhaseSystem) {
         for (account, value) in followed.accounts.iter().zip(values) {
             self.accounts[*account] = *value;
@@ -271,16 +271,16 @@ impl<'a> PrimaryRun<'a> {
         Ok(reason)
     }
 
-    /// The events that end a slip in this direction: it comes to rest, or turns out to be none.
+    /// The events that end a slip in this direction: the pendulum comes to rest, or never leaves
+    /// it.
     fn end_of_slip(&self, direction: f64) -> [Event; 2] {
         let forward = Expr::from(direction as i64) * parsed("x'");
         let unseen = number(ROUNDING * self.case.model.alpha);
         [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
 
-    /// Away from every force of a barrier until one of these events; the first of them are the
-    /// turning points of the main mass, those of the pendulum have this number where they are
-    /// looked for.
+    /// Follows the motion without contact forces until one of these events. The first are the
+    /// turning points of the main mass; the event of this number, if given, those of the pendulum.
     fn follow_free(
         &mut self,
         direction: f64,
@@ -328,7 +328,7 @@ impl<'a> PrimaryRun<'a> {
         self.regime = PrimaryRegime::Contact(side, direction);
     }
 
-    /// An impact that begins now, this deep in the barrier.
+    /// Records an impact that begins now, at this depth in the barrier.
     fn begin_impact(&mut self, side: Side, depth: f64) {
         self.taken = self.accounts[2];
         self.impacts.push(PrimaryImpact {
@@ -357,7 +357,7 @@ impl<'a> PrimaryRun<'a> {
         let place = self.barrier_position(side);
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
-        // From a touch without speed the variable w would never leave its zero.
+        // At a touch with zero speed the variable w would never leave zero.
         let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
         let mut events = vec![
             Event::record(parsed("y'")),
@@ -416,8 +416,8 @@ impl<'a> PrimaryRun<'a> {
         Ok(reason)
     }
 
-    /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until
-    /// it is out, or slow enough to be pushed again.
+    /// Follows the pendulum out of a barrier that returns more slowly than it: without force, until
+    /// it has left the barrier or is pushed again.
     fn let_go(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
         let place = self.barrier_position(side);
         let sign = Expr::from(side.sign() as i64);
@@ -484,15 +484,15 @@ impl<'a> PrimaryRun<'a> {
         for met in path.occurrences().iter().filter(|met| met.event == 0) {
             if let Some(state) = path.states_at(met.time) {
                 let t = time(met.time);
-                // In a contact the time is a state of its own.
+                // In a contact the time is one of the states.
                 let t = if t.is_nan() { state.get(4).copied().unwrap_or(self.t) } else { t };
                 self.turns.push((t, y(&state)));
             }
         }
     }
 
-    /// Whether all energy there is could not lift the main mass to a tenth of its start: half of
-    /// that, so that turning points below it have been seen.
+    /// Whether the total energy is too small for the main mass to reach a tenth of its start; the
+    /// limit is half of that, so that turning points below the tenth have been recorded.
     fn is_at_rest(&self) -> bool {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
@@ -504,7 +504,7 @@ impl<'a> PrimaryRun<'a> {
             && self.case.energy(self.state) < 0.5 * primary.stiffness * level * level
     }
 
-    /// The account at the end of a phase.
+    /// Completes the energy balance at the end of a phase.
     fn close_accounts(&mut self) {
         let energy = self.case.energy(self.state);
         let [viscous, friction, contact, dashpot, force] = self.accounts;
@@ -537,5 +537,6 @@ impl<'a> PrimaryRun<'a> {
     }
 }
 
-/// In s, which is longer than the time by one over the root of the depth: no contact lasts so long.
+/// A duration in s, which is longer than the time by one over the root of the depth, that no
+/// contact reaches.
 const LONGEST_CONTACT: f64 = 1e12;

@@ -35,7 +35,7 @@ pub struct UndampedAndLocked {
 }
 
 impl Primary {
-    /// The two linear cases beside the damper.
+    /// The two linear cases for comparison with the damper.
     pub fn undamped_and_locked(&self) -> UndampedAndLocked {
         UndampedAndLocked {
             without: self.single_mass(self.mass),
@@ -56,7 +56,7 @@ impl Primary {
             false => reactance,
         };
         let amplitude = match self.frequency == 0.0 {
-            // f sin(0) drives nothing.
+            // A force at zero frequency, f sin(0), is no drive.
             true => 0.0,
             false => self.force.abs() / reactance.hypot(self.damping * self.frequency),
         };
@@ -69,7 +69,8 @@ impl Primary {
         }
     }
 
-    /// The envelope of the mass alone from this start, not driven; `None` if it creeps.
+    /// The envelope of the free motion of the mass alone from this start; `None` if it is
+    /// overdamped.
     pub fn alone_envelope(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> Option<f64> {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
@@ -77,7 +78,7 @@ impl Primary {
         (square > 0.0).then(|| height() * (-decay * t).exp())
     }
 
-    /// The displacement of the mass alone from this start, not driven.
+    /// The displacement of the free motion of the mass alone from this start.
     pub fn alone_at(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> f64 {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
@@ -109,7 +110,7 @@ impl PrimaryMotion {
     pub fn rest_time(&self) -> Result<f64, NoRest> {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
-        // A start with speed is that of a swing that was larger before: the envelope begins at the
+        // The first swing includes the energy of the initial speed; the envelope begins at the
         // start.
         let first = y.hypot(speed * (primary.mass / primary.stiffness).sqrt());
         if first == 0.0 {

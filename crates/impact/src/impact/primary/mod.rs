@@ -1,5 +1,5 @@
-//! The main mass: a mass on spring and dashpot that carries the pendulum and its barriers, which is
-//! what an impact damper damps.
+//! The main mass: a mass on spring and dashpot that carries the pendulum and its barriers, which
+//! the impact damper is to damp.
 //!
 //! ```text
 //! T = R y'^2/2 + ((y' + x' cos x)^2 + (x' sin x)^2)/2        V = kappa y^2/2 + 1 - cos x
@@ -11,12 +11,12 @@
 //! 1/omega, omega^2 = g/L, energy in units of m g L; R = M/m, kappa = k L/(m g), delta = (c/m)
 //! sqrt(L/g), f = F/(m g), eta = Omega/omega. The equations are derived from these energies by
 //! [`mechanics`](crate::mechanics). The barriers move with the main mass, so the force between them
-//! and the sphere is inside: it changes neither the momentum of both nor, undamped, their energy.
+//! and the sphere is internal: it changes neither the momentum of both nor, undamped, their energy.
 //!
 //! In: a [`PrimaryCase`]. Out: a [`PrimaryMotion`], event by event: both states at any time, the
-//! impacts, where the energy went, and when the main mass comes to rest, beside the same main mass
-//! without damper and with the damper locked, which are linear and known in closed form. A contact
-//! is followed in the variable of `regularised`, in which it is analytic through the touch.
+//! impacts, the energy balance, and the rest time of the main mass, with those of the same main
+//! mass without damper and with the damper locked, which are linear and known in closed form. A
+//! contact is followed in the variable of `regularised`, in which it is analytic through the touch.
 //!
 //! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
 
@@ -60,7 +60,7 @@ pub struct Primary {
     pub frequency: f64,
 }
 
-/// A main mass with its pendulum, and where both begin.
+/// A main mass with its pendulum, and their initial state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimaryCase {
     /// The main mass.
@@ -78,7 +78,7 @@ pub struct PrimarySettings {
     pub duration: f64,
     /// Relative error of a step.
     pub tolerance: f64,
-    /// Phases, flights and contacts together, after which it ends.
+    /// Largest number of phases, flights and contacts together.
     pub phase_limit: usize,
     /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its
     /// start.
@@ -157,13 +157,13 @@ pub enum PrimaryStop {
     /// The end of the duration.
     #[error("at the end of the duration")]
     Duration,
-    /// Rest, if that was to be the end.
+    /// The motion came to rest, and was to end there.
     #[error("at rest")]
     AtRest,
-    /// After as many phases as were allowed.
+    /// The largest number of phases was reached.
     #[error("after as many flights and contacts as were allowed")]
     PhaseLimit,
-    /// A step that could not be made.
+    /// A step failed.
     #[error("where no next step could be made")]
     Singular,
     /// An interrupt.
@@ -171,14 +171,14 @@ pub enum PrimaryStop {
     Interrupted,
 }
 
-/// Two bodies in motion.
+/// The motion of both bodies.
 #[derive(Clone, Debug)]
 pub struct PrimaryMotion {
     /// The case.
     pub case: PrimaryCase,
     /// The time at which it ended.
     pub end: f64,
-    /// The reason.
+    /// The reason why it ended.
     pub stop: PrimaryStop,
     /// Every impact.
     pub impacts: Vec<PrimaryImpact>,
@@ -191,11 +191,11 @@ pub struct PrimaryMotion {
     path: PrimaryPath,
 }
 
-/// Why there is nothing to follow, or nothing to vary.
+/// The reason why a motion or a sweep is not possible.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PrimaryError {
-    /// A number of the main mass that it cannot have.
+    /// A number of the main mass outside its range.
     #[error("the {name} of the main mass must be {wanted}, not {value}")]
     Number {
         /// The name of the parameter.
@@ -205,15 +205,15 @@ pub enum PrimaryError {
         /// The value given.
         value: f64,
     },
-    /// The numbers of the pendulum.
+    /// The numbers of the pendulum are not admissible.
     #[error(transparent)]
     Model(#[from] super::model::ModelError),
-    /// A pivot that is driven beside the main mass.
+    /// A driven pivot, which a main mass excludes.
     #[error(
         "the pivot moves with the main mass: drive that by a force, and leave out the excitation beta"
     )]
     Driven,
-    /// The equations.
+    /// The equations could not be derived.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
     /// A phase that cannot begin.
@@ -244,7 +244,7 @@ pub enum PrimaryError {
 }
 
 impl PrimaryError {
-    /// The known name that may have been meant, as advice.
+    /// Advice on the known name that may have been meant.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::UnknownName { nearest, .. } => {
@@ -281,7 +281,7 @@ impl PrimaryCase {
         Ok(())
     }
 
-    /// The energy of both bodies, swing and spring and barrier, in units of m g L.
+    /// The energy of both bodies, with that of the spring and the barrier, in units of m g L.
     pub fn energy(&self, state: PrimaryState) -> f64 {
         let PrimaryState { x, velocity, y, speed } = state;
         let along = speed + velocity * x.cos();
@@ -323,7 +323,7 @@ impl PrimaryMotion {
         self.path.state_at(time)
     }
 
-    /// Whether it was followed as long as asked.
+    /// Whether it was followed for the whole duration.
     pub fn is_complete(&self) -> bool {
         matches!(self.stop, PrimaryStop::Duration | PrimaryStop::AtRest)
     }

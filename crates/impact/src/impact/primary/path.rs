@@ -54,7 +54,7 @@ impl PrimarySegment {
     }
 }
 
-/// s at this t: the last of its states grows with it.
+/// s at the time t, which is the last of the states and grows with s.
 fn own_time(path: &Path, time: f64) -> Option<f64> {
     let clock = |s: f64| path.states_at(s).map(|state| state[4]);
     let end = path.end();

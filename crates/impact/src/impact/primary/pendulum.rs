@@ -1,4 +1,4 @@
-//! The pendulum beside its main mass: when it rests, and how hard it hits.
+//! The pendulum on its main mass: its rest time and its peak forces.
 
 use super::super::hertz;
 use super::super::si::greatest;

@@ -8,7 +8,7 @@
 use super::Primary;
 use crate::impact::Units;
 
-/// A main mass as it is built.
+/// A main mass in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MainMass {
     /// M, kg, without the pendulum.
@@ -28,7 +28,7 @@ pub struct MainMass {
 }
 
 impl MainMass {
-    /// Its numbers beside this pendulum.
+    /// The dimensionless numbers of the main mass with this pendulum.
     pub fn primary(&self, units: &Units) -> Primary {
         let time = units.time();
         Primary {

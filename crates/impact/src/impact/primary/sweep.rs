@@ -1,5 +1,5 @@
-//! Many main masses with their pendulums: how far each swings in the long run, or when it comes to
-//! rest, with its damper, with the damper locked and without.
+//! Many main masses with their pendulums: the amplitude of each in the long run, or its rest time,
+//! with its damper, with the damper locked and without.
 
 use super::{
     Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked,
@@ -16,7 +16,7 @@ const LAST: f64 = 0.25;
 pub struct PrimaryRow {
     /// The main mass.
     pub primary: Primary,
-    /// The time at which the run ended; 0 for one that was asked to end before it had begun.
+    /// The time at which the run ended; 0 if it was interrupted before it had begun.
     pub end: f64,
     /// The largest |y| in the last quarter of the run, over L.
     pub amplitude: f64,
@@ -34,7 +34,7 @@ pub struct PrimaryRow {
 }
 
 impl PrimaryRow {
-    /// Whether the run was begun before all were asked to end.
+    /// Whether the run had begun before the interrupt.
     pub fn is_begun(&self) -> bool {
         self.stop != PrimaryStop::Interrupted || self.end > 0.0
     }

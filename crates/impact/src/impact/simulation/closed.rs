@@ -7,8 +7,8 @@
 //!
 //! Without damping r = 0, n = 1 and m = k^2: the motion of the pendulum (DLMF 22.19.2). With it, k
 //! exp(-r t) is the sine of half the amplitude that belongs to the energy at each end of the
-//! stretch, m the square of its mean, and n what makes the ends meet. The sines of the contact have
-//! the speeds of touch and release, the greatest depth and the duration.
+//! stretch, m the square of its mean, and n is chosen so that the ends meet. The sines of the
+//! contact have the speeds of touch and release, the greatest depth and the duration.
 
 use std::f64::consts::PI;
 use std::fmt;

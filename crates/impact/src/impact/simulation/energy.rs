@@ -7,9 +7,9 @@
 //! residual  = E(t) - E(0) - (W_viscous + W_friction + W_contact + W_excitation)
 //! ```
 //!
-//! The forces are those of the model, the motion is the one that was found, the integrals are
-//! quadratures: a motion that does not satisfy the equation shows as a residual. Where a barrier
-//! lets go because it would have to pull, the energy still in it is lost to its damping.
+//! The forces are those of the model, the motion is the computed one, the integrals are
+//! quadratures: a motion that does not satisfy the equation leaves a residual. Where a barrier lets
+//! go because it would have to pull, the energy still stored in it counts as lost to its damping.
 
 use super::Simulation;
 use super::path::{QuadratureNode, Regime};

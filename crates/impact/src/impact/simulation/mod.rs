@@ -1,13 +1,13 @@
-//! A motion that was followed: what is kept of it, and what can be asked of it.
+//! The result of a simulation and its evaluation.
 //!
 //! In: from either integrator the path, the contacts, the turning points and why the run ended.
-//! Out: a [`Simulation`]: the motion as a function of time, where its energy went, when it came to
-//! rest, how far it is from another.
+//! Out: a [`Simulation`]: the motion as a function of time, its energy balance, its rest time, its
+//! distance from another motion.
 //!
 //! - `path`: the motion as a function of time, piece by piece.
 //! - `closed`: the formulas of a chain.
-//! - `energy`: the work of each force, and what is left over.
-//! - `place`: where it settles.
+//! - `energy`: the work of each force, and the residual.
+//! - `place`: the position of rest.
 //! - `rest`: the envelope and its 10 %.
 
 mod closed;
@@ -35,7 +35,7 @@ pub enum Integrator {
     /// Power series, the contact in its regularised variable: the fast one.
     #[default]
     Taylor,
-    /// The library's Runge-Kutta in phases: the judge.
+    /// The library's Runge-Kutta in phases, for verification.
     RungeKutta,
     /// A chain of closed forms: swing and contact, one after the other, without integration.
     Chain,
@@ -58,19 +58,18 @@ pub struct Settings {
     pub duration: f64,
     /// Error allowed in one step, relative to the size of x and x'.
     pub relative_tolerance: f64,
-    /// Error allowed in one step beside it, in rad, for a motion of size 1 or more; for smaller
-    /// ones less in proportion.
+    /// Absolute error allowed in one step in addition, in rad, for a motion of size 1 or more;
+    /// proportionally less for smaller ones.
     pub absolute_tolerance: f64,
-    /// Steps after which the run gives up.
+    /// Largest number of steps.
     pub maximum_steps: usize,
     /// Stop as soon as the energy (units of m g L) is no more than this.
     pub rest_energy: Option<f64>,
     /// The interrupt.
     pub interrupt: Interrupt,
-    /// Stop as soon as the rest time is known, but for Runge-Kutta, which goes on to the end.
+    /// Stop as soon as the rest time is known; Runge-Kutta continues to the end.
     pub stop_at_rest: bool,
-    /// Keep the motion as a function of time; without it there are impacts, turning points and the
-    /// end.
+    /// Keep the motion as a function of time; otherwise only impacts, turning points and the end.
     pub keep_path: bool,
 }
 
@@ -98,7 +97,7 @@ pub enum SimulationStop {
     RestEnergy,
     /// The envelope fell to a tenth of the first swing, with [`Settings::stop_at_rest`].
     AtRest,
-    /// The numbers grew beyond all bounds.
+    /// The state overflowed.
     NotFinite {
         /// The last time reached.
         t: f64,
@@ -118,7 +117,7 @@ pub enum SimulationStop {
         /// The last time reached.
         t: f64,
     },
-    /// Events follow each other without time going on.
+    /// Events follow each other without progress of time.
     Stalled {
         /// The time at which it happened.
         t: f64,
@@ -126,7 +125,7 @@ pub enum SimulationStop {
 }
 
 impl SimulationStop {
-    /// Whether the run got where it was to get.
+    /// Whether the run reached its intended end.
     pub fn is_complete(self) -> bool {
         matches!(self, Self::Duration | Self::RestEnergy | Self::AtRest)
     }
@@ -145,7 +144,7 @@ impl SimulationStop {
         }
     }
 
-    /// In a word or two, for tables.
+    /// The reason in a word or two, for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Duration => "duration",
@@ -252,7 +251,7 @@ impl ContactRecord {
         self.speed_out = Some(speed);
         let touched = self.start_depth == 0.0;
         self.restitution = (touched && self.speed_in > 0.0).then(|| speed / self.speed_in);
-        // Two places inside and outside the barrier differ in height, and the barrier stores
+        // The positions of touch and release may differ in height, and the barrier may store
         // energy.
         let held = match model.barrier(self.side) {
             Some(barrier) if !touched => {
@@ -265,7 +264,8 @@ impl ContactRecord {
     }
 }
 
-/// The size of a motion, about, in displacement or speed; zero for a pendulum that hangs at rest.
+/// The approximate size of a motion, in displacement or speed; zero for a pendulum at rest in its
+/// lowest position.
 pub(super) fn size(model: &Model, start: Start) -> f64 {
     let stored = model.depth(start.x).map_or(0.0, |(_, depth)| model.elastic_energy(depth));
     let released = (2.0 * stored).sqrt();
@@ -283,11 +283,11 @@ pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settin
     }
 }
 
-/// Notes that a contact begins: at this depth, which is zero at a touch, and with this speed
+/// Records the beginning of a contact: at this depth, which is zero at a touch, and with this speed
 /// inwards.
 ///
-/// A contact left and entered again before x has changed by more than a step may err goes on: the
-/// pendulum is pressed against the barrier and rests there.
+/// If a contact was left and is entered again before x has changed by more than the error of a
+/// step, the old contact continues: the pendulum is pressed against the barrier and rests there.
 pub(super) fn begin_contact(
     impacts: &mut Vec<ContactRecord>,
     (model, settings): (&Model, &Settings),
@@ -343,7 +343,7 @@ pub struct Simulation {
     pub path: SimulationPath,
     /// Every contact, in order.
     pub impacts: Vec<ContactRecord>,
-    /// Every turning point, in order; the start where it is one.
+    /// Every turning point, in order; including the start if that is one.
     pub turns: Vec<TurningPoint>,
     /// Time at the end.
     pub end_time: f64,
@@ -388,14 +388,14 @@ pub struct MotionDifference {
     pub until: f64,
 }
 
-/// A contact shorter than this part of the time at which it ends has lost digits of its duration to
-/// the clock.
+/// Ratio of the duration of a contact to the time of its end below which the duration has lost
+/// digits.
 pub(super) const CLOCK: f64 = 1e-6;
 
 impl Simulation {
-    /// The greatest force of the barrier in a contact, its damping included, in units of m g,
-    /// looked for on the path. `None` if no path is kept, where that of a chain is only near the
-    /// motion, and if the contact did not end or is too short for the clock.
+    /// The greatest force of the barrier in a contact, its damping included, in units of m g, found
+    /// on the path. `None` if no path is kept, for a chain, whose path is approximate, and if the
+    /// contact did not end or is too short for the clock.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -438,8 +438,8 @@ impl Simulation {
         difference
     }
 
-    /// The contacts beside those of the true motion, in order; nothing for one that the true motion
-    /// does not have.
+    /// The deviations of the contacts from those of the true motion, in order; `None` for a contact
+    /// that the true motion does not have.
     pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
         let relative =
             |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
@@ -459,8 +459,8 @@ impl Simulation {
         self.impacts.iter().enumerate().map(error).collect()
     }
 
-    /// Whether two barriers hold the pendulum within a tenth of its first swing: then the envelope
-    /// says at once that it rests, whatever energy is left.
+    /// Whether two barriers hold the pendulum within a tenth of its first swing: then by the
+    /// envelope it is at rest from the beginning, whatever its energy.
     pub fn is_caged(&self) -> bool {
         let rest = self.rest();
         self.model.is_caged(rest.place, REST_FRACTION * rest.amplitude)
@@ -471,8 +471,8 @@ impl Simulation {
         !self.impacts.is_empty()
     }
 
-    /// Whether it is certain that no barrier will ever be touched: nothing drives the motion, and
-    /// the energy it has left is not enough to get there.
+    /// Whether it is certain that no barrier will ever be touched: there is no drive, and the
+    /// remaining energy does not suffice.
     pub fn never_touches(&self) -> bool {
         let left_over = self.model.energy(self.end_x, self.end_velocity);
         let out_of_reach = |barrier: f64| {

@@ -1,9 +1,9 @@
 //! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, the
 //! Runge-Kutta path, or the formulas of a chain.
 //!
-//! A step of a series has a variable r of its own: to ask for a time is to solve t(r) = t first,
-//! which has one solution because t rises with r. In contact x = x_r + w^2, and the polynomials are
-//! those of w.
+//! A step of a series has its own variable r: for a given time t(r) = t is solved first, which has
+//! one solution because t increases with r. In contact x = x_r + w^2, and the polynomials are those
+//! of w.
 
 use super::closed::ClosedForm;
 use crate::impact::model::Side;
@@ -18,7 +18,7 @@ pub enum Regime {
     Free,
     /// Pressing into a barrier.
     Contact(Side),
-    /// Leaving a barrier faster than the barrier comes back: inside it, but without force.
+    /// Leaving a barrier faster than the barrier returns: inside it, but without force.
     Detached(Side),
     /// Held by dry friction.
     Stuck,
@@ -49,7 +49,7 @@ pub struct PathSegment {
 }
 
 impl PathSegment {
-    /// The formula of this stretch, where it has one: in a chain.
+    /// The formula of this stretch; `None` unless it belongs to a chain.
     pub fn closed_form(&self) -> Option<ClosedForm> {
         match self.form {
             Representation::Closed(form) => Some(form),
@@ -61,8 +61,8 @@ impl PathSegment {
 /// The representation of x and x'.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
-    /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on;
-    /// the series ends at `length`.
+    /// Coefficients of x or w, x' and t - start, as many as `terms` says, from this index of the
+    /// pool on; the series ends at `length`.
     Series {
         offset: usize,
         terms: [usize; 3],
@@ -72,7 +72,7 @@ enum Representation {
     },
     /// A constant position.
     Constant { x: f64 },
-    /// See the trajectory of Runge and Kutta; in contact it counts from the barrier.
+    /// The Runge-Kutta trajectory holds the motion; in contact it counts from the barrier.
     Judged { origin: f64, sign: f64 },
     /// A formula.
     Closed(ClosedForm),
@@ -151,8 +151,8 @@ impl SimulationPath {
         self.pieces.iter().flat_map(inside).chain(last)
     }
 
-    /// A step of a series that ends at `length`: x, x' and t - start, in contact w instead of x,
-    /// behind a barrier.
+    /// Appends a step of a series that ends at `length`: x, x' and t - start, in contact w instead
+    /// of x, behind a barrier.
     pub(in crate::impact) fn push_series(
         &mut self,
         span: [f64; 2],
@@ -205,7 +205,8 @@ impl SimulationPath {
         self.judge.as_ref()?.phase_at(t)
     }
 
-    /// A step of the judge, whose coordinate is counted from `origin` in the direction of `sign`.
+    /// Appends a step of Runge-Kutta, whose coordinate is counted from `origin` in the direction of
+    /// `sign`.
     pub(in crate::impact) fn push_judged(
         &mut self,
         span: [f64; 2],

@@ -16,15 +16,15 @@ use crate::numeric::ode::root::find_root;
 pub(in crate::impact) struct RestPoint {
     /// The position, rad.
     pub x: f64,
-    /// The lowest place of this turn, rad.
+    /// The lowest position of this turn, rad.
     bottom: f64,
     /// The barrier that holds the pendulum above it.
     held: Option<Side>,
 }
 
 impl RestPoint {
-    /// The one at which a motion here settles, friction and excitation left aside; for a motion
-    /// that is nowhere, the bottom.
+    /// The position at which a motion at x settles, without friction and excitation; the bottom if
+    /// x is not finite.
     pub fn near(model: &Model, x: f64) -> Self {
         let bottom = if x.is_finite() { TAU * (x / TAU).round() } else { 0.0 };
         let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
@@ -45,8 +45,8 @@ impl RestPoint {
         (self.x - self.bottom).abs()
     }
 
-    /// The side on which every swing shows its whole energy, where there is one: no barrier stands
-    /// there, and one on the other. A barrier beyond the upright position is none.
+    /// The side on which every swing shows its whole energy: without a barrier, while there is one
+    /// on the other side. `None` otherwise; a barrier beyond the upright position does not count.
     pub fn free_side(&self, model: &Model) -> Option<Side> {
         let stands = |barrier: Option<f64>| {
             barrier.is_some_and(|barrier| (barrier - self.bottom).abs() <= PI)

@@ -1,5 +1,5 @@
-//! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth
-//! of the first swing.
+//! The rest time: the time at which the envelope of the amplitude falls to a tenth of the first
+//! swing.
 //!
 //! ```text
 //! first swing:  A_0 of the energy at the start, E = 1 - cos A_0, half a turn where it turns over
@@ -9,17 +9,17 @@
 //! last crossing: the last time |x| = A_0/10
 //! ```
 //!
-//! Here x is counted from the place of rest (`place`), which is not 0 where a barrier holds the
-//! pendulum above the bottom, or where it has turned over; A_0 is less by how far above the bottom
-//! that is.
+//! Here x is counted from the place of rest (`place`), which is not 0 if a barrier holds the
+//! pendulum above the bottom, or if it has turned over; A_0 is reduced by its height above the
+//! bottom.
 //!
 //! If the line to the next turning point reaches the level before the motion itself does, as when
-//! one swing takes nearly everything, or just after a turning point, the fall of |x| from the
-//! turning point is the rest: the later of the two, so that neither makes it jump. A creeping
-//! motion has none but that.
+//! one swing takes nearly everything, or just after a turning point, the rest time is that of the
+//! fall of |x| from the turning point: the later of the two, so that it does not jump. A creeping
+//! motion has only the latter.
 //!
-//! A barrier turns the motion early on its side: how far it gets there says where the barrier
-//! stands and nothing of the swing. On the other side every swing shows its whole energy, impacts
+//! A barrier turns the motion early on its side: its turning points there depend on the position of
+//! the barrier and not on the swing. On the other side every swing shows its whole energy, impacts
 //! or not, so the rest time is continuous in the parameters wherever the motion is, but for one
 //! case: beside one barrier, where dry friction just holds the pendulum at a turning point on the
 //! barrier's side, the next one on the other side, half a swing later, is missing, and the line
@@ -27,7 +27,7 @@
 //!
 //! The last crossing is a staircase: it jumps by half a swing when one more crest stays below the
 //! level. A crossing counts only once the turning point after it has been reached; a run that ends
-//! before knows of no rest.
+//! before has no rest time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -41,7 +41,7 @@ use crate::impact::polynomial::crossing_of;
 /// The part of the first amplitude that counts as rest.
 pub const REST_FRACTION: f64 = 0.1;
 
-/// Rest, and what it was measured by.
+/// The rest time and the quantities from which it was determined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
     /// The amplitude of the first swing, rad.
@@ -51,8 +51,8 @@ pub struct Rest {
     pub place: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
-    /// The last time at which the pendulum was so far from the place of rest; `None` if it never
-    /// was.
+    /// The last time at which the pendulum was a tenth of the first amplitude away from the place
+    /// of rest; `None` if it never was.
     pub last_crossing: Option<f64>,
 }
 
@@ -67,7 +67,7 @@ pub enum NoRest {
     /// next turning point.
     #[error("the run ends before the turning point that would show it: a longer duration will")]
     NotYetSeen,
-    /// There is no amplitude to begin with.
+    /// There is no initial amplitude.
     #[error(
         "the motion starts at its place of rest without speed: it has no amplitude that could decay"
     )]
@@ -87,7 +87,7 @@ enum RestByTurningPoints {
 }
 
 impl Simulation {
-    /// The time at which it came to rest.
+    /// The time at which the motion came to rest.
     pub fn rest(&self) -> Rest {
         let amplitude = self.first_swing();
         let place = self.rest_point().x;
@@ -113,8 +113,8 @@ impl Simulation {
         Rest { amplitude, place, time, last_crossing }
     }
 
-    /// The amplitude of a swing with the energy of the start, so that a motion has the same
-    /// wherever in its first swing it is taken up.
+    /// The amplitude of a swing with the energy of the start, so that it does not depend on the
+    /// phase of the first swing at the start.
     fn first_swing(&self) -> f64 {
         first_swing(&self.model, self.start)
     }
@@ -136,8 +136,8 @@ impl Simulation {
         let place = self.rest_point();
         let free = place.free_side(&self.model);
         let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };
-        // From where it came tells on which side a turning point lies; a moment of rest without
-        // motion before it, as under friction, lies where the last one did.
+        // The direction of approach tells the side of a turning point; a moment of rest without
+        // motion before it, as under friction, is on the side of the last one.
         let mut before = self.start.x;
         let mut side = None;
         let mut last: Option<TurningPoint> = None;
@@ -165,13 +165,14 @@ impl Simulation {
                 }
             }
         }
-        // Held by friction to the end, or down to the rest energy: it will not be larger any more.
+        // A pendulum that is held by friction to the end, or has fallen to the rest energy, will
+        // not have a larger amplitude again.
         let held = self.model.sticks()
             && self.end_velocity == 0.0
             && self.turns.last().is_some_and(|turn| turn.x == self.end_x);
         if held {
-            // Since when, not until when: how long a run is does not change when its motion came to
-            // rest.
+            // The beginning of the hold counts, not the end of the run, on which the rest time must
+            // not depend.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
         } else if self.stop == SimulationStop::RestEnergy {
@@ -219,9 +220,9 @@ impl Simulation {
         })
     }
 
-    /// The turning point from which the fall to a tenth has to be known and no path tells it: none
-    /// is kept, or it is that of a chain, whose formulas are only near the motion between turning
-    /// points.
+    /// The turning point from which the fall to a tenth is needed but not given by a path: because
+    /// none is kept, or because it is that of a chain, whose formulas are approximate between
+    /// turning points. `None` if it is not needed.
     pub(in crate::impact) fn untold_fall(&self) -> Option<TurningPoint> {
         let level = REST_FRACTION * self.first_swing();
         if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
@@ -334,14 +335,14 @@ fn may_be_late(above: TurningPoint, below: TurningPoint, level: f64) -> bool {
     halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()
 }
 
-/// In parts of that of the linear swing: the fall from a turning point that is followed by one at
-/// least half as far out.
+/// The longest fall from a turning point that is followed by one at least half as far out, relative
+/// to that of the linear swing.
 const LONGEST_FALL: f64 = 1.5;
 
 /// The time at which the straight line of log|x| from one turning point to a later one passes the
 /// level between them.
 fn between(above: TurningPoint, below: TurningPoint, level: f64) -> f64 {
-    // Friction may hold it at zero, whose logarithm is not to be had.
+    // Friction may hold the pendulum at zero, which has no logarithm.
     let height = |turn: TurningPoint| turn.x.abs().max(1e-12 * level).ln();
     let fraction = (level.ln() - height(above)) / (height(below) - height(above));
     above.t + fraction * (below.t - above.t)

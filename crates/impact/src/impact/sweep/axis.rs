@@ -49,7 +49,7 @@ pub struct Axis {
     values: Vec<f64>,
 }
 
-/// The reason why a text names no axis.
+/// The reason why a text is not an axis.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AxisError {
@@ -70,7 +70,7 @@ pub enum AxisError {
     /// A value that is not a finite number.
     #[error("`{0}` is no finite number")]
     Number(String),
-    /// Ends further apart than numbers reach.
+    /// Ends whose difference overflows.
     #[error(
         "from {from} to {to} is further than numbers reach: bring the ends together, or write `:log`"
     )]
@@ -91,7 +91,7 @@ pub enum AxisError {
         /// The last value.
         to: f64,
     },
-    /// A count that cannot be.
+    /// A count outside its range.
     #[error("the count `{0}` should be a whole number from 2 to {MOST_MOTIONS}")]
     Count(String),
     /// A value that comes twice.
@@ -139,7 +139,7 @@ impl Axis {
         if from == 0.0 || to == 0.0 || from.signum() != to.signum() {
             return Err(AxisError::NoRatio { from, to });
         }
-        // Powers of ten stay what they are.
+        // Powers of ten stay exact.
         let (first, last) = (from.abs().log10(), to.abs().log10());
         let value = |part: f64| from.signum() * 10_f64.powf(first + (last - first) * part);
         Self::range(name, Spacing::Logarithmic, [from, to], count, value)

@@ -5,12 +5,12 @@
 //! sin y = y - y^3/3! + ... + y^17/17!,   cos y = 1 - y^2/2! + ... + y^16/16!:   what is left out is below 2^-58
 //! ```
 //!
-//! A processor computes several only where no function is called for each; and the same on every
-//! processor.
+//! Own polynomials are used because calls of library functions would not be vectorised, and because
+//! the result is then the same on every processor.
 
 use std::f64::consts::FRAC_2_PI;
 
-/// 1.5 2^52: added to a number, it leaves its nearest whole number in the last bits.
+/// 1.5 2^52: added to a number, it rounds it to a whole number in the last bits.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
 /// The first 33 bits of pi/2, and the rest.

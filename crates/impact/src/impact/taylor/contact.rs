@@ -1,4 +1,4 @@
-//! Contact: its begin and its end, and what happens in a step of the regularised equation.
+//! Contact: its beginning and end, and the events in a step of the regularised equation.
 
 use super::{Loaded, Runner, StepEvent, turning_points};
 use crate::impact::hertz;
@@ -29,7 +29,7 @@ impl ContactStep<'_> {
     }
 }
 
-/// The part of a step of this length that takes so long: its length, and its values at the end.
+/// The part of a step that takes a given time: its length, and the values at its end.
 pub(super) fn cut(
     [place, velocity, time]: [&[f64]; 3],
     remaining: f64,
@@ -47,7 +47,7 @@ pub(super) fn cut(
 }
 
 impl Runner {
-    /// Takes a step in contact with a plain course, if nothing else ends it.
+    /// Takes a step in contact in the simple case, if no other event ends it.
     pub(super) fn press_on(
         &mut self,
         (side, barrier): (Side, f64),
@@ -95,7 +95,7 @@ impl Runner {
         true
     }
 
-    /// Takes a step in contact up to what ends it, and goes on from there.
+    /// Takes a step in contact up to the event that ends it, and continues from there.
     pub(super) fn advance_contact(
         &mut self,
         (side, barrier): (Side, f64),
@@ -147,8 +147,8 @@ impl Runner {
         self.go_on(&step, event);
     }
 
-    /// Notes the turning points of a step and finds where it ends by them: where, why, and the
-    /// greatest depth until there.
+    /// Records the turning points of a step and finds the event that ends it: its position, its
+    /// kind, and the greatest depth up to there.
     fn turns_and_release(
         &mut self,
         step: &ContactStep,
@@ -226,7 +226,7 @@ impl Runner {
         }
     }
 
-    /// Contact begins, at this speed.
+    /// Begins a contact at this speed.
     pub(super) fn touch(&mut self, side: Side, speed: f64) {
         begin_contact(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
         self.enter_contact(side, 0.0, speed);
@@ -253,7 +253,7 @@ impl Runner {
         self.enter_contact(side, (depth - back).max(0.0).sqrt(), speed - taken);
     }
 
-    /// In contact at w with this speed inwards.
+    /// Sets the state in contact at w with this speed inwards.
     pub(super) fn enter_contact(&mut self, side: Side, w: f64, speed: f64) {
         self.regime = Regime::Contact(side);
         let barrier = self.model.barrier(side).unwrap_or_default();
@@ -273,7 +273,7 @@ impl Runner {
         self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };
     }
 
-    /// Contact ends at this velocity.
+    /// Ends the contact at this velocity.
     pub(super) fn leave_contact(&mut self, velocity: f64) {
         if let Some((side, barrier)) = self.side() {
             self.place = barrier;

@@ -1,14 +1,14 @@
-//! The course of a step where it is plain: at most one turning point, and at most one crossing of a
-//! bound after or before it, found for several motions side by side.
+//! The events of a step in the simple case: at most one turning point, and at most one crossing of
+//! a bound after or before it, found for several motions side by side.
 //!
-//! The bounds of x are the barriers; the bound of w, in contact, is 0. What is not plain is looked
-//! at motion by motion, by `flight` and `contact`, which come to the same numbers where it is.
+//! The bounds of x are the barriers; the bound of w, in contact, is 0. Other steps are analysed
+//! motion by motion, by `flight` and `contact`, which give the same numbers in the simple case.
 
 use super::series::{Ends, Inputs, SeriesCoefficients};
 use super::{StepEquation, VANISHING};
 use crate::impact::polynomial::lanes::{changes_of_sign, crossings};
 
-/// A place on the way.
+/// A point within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StepPoint {
     /// The variable of the series.
@@ -75,7 +75,7 @@ impl<const L: usize> Courses<L> {
         }
     }
 
-    /// The course of one motion; `None` if it is not plain.
+    /// The events of one motion; `None` if its case is not simple.
     pub(super) fn lane(&self, lane: usize) -> Option<StepEvents> {
         self.plain[lane].then(|| StepEvents {
             turn: self.turns[lane].then(|| self.turn.lane(lane)),
@@ -84,7 +84,7 @@ impl<const L: usize> Courses<L> {
     }
 }
 
-/// The courses of steps of these lengths, which end there if nothing happens before.
+/// The events of steps of these lengths.
 #[inline(always)]
 pub(super) fn courses<const L: usize>(
     series: &SeriesCoefficients<L>,
@@ -126,7 +126,7 @@ pub(super) fn courses<const L: usize>(
         for lane in 0..L {
             let turned = courses.turn.place[lane];
             let beyond = (turned > inputs.upper[lane]) | (turned < inputs.lower[lane]);
-            // Beyond a bound it does not come so far.
+            // A crossing of a bound ends the step before the turning point beyond it.
             let (ends, begins) = (courses.turns[lane] & beyond, courses.turns[lane] & !beyond);
             to[lane] = if ends { turn[lane] } else { to[lane] };
             goal[lane] = if ends { turned } else { goal[lane] };

@@ -1,5 +1,5 @@
-//! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on
-//! it, a turning point.
+//! Free flight and the events that end a step of it: a touch of a barrier, the onset of a contact
+//! from rest on it, a turning point.
 
 use super::contact::cut;
 use super::{LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, StepEvent, turning_points};
@@ -12,7 +12,7 @@ use crate::impact::taylor::course::StepEvents;
 use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState, TIME_TERMS};
 
 impl Runner {
-    /// Takes a step of free flight with a plain course, if nothing else ends it.
+    /// Takes a step of free flight in the simple case, if no other event ends it.
     pub(super) fn fly_on(
         &mut self,
         end: StepEndState,
@@ -60,7 +60,7 @@ impl Runner {
         true
     }
 
-    /// Takes a step of free flight up to what ends it, and goes on from there.
+    /// Takes a step of free flight up to the event that ends it, and continues from there.
     pub(super) fn advance_flight(
         &mut self,
         whole: StepEndState,
@@ -161,8 +161,8 @@ impl Runner {
             let x_to = if turning { value(x, to) } else { end.place };
             for side in [Side::Right, Side::Left] {
                 let sign = side.sign();
-                // At rest on the barrier: which way it goes is in the change of x alone, not in x -
-                // x_r.
+                // At rest on the barrier the direction of motion is given by the change of x, not
+                // by x - x_r.
                 if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
                     if sign * rise(x, to) > 0.0 {
                         return (self.onset(side, [x, v, time], to), Some(StepEvent::Onset(side)));
@@ -180,8 +180,8 @@ impl Runner {
                     if sign * value(v, touch) > 0.0 {
                         return (touch, Some(StepEvent::Touch(side)));
                     }
-                    // Beyond it by more than rounding, and yet no speed: it turned on the barrier
-                    // and is pushed in.
+                    // Beyond the barrier by more than rounding but without speed: the pendulum
+                    // turned on the barrier and is pushed in.
                     if sign * (x_to - barrier) > 8.0 * f64::EPSILON * barrier.abs().max(1.0) {
                         return (touch, Some(StepEvent::Settle(side)));
                     }
@@ -213,11 +213,11 @@ impl Runner {
         for (entry, coefficient) in excess.iter_mut().zip(v) {
             *entry = sign * coefficient;
         }
-        // It begins at the level or below it, whatever rounding says.
+        // The excess begins at zero or below, whatever the rounding.
         excess[0] = (excess[0] + self.model.gamma / self.model.mu).min(0.0);
         let catches = sign_changes(&excess[..=self.order], h);
         let catch = catches.as_slice().first().copied().unwrap_or(h);
-        // Until then it moves away from the barrier all the time.
+        // Until then the pendulum always moves away from the barrier.
         if sign * (value(x, catch) - barrier) <= 0.0 {
             let release = level_crossing(x, barrier, 0.0, catch);
             return (release, Some(StepEvent::Release));
@@ -229,7 +229,7 @@ impl Runner {
     /// the barrier from rest on it at least until `to`.
     fn onset(&self, side: Side, [x, v, time]: [&[f64]; 3], to: f64) -> f64 {
         let mut u = to;
-        // Each time the part of the force shrinks by 4^4 or more.
+        // Each iteration reduces the share of the force by 4^4 or more.
         for _ in 0..MOST_IDLE {
             let (depth, speed) = (side.sign() * rise(x, u), side.sign() * value(v, u));
             if self.model.contact(depth, speed) * value(time, u) <= LIGHT * speed {

@@ -1,12 +1,12 @@
-//! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation
-//! tears it loose.
+//! Coulomb friction at a turning point: it lets the motion continue, or holds it until the
+//! excitation releases it.
 
 use super::Runner;
 use crate::impact::simulation::Regime;
 use crate::impact::simulation::{SimulationStop, TurningPoint};
 
 impl Runner {
-    /// The acceleration by all but friction at rest, now.
+    /// The present acceleration at rest by all forces but friction.
     fn force_at_rest(&self) -> f64 {
         let (t, x, _) = self.now();
         let contact = match self.side() {
@@ -28,7 +28,7 @@ impl Runner {
         }
     }
 
-    /// Held by friction until the excitation tears it loose, or to the end.
+    /// Holds the pendulum by friction until the excitation releases it, or to the end.
     fn stay_held(&mut self) {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();

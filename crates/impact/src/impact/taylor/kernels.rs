@@ -5,7 +5,7 @@
 //! z' = y'/b:   n z_n b_0 = n y_n - sum_(0<k<n) k z_k b_(n-k)
 //! ```
 //!
-//! The slope y' is stored one place down: n y_n in the place of y_(n-1). A coefficient costs n
+//! The slope y' is stored shifted by one: n y_n at the index of y_(n-1). A coefficient costs n
 //! multiplications, half of them for a square.
 
 use super::series::{HIGHEST_ORDER, LaneSeries};
@@ -14,8 +14,8 @@ use super::stretch::stretched;
 /// Motions in one register of 256 bits.
 const REGISTER: usize = 4;
 
-/// (a b)_n, asked for in rising order: an even n is computed together with what is known of the
-/// next, so that every coefficient is read once for both.
+/// (a b)_n, requested in increasing order: for an even n the known part of the next one is computed
+/// at the same time, so that every coefficient is read once for both.
 #[inline(always)]
 pub(super) fn product<const L: usize>(
     a: &LaneSeries<L>,
@@ -44,7 +44,7 @@ pub(super) fn product<const L: usize>(
     sum
 }
 
-/// (a b)_n and (a c)_n likewise.
+/// (a b)_n and (a c)_n, computed like [`product`].
 #[inline(always)]
 pub(super) fn products<const L: usize>(
     a: &LaneSeries<L>,
@@ -64,7 +64,7 @@ pub(super) fn products<const L: usize>(
     for ((low, high), (b, c)) in
         a[..n].iter().zip(&a[1..=n]).zip(b[1..=n].iter().zip(&c[1..=n]).rev())
     {
-        // A register at a time: so that the sums stay in theirs.
+        // One register at a time, so that the sums stay in registers.
         for first in (0..L).step_by(REGISTER) {
             let last = L.min(first + REGISTER);
             for lane in first..last {
@@ -85,8 +85,8 @@ pub(super) fn products<const L: usize>(
     sums
 }
 
-/// (a b)_n likewise where one is the other times a constant: half the terms are like the other
-/// half.
+/// (a b)_n, computed like [`product`], if one factor is a multiple of the other, so that half of
+/// the terms equal the other half.
 #[inline(always)]
 pub(super) fn symmetric<const L: usize>(
     a: &LaneSeries<L>,
@@ -111,7 +111,7 @@ pub(super) fn symmetric<const L: usize>(
                 sum[lane] += a[lane] * low[lane];
             }
         }
-        // The middle one, which stands alone, came last.
+        // The middle term, which has no counterpart, came last.
         for lane in 0..L {
             sum[lane] = 2.0 * (sum[lane] + a[0][lane] * b[n][lane]) - a[half][lane] * b[half][lane];
         }
@@ -185,7 +185,8 @@ pub(super) fn waves_of_time<const L: usize>(
     }
 }
 
-/// The next coefficient of what has the slope y'/b, and of that slope; `numerator` is n y_n.
+/// The next coefficients of the function with the slope y'/b, and of that slope; `numerator` is n
+/// y_n.
 #[inline(always)]
 pub(super) fn quotient<const L: usize>(
     [result, slope]: [&mut LaneSeries<L>; 2],
@@ -205,7 +206,7 @@ pub(super) fn quotient<const L: usize>(
     }
 }
 
-/// Time itself, all of it.
+/// The series of time itself.
 #[inline(always)]
 pub(super) fn time<const L: usize>(
     series: &mut LaneSeries<L>,

@@ -1,8 +1,8 @@
 //! Several runs side by side on one core: eight motions share each instruction of the series.
 //!
-//! Each run is in a phase of its own, so a pool of them is kept, and at every turn eight that want
+//! Each run is in a phase of its own, so a pool of runs is kept, and in each round eight that need
 //! the same series get it together. The lanes never touch each other and no operation is fused or
-//! reordered: a run gives bit for bit what it gives alone, whatever runs beside it.
+//! reordered: a run gives bit for bit the same result as alone, whatever runs in the other lanes.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -12,15 +12,14 @@ use super::series::{Ends, HIGHEST_ORDER, Inputs, SeriesCoefficients, Terms};
 use super::step::step_lengths;
 use super::{Runner, StepEquation};
 
-/// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
+/// Number of motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
 
-/// Runs under way at once: so many that eight of them always want the same series, and so few that
-/// they stay in the cache.
+/// Number of runs in the pool: so many that eight of them always need the same series, and so few
+/// that they stay in the cache.
 const POOL: usize = 16;
 
-/// The series of one group; always compiled into its caller, so that it gets the widest registers
-/// there are.
+/// The series of one group; always inlined, so that it uses the widest registers available.
 struct LaneExpansion<'a> {
     inputs: &'a Inputs<LANES>,
     order: usize,
@@ -43,7 +42,7 @@ impl WithSimd for LaneExpansion<'_> {
     }
 }
 
-/// Its values at the ends of the steps, and what happens in them.
+/// The values at the ends of the steps, and the events within them.
 struct Evaluation<'a> {
     series: &'a SeriesCoefficients<LANES>,
     inputs: &'a Inputs<LANES>,
@@ -65,8 +64,8 @@ impl WithSimd for Evaluation<'_> {
     }
 }
 
-/// The places of the next group, from the longer of the two queues: how many they are, and which
-/// series they want.
+/// The places of the next group, from the longer of the two queues: their number, and the series
+/// that they need.
 fn next_group(
     flights: &mut Vec<usize>,
     contacts: &mut Vec<usize>,
@@ -87,7 +86,7 @@ fn next_group(
     (group, count, equation)
 }
 
-/// Follows every run to its end, and hands each over as it ends, with its number. All have the same
+/// Follows every run to its end, and passes each on with its number as it ends. All have the same
 /// tolerance.
 pub(in crate::impact) fn follow(
     runs: impl Iterator<Item = Runner>,
@@ -98,7 +97,7 @@ pub(in crate::impact) fn follow(
     let mut pool: Vec<(usize, Runner)> = Vec::with_capacity(POOL);
     let mut flights: Vec<usize> = Vec::with_capacity(POOL);
     let mut contacts: Vec<usize> = Vec::with_capacity(POOL);
-    // Places of the pool that have no series to come yet.
+    // Indices of the pool whose next series is not determined yet.
     let mut fresh: Vec<usize> = Vec::with_capacity(POOL);
     let mut series = Box::new(SeriesCoefficients::<LANES>::new());
     let mut inputs = Inputs::<LANES>::new();
@@ -116,7 +115,7 @@ pub(in crate::impact) fn follow(
                 Some(StepEquation::Flight) => flights.push(place),
                 Some(StepEquation::Contact) => contacts.push(place),
                 None => {
-                    // Its place goes to the next run; without one it stays behind, ended.
+                    // Its slot goes to the next run, or stays unused.
                     if let Some(next) = waiting.next() {
                         let (number, runner) = std::mem::replace(entry, next);
                         done(number, runner);

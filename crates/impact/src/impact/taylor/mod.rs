@@ -1,4 +1,4 @@
-//! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
+//! One run by Taylor series: the length of a step, the events in it, and the next phase.
 //!
 //! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run
 //! alone (`simulate_one`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
@@ -15,12 +15,12 @@
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
 //!
-//! A [`Runner`] says which series it needs next ([`Runner::next_equation`], [`Runner::inputs`]) and is
-//! given its coefficients ([`Runner::advance`]); who computes them, for one motion or for several
-//! side by side, it does not know. What happens in most steps, a turning point and a touch or a
-//! release, is found side by side too, in `course`; what else may end a step stands in `flight` and
-//! `contact`, what dry friction does at a turning point in `friction`, the length of a step in
-//! `step` and `stretch`, sine and cosine for several motions in `angle`.
+//! A [`Runner`] says which series it needs next ([`Runner::next_equation`], [`Runner::inputs`]) and
+//! is given its coefficients ([`Runner::advance`]), whether these are computed for one motion or
+//! for several side by side. What happens in most steps, a turning point and a touch or a release,
+//! is found side by side too, in `course`; other events that may end a step are in `flight` and
+//! `contact`, dry friction at a turning point in `friction`, the length of a step in `step` and
+//! `stretch`, sine and cosine for several motions in `angle`.
 
 mod angle;
 mod contact;
@@ -48,7 +48,7 @@ pub(super) use lanes::follow;
 use series::{HIGHEST_ORDER, Inputs, SeriesCoefficients, StepEndState, Terms};
 use step::step_lengths;
 
-/// The longest step in time, for a motion at rest has no scale of its own.
+/// The longest step in time, because a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
 
 /// The part of the tolerance that the first term left out may use up: from one contact to the next
@@ -59,21 +59,20 @@ const SAFETY: f64 = 0.01;
 const LONGEST_CONTACT_STEP: f64 = 64.0;
 
 /// The part of the velocity that the contact force may have taken when a contact that begins from
-/// rest is handed to the equation of the contact: its first order is taken off then, so what is
-/// left out is the square of it.
+/// rest is handed to the equation of the contact: its first-order effect is subtracted then, so
+/// that the error is of second order.
 const LIGHT: f64 = 1e-8;
 
-/// A touch slower than this is none: in contact the fourth power of w, the root of the depth, would
-/// be lost.
+/// The slowest touch: below this the fourth power of w, the root of the depth, would underflow.
 const SLOWEST_TOUCH: f64 = 1e-75;
 
-/// A speed that is none.
+/// A speed below this counts as zero.
 const VANISHING: f64 = 1e-280;
 
 /// Events in a row without progress of time after which a run is called stalled.
 const MOST_IDLE: usize = 100;
 
-/// Contacts for which there is room from the beginning.
+/// Number of contacts for which memory is reserved.
 const FEW: usize = 8;
 
 /// The coefficients of a step of one motion: x or w, v, t.
@@ -86,7 +85,7 @@ enum StepEquation {
     Contact,
 }
 
-/// One run and where it is.
+/// One run and its present state.
 pub(super) struct Runner {
     model: Model,
     settings: Settings,
@@ -94,7 +93,7 @@ pub(super) struct Runner {
     terms: Terms,
     regime: Regime,
     t: f64,
-    /// x in flight, w in contact, where it and the velocity are seen in the mirror of the side.
+    /// x in flight, w in contact; in contact it and the velocity are mirrored to a right barrier.
     place: f64,
     velocity: f64,
     sine: f64,
@@ -103,10 +102,10 @@ pub(super) struct Runner {
     angles: [(f64, f64); 2],
     /// Coulomb friction alone: the direction of the motion.
     direction: f64,
-    /// Let go by friction just now: the acceleration is still zero.
+    /// Whether friction has just released the pendulum, so that the acceleration is still zero.
     released: bool,
     unit: f64,
-    /// In contact: the barrier, as seen in the mirror; otherwise 0.
+    /// In contact: the mirrored position of the barrier; otherwise 0.
     base: f64,
     /// In contact: the largest w and the largest speed of Hertz's contact that begins so.
     hertz: [f64; 2],
@@ -128,14 +127,14 @@ pub(super) struct Runner {
 enum StepEvent {
     Turn,
     Touch(Side),
-    /// Turned on the barrier and pushed in: at rest there, and the contact begins from rest.
+    /// A turning point on the barrier itself, from which the contact begins from rest.
     Settle(Side),
     /// The onset of the contact force after a motion from rest on the barrier into it.
     Onset(Side),
     Release,
     /// The contact would begin to pull.
     Detach,
-    /// The barrier has come back and presses again.
+    /// The barrier has returned and presses again.
     Reattach,
     RestEnergy,
 }
@@ -162,8 +161,8 @@ pub(super) fn simulate_one(model: Model, start: Start, settings: Settings) -> Si
     runner.finish(start)
 }
 
-/// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is
-/// followed with its path, again or, for a chain, for once.
+/// The time of the fall to a tenth of the first swing, if that may be the rest time and no path
+/// gives it: that part of the motion is computed with its path. `None` if it is not needed.
 pub(super) fn time_of_fall_by_series(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
@@ -278,7 +277,7 @@ impl Runner {
         simulation
     }
 
-    /// Time, displacement and velocity now.
+    /// The present time, displacement and velocity.
     fn now(&self) -> (f64, f64, f64) {
         match self.side() {
             Some((side, barrier)) if matches!(self.regime, Regime::Contact(_)) => (
@@ -290,7 +289,7 @@ impl Runner {
         }
     }
 
-    /// The order of the series it wants.
+    /// The order of the series that it needs.
     fn order(&self) -> usize {
         self.order
     }
@@ -300,7 +299,7 @@ impl Runner {
         self.terms
     }
 
-    /// The series wanted next; nothing once the run has ended.
+    /// The series needed next; `None` once the run has ended.
     fn next_equation(&mut self) -> Option<StepEquation> {
         if self.stop.is_some() {
             return None;
@@ -324,7 +323,7 @@ impl Runner {
         }
     }
 
-    /// Writes where it is now into one lane.
+    /// Writes the present state into one lane.
     fn inputs<const L: usize>(&self, lane: usize, inputs: &mut Inputs<L>) {
         let model = &self.model;
         let mirror = match self.regime {
@@ -370,8 +369,7 @@ impl Runner {
         (size, allowed)
     }
 
-    /// The length of the step in its unit, if the series reaches so far: it ends there if nothing
-    /// happens before.
+    /// The length of the step in its unit, limited to the reach of the series.
     fn step_length(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
         let longest = match self.regime {
@@ -429,7 +427,7 @@ impl Runner {
         }
     }
 
-    /// Whether the swing alone has no more than the rest energy.
+    /// Whether the energy of the swing alone is at most the rest energy.
     fn is_at_rest_energy(&self, velocity: f64, cosine: f64) -> bool {
         self.settings
             .rest_energy
@@ -445,8 +443,8 @@ impl Runner {
         }
     }
 
-    /// Ends the run where it is; turning points noted in the rest of the step are no longer part of
-    /// it.
+    /// Ends the run at the present state; turning points noted in the rest of the step are no
+    /// longer part of it.
     fn end_at_rest_energy(&mut self) {
         self.stop = Some(SimulationStop::RestEnergy);
         while self.turns.last().is_some_and(|turn| turn.t > self.t) {
@@ -475,7 +473,7 @@ impl Runner {
         }
     }
 
-    /// Keeps the unit near the length of the steps.
+    /// Adapts the unit to the length of the steps.
     fn adapt(&mut self) {
         let proposed = self.proposed;
         if !(0.125..=8.0).contains(&proposed) && proposed.is_finite() {

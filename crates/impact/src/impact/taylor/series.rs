@@ -1,8 +1,8 @@
 //! Initial values and storage of the series of a step, and their values at its end.
 //!
-//! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched
+//! Times are measured in a suitable unit, so that no coefficient over- or underflows, and stretched
 //! within a step (`stretch`). `L` motions go through the same operations side by side; each gets
-//! bit for bit what it would get alone.
+//! bit for bit the same result as alone.
 
 use super::angle::sines_and_cosines;
 use super::kernels::per_lane;
@@ -15,7 +15,7 @@ pub(super) const HIGHEST_ORDER: usize = 30;
 /// Coefficients of the time in flight.
 pub(super) const TIME_TERMS: usize = 4;
 
-/// Number of last coefficients that decide on the length of a step: a series may have gaps. At
+/// Number of last coefficients that determine the length of a step: a series may have gaps. At
 /// touch v is a series in s^5, because v' = -gamma w^4 and w' = v/2.
 pub(super) const LAST: usize = 5;
 
@@ -102,11 +102,11 @@ impl<const L: usize> Inputs<L> {
     }
 }
 
-/// Series that no one reads but the equations.
+/// Number of auxiliary series, which only the equations use.
 const SCRATCH: usize = 18;
 
-/// The series of a step: two or three of them, all but the first two scratch outside contact. No
-/// coefficient of eight lanes lies across two lines of the cache.
+/// The series of a step, and the auxiliary ones of its equations. The coefficients of eight lanes
+/// never cross a cache line.
 #[repr(align(64))]
 pub(super) struct SeriesCoefficients<const L: usize> {
     /// x in flight, w in contact.
@@ -116,8 +116,7 @@ pub(super) struct SeriesCoefficients<const L: usize> {
     pub(super) time: LaneSeries<L>,
     pub(super) scratch: [LaneSeries<L>; SCRATCH],
     /// The known parts of the next coefficients of products, and of sines and cosines. They are
-    /// kept here because as variables of the function they make eight motions side by side slower
-    /// by 8 %.
+    /// stored here because as local variables they make eight motions side by side 8 % slower.
     pub(super) ahead: [[f64; L]; SCRATCH],
     pub(super) ahead_of_waves: [[[f64; L]; 2]; 2],
 }

@@ -3,11 +3,11 @@
 use super::kernels::INVERSE;
 use super::series::{LAST, LaneSeries};
 
-/// 2^52: a number to whose last digits whole numbers below it can be added, and taken off again.
+/// 2^52, beyond which consecutive doubles are whole numbers.
 const WHOLE_NUMBERS: f64 = 4_503_599_627_370_496.0;
 
-/// The longest steps at which the first term left out stays within what is allowed, by the radius
-/// of convergence that the last coefficients of the velocity tell: |v_n| ~ size / radius^n.
+/// The longest steps at which the first term left out stays within the allowance, by the radius of
+/// convergence estimated from the last coefficients of the velocity: |v_n| ~ size / radius^n.
 #[inline(always)]
 pub(super) fn step_lengths<const L: usize>(
     velocity: &LaneSeries<L>,
@@ -46,7 +46,7 @@ fn logarithm(number: f64) -> f64 {
 /// Two to this power, to a percent.
 #[inline(always)]
 fn power(exponent: f64) -> f64 {
-    // The integer below it, without a call: rounded first.
+    // The integer below, without a function call; rounding comes first.
     let rounded = (exponent + 1.5 * WHOLE_NUMBERS) - 1.5 * WHOLE_NUMBERS;
     let whole = if rounded > exponent { rounded - 1.0 } else { rounded };
     let part = exponent - whole;

@@ -1,4 +1,5 @@
-//! The variable of a step: time, or s, stretched so that what limits the series lies further away.
+//! The variable of a step: time, or s, transformed so that the singularities that limit the series
+//! lie further away.
 //!
 //! ```text
 //! dt = unit (1 + p r + q r^2) dr  in flight,   ds = unit (1 + p r + q r^2) dr  in contact
@@ -8,10 +9,10 @@
 //! ```
 //!
 //! A series converges up to the nearest of them. A cubic polynomial t(r) or s(r) can move several
-//! of them outwards at once: the coefficients below were fitted to those by which a step of a
-//! tolerance of 1e-10 reaches furthest from each place. In contact that is up to 1.5 times as far,
-//! in flight up to 1.6. They decide about the length of the steps alone: the series are those of
-//! the equation in any variable, and a step is as long as its own coefficients allow.
+//! of them outwards at once: the coefficients below are fits to those with which a step of the
+//! tolerance 1e-10 is longest at each position. In contact that is up to 1.5 times as far, in
+//! flight up to 1.6. They affect only the length of the steps: the series are those of the equation
+//! in any variable, and a step is as long as its own coefficients allow.
 
 use super::series::{Inputs, LaneSeries};
 
@@ -34,8 +35,8 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
     let Inputs { place: root, velocity, unit, hertz: [largest, fastest], .. } = inputs;
     let [mut p, mut q] = [[0.0; L]; 2];
     for lane in 0..L {
-        // r in units of the contact of Hertz. Where other forces set the pace its poles are not
-        // those of the motion.
+        // r in units of the contact of Hertz. If other forces dominate, its poles are not those of
+        // the motion.
         let units = unit[lane] * fastest[lane] / largest[lane];
         let fits = units <= 2.0;
         let (w, v) = (root[lane] / largest[lane], velocity[lane] / fastest[lane]);
@@ -67,8 +68,8 @@ pub(super) fn stretched<const L: usize>(
     result
 }
 
-/// The next coefficient of a series that is not kept: from its coefficient n and the two before it,
-/// the last one first.
+/// The next coefficient of a stretched series that is not stored: from its coefficient n and the
+/// two before it, the last one first.
 #[inline(always)]
 pub(super) fn stretched_next<const L: usize>(
     [p, q]: &[[f64; L]; 2],

@@ -1,6 +1,6 @@
-//! Conservative motion by its energy: the other turning point, and how long a motion takes from one
-//! to the other as a smooth integrand. Numbers only: the judge and the method `exact` integrate it
-//! each for itself.
+//! Conservative motion by its energy: the second turning point, and the time from one turning point
+//! to the other as the integral of a smooth function. The judge and the method `exact` each
+//! integrate it on their own.
 //!
 //! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Between the
 //! turning points `x_0` and `x_1`, with `U(x) = V(x_0) - V(x)`,
@@ -25,14 +25,14 @@ use super::root::{RootError, find_root};
 /// Relative tolerance of the quadratures.
 const TOLERANCE: f64 = 1e-14;
 
-/// Relative tolerance where there are many of them.
+/// Relative tolerance of each quadrature if the motion is cut into pieces.
 const TOLERANCE_OF_PIECES: f64 = 1e-12;
 
 /// The reason why there is no period.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PeriodError {
-    /// Released there, the motion leaves instead of swinging.
+    /// The force at the release point does not pull the motion back.
     #[error(
         "no periodic motion about x = {equilibrium}: released at rest from x = {start}, the force does not pull back there{}",
         periodic_elsewhere(range)
@@ -58,7 +58,7 @@ pub enum PeriodError {
         /// The range of periodic motions, in words.
         range: Option<String>,
     },
-    /// Too small a motion to pass the unstable equilibrium that it is asked about.
+    /// The motion is too small to pass the unstable equilibrium about which it should swing.
     #[error(
         "no motion through x = {equilibrium}: released at rest from x = {start} it stays in one well, and it needs an amplitude above {least}"
     )]
@@ -83,18 +83,18 @@ pub enum PeriodError {
         /// The range of periodic motions, in words.
         range: Option<String>,
     },
-    /// A speed that grows faster than the force at rest could make it grow.
+    /// The speed grows without bound, faster than the force at rest could make it grow.
     #[error(
         "no periodic motion: released at rest from x = {start}, the motion runs away: its speed grows beyond all bounds by t = {time}"
     )]
     RunsAway {
         /// The release point.
         start: f64,
-        /// The time.
+        /// The time by which it does so, to six digits.
         time: f64,
     },
-    /// Released farther out than motions come back from, where what becomes of this one has no
-    /// range of its own.
+    /// The motion is released outside the range of periodic motions, and the error that describes
+    /// it has no place for that range.
     #[error("{error}; motions are {range}")]
     OutsideWell {
         /// The fate of this motion.
@@ -102,7 +102,7 @@ pub enum PeriodError {
         /// The range of periodic motions, in words.
         range: String,
     },
-    /// On the separatrix, to the digits of the numbers.
+    /// The release is on the separatrix, to double precision.
     #[error(
         "no periodic motion: released at rest from x = {start}, it is on the separatrix of the unstable equilibrium x = {place}, and \
          never comes back"
@@ -125,13 +125,13 @@ pub enum PeriodError {
         /// The unstable equilibrium.
         place: f64,
     },
-    /// A place in the way that no motion passes.
+    /// The motion runs into a pole of the force.
     #[error("the motion runs into x = {place}, where the force has no finite value")]
     Pole {
         /// The position.
         place: f64,
     },
-    /// The force is beyond all numbers where the motion leads.
+    /// The force overflows f64 on the way of the motion.
     #[error(
         "the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308"
     )]
@@ -150,7 +150,7 @@ pub enum PeriodError {
     /// A quadrature failed.
     #[error(transparent)]
     Quadrature(#[from] QuadratureError),
-    /// A root was lost.
+    /// A root search failed.
     #[error(transparent)]
     Root(#[from] RootError),
     /// The integration failed.
@@ -158,13 +158,13 @@ pub enum PeriodError {
     Integration(#[from] IntegrationError),
 }
 
-/// The end of a message, where it is known for which amplitudes motions are periodic.
+/// Returns the end of a message that names the range of periodic motions; empty if it is not known.
 fn periodic_elsewhere(range: &Option<String>) -> String {
     range.as_ref().map_or_else(String::new, |range| format!("; motions are {range}"))
 }
 
 impl PeriodError {
-    /// With the amplitudes at which motions are periodic, in words.
+    /// Returns the error with the range of periodic motions, in words.
     #[must_use]
     pub fn with_range(mut self, words: String) -> Self {
         match &mut self {
@@ -205,7 +205,7 @@ impl PeriodError {
     }
 }
 
-/// A force of the position alone, and where it may turn fast.
+/// A force that depends on the position alone, and the cuts between which it is smooth.
 #[derive(Clone, Copy)]
 pub struct PiecewiseForce<'a> {
     value: &'a dyn Fn(f64) -> f64,
@@ -218,8 +218,8 @@ impl<'a> PiecewiseForce<'a> {
         Self { value, cuts: &|_, _| vec![] }
     }
 
-    /// A force, and the places strictly between two positions at which to cut, in order: what lies
-    /// between two cuts is smooth and no narrower than its distance.
+    /// A force, and a function that returns the cuts strictly between two positions in increasing
+    /// order. Between neighbouring cuts the force is smooth on the scale of their distance.
     pub fn with_cuts(
         value: &'a dyn Fn(f64) -> f64,
         cuts: &'a dyn Fn(f64, f64) -> Vec<f64>,
@@ -232,7 +232,7 @@ impl<'a> PiecewiseForce<'a> {
         (self.value)(x)
     }
 
-    /// Both ends and the cuts between them, from one end to the other.
+    /// Returns both ends and the cuts between them, in order from `from` to `to`.
     fn knots(&self, from: f64, to: f64) -> Vec<f64> {
         let mut knots = vec![from];
         let cuts = (self.cuts)(from.min(to), from.max(to));
@@ -246,10 +246,11 @@ impl<'a> PiecewiseForce<'a> {
     }
 }
 
-/// `dt/dphi = 1/sqrt(2 g)` of the substitution above, piece by piece between the cuts of the force.
+/// `dt/dphi = 1/sqrt(2 g)` of the substitution in the module's documentation, piece by piece
+/// between the cuts of the force.
 pub struct TimePerAngle<'a> {
     force: &'a PiecewiseForce<'a>,
-    /// Time dilation sqrt(M(x)) of a position-dependent mass, one if there is none.
+    /// Time dilation sqrt(M(x)) of a position-dependent mass, 1 if the mass is constant.
     weight: &'a dyn Fn(f64) -> f64,
     /// Positions from the far turning point to the start.
     pub knots: Vec<f64>,
@@ -257,13 +258,16 @@ pub struct TimePerAngle<'a> {
     pub angles: Vec<f64>,
     /// Whether the force is infinite in the middle.
     infinite_middle: bool,
-    /// `V(start) - V` at the knots, added up from either end.
+    /// `V(start) - V` at the knots, summed from the start and from the far turning point.
     below_start: Vec<f64>,
     below_end: Vec<f64>,
 }
 
 impl<'a> TimePerAngle<'a> {
-    /// Between two turning points, the first of them the start.
+    /// The integrand between two turning points, the first of them the start.
+    ///
+    /// # Errors
+    /// [`PeriodError`] if the force has no finite integral between them or changes too often.
     pub fn new(
         force: &'a PiecewiseForce<'a>,
         weight: &'a dyn Fn(f64) -> f64,
@@ -279,7 +283,7 @@ impl<'a> TimePerAngle<'a> {
         // A single piece needs no sums.
         let pieces = knots.windows(2).filter(|_| knots.len() > 2);
         let pieces = pieces.map(|pair| match infinite_middle && pair.contains(&0.0) {
-            // Never asked for, as no energy is counted through the middle.
+            // This value is never used, as no energy is counted through the middle.
             true => Ok(f64::NAN),
             false => integral(force.value, pair[0], pair[1], 0.0),
         });
@@ -292,8 +296,8 @@ impl<'a> TimePerAngle<'a> {
             below_start.push(below_start[below_start.len() - 1] + work);
         }
         below_start.reverse();
-        // By the half angle, so that a knot close to an end keeps its distance from it; that of a
-        // knot in the middle is known as it is.
+        // With cos or sin of the half angle, so that the distance of a knot from the nearer end
+        // keeps its digits; near an infinite middle the distance from zero counts instead.
         let angle = |&knot: &f64| {
             let part = (knot - end) / (start - end);
             if infinite_middle && part > 0.25 && part < 0.75 {
@@ -315,9 +319,9 @@ impl<'a> TimePerAngle<'a> {
         })
     }
 
-    /// The relative tolerance of an integral of these rates over one of the pieces.
+    /// Returns the relative tolerance of the integral of `dt/dphi` over one of the pieces.
     pub fn tolerance(&self, piece: usize) -> f64 {
-        /// A piece that adds next to nothing is known no better than this.
+        /// The loosest tolerance, for a piece that adds next to nothing.
         const ROUGH: f64 = 1e-2;
         let ends = [self.knots[piece], self.knots[piece + 1]];
         if self.knots.len() == 2 {
@@ -332,15 +336,18 @@ impl<'a> TimePerAngle<'a> {
         }
     }
 
-    /// `dt/dphi` in one of the pieces.
+    /// Returns `dt/dphi` in one of the pieces.
+    ///
+    /// # Errors
+    /// [`QuadratureError`] if the force has no finite integral there.
     pub fn time_per_angle(&self, piece: usize, phi: f64) -> Result<f64, QuadratureError> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
         let mean_force = |from: f64, to: f64| {
             integral(&|u| self.force.value_at(from + (to - from) * u), 0.0, 1.0, 0.0)
         };
-        // From the nearer end: beside a pole the distance from it counts, not the position. Or from
-        // the middle, for the same reason.
+        // The position from the nearer end, or from an infinite middle: beside a pole the distance
+        // from it must keep its digits, not the position.
         let x = match phi >= 0.0 {
             _ if self.infinite_middle && phi.abs() < FRAC_PI_6 => start * phi.sin(),
             true => start - (start - end) * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2),
@@ -348,8 +355,8 @@ impl<'a> TimePerAngle<'a> {
         };
         let single = self.knots.len() == 2;
         let x = if single { x } else { x.clamp(low.min(high), low.max(high)) };
-        // From the nearer end, so that nothing cancels; in the outermost piece the distance from
-        // that end cancels exactly.
+        // The energy from the nearer end, so that nothing cancels; in the outermost piece the
+        // distance from that end divides out.
         let quotient = if phi >= 0.0 && piece + 2 == self.knots.len() {
             mean_force(x, start)? / (x - end)
         } else if phi < 0.0 && piece == 0 {
@@ -370,8 +377,8 @@ impl<'a> TimePerAngle<'a> {
     }
 }
 
-/// Whether a force grows without end towards zero, on both sides and as far as numbers go: `size`
-/// is how far from there the motion is.
+/// Whether a force grows without bound towards zero, on both sides; `size` is the scale of the
+/// motion.
 pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
     [1.0, -1.0].into_iter().all(|side| {
         let [near, far, farther] =
@@ -380,8 +387,8 @@ pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
     })
 }
 
-/// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a
-/// force that is infinite at zero is smooth.
+/// Adds knots on both sides of zero, at distances of equal ratio: on each of these pieces a force
+/// that is infinite at zero is smooth.
 fn graded(knots: &[f64]) -> Vec<f64> {
     /// Relative distance below which a piece adds less to the period than its rounding.
     const CLOSEST: f64 = 1e-15;
@@ -397,18 +404,18 @@ fn graded(knots: &[f64]) -> Vec<f64> {
         true => one.total_cmp(other),
         false => other.total_cmp(one),
     });
-    // Both zeros are one.
+    // The knots 0 and -0 are one.
     found.dedup_by(|next, last| next == last);
     found
 }
 
-/// Knots so close that the force between two of them is integrated by a few panels, where between
-/// these ones it waves too often for many: an integral of its own for every instant would then cost
-/// as much as the square of the waves. What ends at a zero at which the force is infinite is left
-/// as it is.
+/// Adds knots where the force oscillates too often between two of these for [`MOST_PANELS`] panels,
+/// until a few panels suffice. Without them every value of `dt/dphi` would need an integral over
+/// many waves, at a total cost as the square of their number. A piece that ends at a zero at which
+/// the force is infinite is left as it is.
 ///
 /// # Errors
-/// More knots than can be waited for.
+/// [`PeriodError::Waves`] if too many knots are needed.
 fn resolved(
     force: &PiecewiseForce,
     knots: Vec<f64>,
@@ -447,8 +454,8 @@ fn resolved(
 /// Panels after which an integral is left to adaptive quadrature.
 const MOST_PANELS: i32 = 64;
 
-/// The integral of a force: panels are doubled until the value settles. Errors below `negligible`
-/// do not count.
+/// Returns the integral of a force: the number of panels is doubled until the value converges.
+/// Absolute errors below `negligible` do not count.
 fn integral(
     function: &dyn Fn(f64) -> f64,
     from: f64,
@@ -459,7 +466,8 @@ fn integral(
     integral_within(function, [from, to], negligible, MOST)
 }
 
-/// As [`integral`], by this many panels at most where they are halved one by one.
+/// Integrates as [`integral`]; adaptive quadrature, if it is needed, uses `most_panels` panels at
+/// most.
 fn integral_within(
     function: &dyn Fn(f64) -> f64,
     [from, to]: [f64; 2],
@@ -481,8 +489,9 @@ fn integral_within(
     }
 }
 
-/// The value at which the integral settles while panels are doubled, or from which on doubling no
-/// longer brings it closer, which is where the rounding of the force itself begins.
+/// Returns the value to which the integral converges while the number of panels is doubled, or the
+/// value from which on doubling brings it no closer, since the force itself is rounded; `None` if
+/// it does not converge with `most_panels` panels.
 fn converged_value(
     function: &dyn Fn(f64) -> f64,
     from: f64,
@@ -511,7 +520,7 @@ fn converged_value(
     None
 }
 
-/// The integral of the size of a function, roughly.
+/// Returns a rough integral of the absolute value of a function.
 fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     let nodes = nodes_and_weights(from, to);
     nodes.map(|(x, weight)| (weight * function(x)).abs()).sum()
@@ -536,15 +545,16 @@ pub fn turning_point(
     equilibrium: f64,
     start: f64,
 ) -> Result<f64, PeriodError> {
-    /// Steps per window of the search, and how many amplitudes far it goes.
+    /// Number of steps per window of the search.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
-    /// Number of amplitudes beyond which the waves on the way do not matter, as over one summit of
-    /// a pendulum after the other.
+    /// Number of amplitudes beyond which a search that runs out of evaluations counts as an escape,
+    /// as over one summit of a pendulum after the other.
     const FAR: f64 = 100.0;
     /// Number of halvings of an interval on which the force has no integral.
     const HALVINGS: u32 = 60;
-    /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
+    /// Number of panels, enough for a square root at an end of a stretch; a stretch with a pole is
+    /// halved the sooner.
     const FEW_PANELS: usize = 120;
     /// Largest number of evaluations, about a second; a force of a hundred thousand waves takes
     /// less.
@@ -562,10 +572,10 @@ pub fn turning_point(
     if is_symmetric(force, equilibrium, amplitude) {
         return Ok(equilibrium - amplitude);
     }
-    // Against the largest energy on the way, errors below the last digit are none.
+    // Errors below the last digit of the largest energy on the way do not count.
     let below = |largest: f64| 0.5 * f64::EPSILON * largest;
     let gained = |from: f64, to: f64, largest: f64| integral(&value, to, from, below(largest));
-    // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
+    // The windows grow: to the mirror image of the start, as far again, twice as far, ...
     let (mut x, mut energy, mut largest, mut window) = (start, 0.0, 0.0, 2.0 * amplitude.abs());
     while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
         let from = x;
@@ -585,7 +595,7 @@ pub fn turning_point(
                     });
                 }
                 let gain = match integral_within(&value, [next, here], below(largest), FEW_PANELS) {
-                    // Towards a pole, by half of the way at a time.
+                    // A pole is approached by half of the way at a time.
                     Err(_) if halvings < HALVINGS => {
                         halvings += 1;
                         let middle = 0.5 * (here + next);
@@ -629,8 +639,8 @@ pub fn turning_point(
 /// of the start is then the turning point to the last digit, which no root finder gives near a
 /// separatrix.
 fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> bool {
-    /// The search for a turning point does not pass a place where the force is infinite: there
-    /// symmetry may be lost in rounding.
+    /// Relative asymmetry that counts as rounding if the force is infinite in the middle, which the
+    /// search for a turning point could not pass.
     const ROUNDING: f64 = 1e-12;
     let infinite = grows_towards_zero(&|y| force.value_at(equilibrium + y), amplitude);
     let rounding = if infinite { ROUNDING } else { 0.0 };
@@ -644,8 +654,8 @@ fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> boo
     })
 }
 
-/// A step cut where the force first pushes the motion back and then on again, so that the kinetic
-/// energy has no lowest point between two ends.
+/// Returns a step of the search; cut into parts if the force within it first retards and then
+/// drives the motion, so that no minimum of the kinetic energy lies unseen between two ends.
 fn where_it_turns(force: &PiecewiseForce, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;

@@ -3,9 +3,9 @@
 //! Within a step the motion is a polynomial of degree 8, so the event function is sampled at 17
 //! Chebyshev points, and each pair of neighbouring samples of opposite sign brackets a crossing,
 //! which is then located to rounding accuracy. Where the samples keep their sign but come closer to
-//! zero in between (their derivative changes sign), the nearest point is searched: two crossings
-//! between two samples, the grazing of a barrier, are found as well. An event function should vary
-//! on the scale of the motion, not faster.
+//! zero in between, the minimum of the absolute value is searched: two crossings between two
+//! samples, the grazing of a barrier, are found as well. An event function should vary on the scale
+//! of the motion, not faster.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -15,8 +15,8 @@ use super::root::{find_minimum, find_root};
 use super::sample::Sample;
 use super::trajectory::TrajectoryStep;
 
-/// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that
-/// counts, and what is to happen there.
+/// A function of (t, x, v), or of all values, whose zeros are events; the direction of crossing
+/// that counts; and the action at an event.
 pub struct Event<'a, S = State> {
     pub(super) function: Box<dyn Fn(&S) -> f64 + 'a>,
     pub(super) direction: Direction,
@@ -30,7 +30,7 @@ pub enum Direction {
     Rising,
     /// Crossings from positive to negative.
     Falling,
-    /// Both.
+    /// Crossings in both directions.
     Either,
 }
 
@@ -47,19 +47,20 @@ pub enum Action<'a, S = State> {
 }
 
 impl<'a> Event<'a> {
-    /// An event that is only listed. Counts in both directions until told otherwise.
+    /// An event that is only recorded. Crossings in both directions count, unless [`Event::rising`]
+    /// or [`Event::falling`] restricts them.
     pub fn record(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
         Self::new(move |state| function(state.t, state.x, state.v), Action::Record)
     }
 
-    /// An event that ends the run. Counts in both directions until told otherwise.
+    /// An event that ends the run. Crossings in both directions count, as for [`Event::record`].
     pub fn stop(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
         Self::new(move |state| function(state.t, state.x, state.v), Action::Stop)
     }
 
-    /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state
-    /// exactly on the surface (`x = barrier`), so that the surface just left is not met again by
-    /// rounding.
+    /// An event that switches the right side, see [`Action::Switch`]. Crossings in both directions
+    /// count, as for [`Event::record`]. Let `next` put the state exactly on the surface
+    /// (`x = barrier`), so that the surface just left is not met again by rounding.
     pub fn switch(
         function: impl Fn(f64, f64, f64) -> f64 + 'a,
         next: impl Fn(State) -> (usize, State) + 'a,
@@ -69,7 +70,8 @@ impl<'a> Event<'a> {
 }
 
 impl<'a, S> Event<'a, S> {
-    /// An event of any equations. Counts in both directions until told otherwise.
+    /// An event of any first-order equations. Crossings in both directions count, as for
+    /// [`Event::record`].
     pub fn new(function: impl Fn(&S) -> f64 + 'a, action: Action<'a, S>) -> Self {
         Self { function: Box::new(function), direction: Direction::Either, action }
     }
@@ -101,7 +103,7 @@ impl<'a, S> Event<'a, S> {
     }
 }
 
-/// An event function without a finite value.
+/// The error of an event function that has no finite value.
 #[derive(Debug)]
 pub(super) struct NotFinite;
 
@@ -117,13 +119,13 @@ pub(super) struct SignTracker {
 }
 
 impl SignTracker {
-    /// The fractions of the step at which the event happens, in order, and whether its function
-    /// rises there. `moved` is given for the first step of a phase: its start, moved on at the
-    /// rates that the values have there.
+    /// Returns the fractions of the step at which the event happens, in order, and whether its
+    /// function rises there. `moved` is given for the first step of a phase: the start of the step,
+    /// extrapolated over the step at the rates there.
     ///
-    /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none.
-    /// One exception: where a phase starts on the surface of a switch and moves through it in the
-    /// direction that counts, it is left at once.
+    /// A start on the surface does not count as a crossing; reaching zero counts, and leaving it
+    /// again does not. There is one exception: where a phase starts on the surface of a switch and
+    /// moves through it in the direction that counts, it is left at once.
     pub(super) fn crossings<S: Sample>(
         &mut self,
         step: &TrajectoryStep<S>,
@@ -143,9 +145,9 @@ impl SignTracker {
         let starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
         if starts_on_surface {
             self.starts_on_surface = true;
-            // Rounding errors have any sign, and so has the error of the polynomial if the
-            // arguments of the event function are at rest: the function leaves zero as the square
-            // of time at least.
+            // Samples as small as rounding errors have an arbitrary sign. So do those as small as
+            // the error of the polynomial if the arguments of the event function are at rest, since
+            // the function then leaves zero as the square of time at least.
             let rounding = rounding_at(event, &step.state_at(0.0));
             let largest =
                 samples.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
@@ -194,7 +196,7 @@ impl SignTracker {
     }
 }
 
-/// The change of an event function where each of its values is changed by its last digits.
+/// Returns the change of an event function when each of its arguments changes in the last digits.
 fn rounding_at<S: Sample>(event: &Event<S>, state: &S) -> f64 {
     const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
     let (time, values) = (state.time(), state.values());
@@ -247,7 +249,7 @@ fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f
         }
     }
     // A minimum beside an end of the step has no neighbour on one side: a point close to the end
-    // tells the slope.
+    // gives the slope.
     if let [
         (first, value_first),
         (second, value_second),

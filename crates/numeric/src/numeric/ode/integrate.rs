@@ -1,8 +1,9 @@
-//! The run itself: step, look for events in the step, restart where the right side switches.
+//! The run itself: it takes a step, looks for events in the step, and restarts where the right side
+//! switches.
 //!
-//! Only the stepping is the library's: its 0.7.0 accepts a step whose error estimate is not a
-//! number, so every step is checked here and tried again smaller; its event handling does not see
-//! two crossings in one step, so ours is used.
+//! Only the steps come from the crate `differential-equations`. Its version 0.7.0 accepts a step
+//! whose error estimate is not a number, so every step is checked here and repeated with a smaller
+//! length; its event handling misses two crossings in one step, so ours is used.
 
 use std::cell::Cell;
 
@@ -24,18 +25,19 @@ use crate::interrupt::Interrupt;
 pub struct IntegrationOptions {
     /// Error allowed per step relative to the size of each value.
     pub relative_tolerance: f64,
-    /// Error allowed per step beside it, in the units of the values: choose it well below their
-    /// size.
+    /// Absolute error allowed per step in addition, in the units of the values: choose it well
+    /// below their size.
     pub absolute_tolerance: f64,
     /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about
     /// 200 bytes.
     pub maximum_steps: usize,
-    /// Longest step: infinity, unless a right side or an event varies faster than the motion.
+    /// Longest step, in units of time: infinity, unless a right side or an event varies faster than
+    /// the motion.
     pub maximum_step: f64,
     /// Whether the motion has parts of very different speed: an implicit method of lower order then
     /// takes longer steps.
     pub stiff: bool,
-    /// The interrupt.
+    /// The request to stop the run.
     pub interrupt: Interrupt,
 }
 
@@ -84,7 +86,7 @@ fn first_order(
     move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
 }
 
-/// An error that prevents a run from the outset. A run that began keeps what it has, see
+/// An error that prevents a run from the outset. A run that has begun returns its path so far, see
 /// [`StopReason`].
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -145,15 +147,15 @@ pub enum IntegrationError {
         /// End time asked for.
         end_time: f64,
     },
-    /// A tolerance no double-precision run can keep.
+    /// A tolerance lies outside the range that a run in double precision can keep.
     #[error(
         "the integrator's tolerance must lie between 1e-15 and 0.1, not {0}: 1e-10 is a good choice"
     )]
     Tolerance(f64),
-    /// A maximum step that is not positive.
+    /// The maximum step is not positive.
     #[error("the longest step must be positive, not {0}")]
     MaximumStep(f64),
-    /// A phase that does not exist.
+    /// The first phase, or that of a switch, does not exist.
     #[error("there is no phase {phase}: {count} are given, counted from 0")]
     UnknownPhase {
         /// The index asked for.
@@ -170,7 +172,7 @@ pub enum IntegrationError {
 /// rebound.
 ///
 /// # Errors
-/// [`IntegrationError`] where the run cannot begin. One that ends early is no error: ask
+/// [`IntegrationError`] if the run cannot begin. A run that ends early is no error: see
 /// [`Trajectory::stop_reason`].
 ///
 /// ```
@@ -193,8 +195,8 @@ pub fn integrate<'a>(
         .map_err(|error| of_motion(error, start))
 }
 
-/// The motion through several smooth right sides: begins in phase `first`, goes on as the switches
-/// of the events say.
+/// The motion through several smooth right sides: it begins in phase `first`, and each
+/// [`Action::Switch`] chooses the next.
 ///
 /// # Errors
 /// As [`integrate`], and [`IntegrationError::UnknownPhase`] where `first` or a switch names a phase
@@ -228,8 +230,8 @@ pub fn integrate_phases(
         .map_err(|error| of_motion(error, start))
 }
 
-/// Any first-order equations: `rates` writes y' at the time and the values y that it is given.
-/// Otherwise as [`integrate`].
+/// The solution of any first-order equations: `rates` writes y' at the time and the values y that
+/// it is given. Otherwise as [`integrate`].
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -258,7 +260,7 @@ pub fn integrate_first_order<'a, Y: StateVector>(
     run(&[(&rates, events)], 0, start, end_time, StepLimits::NOWHERE, options)
 }
 
-/// As [`integrate_first_order`], with steps that end where they have to.
+/// Integrates as [`integrate_first_order`], with limits that no step crosses.
 ///
 /// # Errors
 /// As [`integrate`].
@@ -273,7 +275,7 @@ pub fn integrate_through<'a, Y: StateVector>(
     run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
 
-/// Conditions that end a step beside its error.
+/// Conditions, besides the error, that limit a step.
 pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
@@ -298,7 +300,7 @@ impl<S> Clone for StepLimits<'_, S> {
 
 impl<S> Copy for StepLimits<'_, S> {}
 
-/// The error in the words of displacement and velocity.
+/// Converts an error of first-order equations into one of displacement and velocity.
 fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
     match error {
         IntegrationError::ValuesNotFinite { end_time, .. } => {
@@ -396,7 +398,7 @@ fn check(
     if !(1e-15..=0.1).contains(&options.relative_tolerance) {
         return Err(IntegrationError::Tolerance(options.relative_tolerance));
     }
-    // An amplitude may be tiny, so the absolute tolerance has no lower limit but zero.
+    // An amplitude may be tiny, so the absolute tolerance need only be positive.
     if !(f64::MIN_POSITIVE..=0.1).contains(&options.absolute_tolerance) {
         return Err(IntegrationError::Tolerance(options.absolute_tolerance));
     }
@@ -495,10 +497,10 @@ impl<S: Sample> Leg<'_, '_, S> {
                 .looks
                 .kept
                 .and_then(|kept| kept(&|fraction| step.state_at(fraction)))
-                // A step that the clock does not notice would be taken over and over.
+                // A step too short to advance the time would be repeated for ever.
                 .filter(|kept| kept * step.length > 4.0 * f64::EPSILON * time.abs());
             if let Some(kept) = kept {
-                // The whole step would go past something: not so far, then.
+                // The whole step would go past a limit: repeat it with the part that may be kept.
                 match self.solver(scheme, &state, kept * step.length) {
                     Some(shorter) => solver = shorter,
                     None => return LegEnd::Stopped(self.failure(time)),
@@ -519,14 +521,14 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// Time until the next critical time that is farther away than rounding.
+    /// Returns the time left until the next critical time that is farther away than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
         let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
         self.looks.critical.get(next).map_or(f64::INFINITY, |critical| critical - time)
     }
 
-    /// The reason to stop: the steps are used up, or an interrupt was requested.
+    /// Returns the reason to stop if the steps are used up or an interrupt was requested.
     fn given_up(&self, time: f64, attempts: usize) -> Option<StopReason> {
         if attempts >= self.options.maximum_steps {
             return Some(StopReason::MaximumSteps { time });
@@ -535,8 +537,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         asked.then_some(StopReason::Interrupted { time })
     }
 
-    /// Keeps what happened in a step, up to the first that ends the leg: then the path ends there,
-    /// and this is how.
+    /// Records the events of a step, up to the first that ends the leg: the path then ends there.
+    /// Returns how the leg ends, `None` if it goes on.
     fn recorded(
         &self,
         happenings: Vec<(S, usize, bool)>,
@@ -565,7 +567,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         None
     }
 
-    /// A fresh solver at this state, with this first step (0: of its own choice).
+    /// Returns a new solver at this state, with this first step (0: chosen by the solver); `None`
+    /// if the rates have no finite value or no first step is found.
     fn solver<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
         scheme: &Scheme<M, S::Values>,
@@ -576,7 +579,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         let remaining = self.end_time - time;
         let longest = self.options.maximum_step.min(remaining);
         if longest <= 0.0 {
-            // Nothing left to do: the solver will not be asked for a step.
+            // The end is reached: no step of this solver will be taken.
             return Some((scheme.fresh)(self.options, 0.0, f64::INFINITY));
         }
         self.equations.non_finite.set(false);
@@ -586,8 +589,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
         for step in [first_step, 1e-6 * longest] {
             let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
-            // The trial steps by which a first step is chosen may leave the domain: then a short
-            // one is prescribed.
+            // The trial steps by which a first step is chosen may leave the domain: the second pass
+            // prescribes a short one.
             if solver.init(&self.equations, time, self.end_time, &values).is_ok()
                 && solver.h() > 0.0
             {
@@ -605,8 +608,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// The start of a step, moved on for so long at the rates that it has: what is at rest stays
-    /// where it is.
+    /// Returns the start of a step extrapolated over the time `length` at its rates, so that values
+    /// at rest do not change at all.
     fn extrapolated(&self, start: &S, length: f64) -> S {
         let mut values = start.values();
         let mut rates = values.clone();
@@ -617,7 +620,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         S::new(start.time() + length, &values)
     }
 
-    /// The step just taken, as polynomials, and the state at its end.
+    /// Returns the step just taken, as polynomials, and the state at its end; `None` if a value is
+    /// not finite.
     fn accepted<M: OrdinaryNumericalMethod<f64, S::Values>>(
         &self,
         scheme: &Scheme<M, S::Values>,
@@ -636,8 +640,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         finite.then(|| (TrajectoryStep::new(self.phase, start.clone(), length, values), next))
     }
 
-    /// The events inside the step in the order of time, as states, and whether they rise; `None` if
-    /// an event function is not finite.
+    /// Returns the events inside the step in the order of time: the state, the index of the event
+    /// and whether its function rises; `None` if an event function is not finite.
     fn located_events(
         &self,
         step: &TrajectoryStep<S>,
@@ -653,7 +657,7 @@ impl<S: Sample> Leg<'_, '_, S> {
                     .map(|(fraction, rising)| (step.state_at(fraction), index, rising)),
             );
         }
-        // A stable sort: of two events at the same time the one listed first comes first.
+        // The sort is stable: of two events at the same time the one listed first comes first.
         found.sort_by(|one, other| one.0.time().total_cmp(&other.0.time()));
         Some(found)
     }

@@ -3,14 +3,14 @@
 //!
 //! In: the right side as a closure, a start, an end time, the events to look for. Out: a
 //! [`Trajectory`] that answers x and v, or all values, at any time between, lists the events it
-//! met, and says why it stopped. Pure numbers: nothing here knows where the equation came from, so
-//! what is judged and the judge share nothing.
+//! met, and says why it stopped. Nothing here knows where the equation came from, so a formula that
+//! is judged and its judge share no code.
 //!
 //! - [`integrate`] follows one smooth right side; [`integrate_phases`] follows several and switches
 //!   between them at located events: a step is never trusted across a kink such as the first touch
 //!   of a barrier, the run restarts there.
 //! - [`integrate_first_order`] follows y' = f(t, y) with any number of values.
-//! - [`Event`] is a function of time and values whose zero matters: [`Event::record`],
+//! - [`Event`] is a function of time and values whose zeros are located: [`Event::record`],
 //!   [`Event::stop`], [`Event::switch`].
 //! - [`energy`] finds where a conservative motion turns and how long it takes on the way;
 //! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima, [`polynomial`]
@@ -33,10 +33,10 @@
 //! ```
 //!
 //! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H.
-//! Verner, *Numer. Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff
-//! motions its Radau IIA of order 5. The tolerance bounds the error of one step, not of the run: on
-//! the pendulum the error after a hundred time units is some 60 times the tolerance. Where the
-//! values are an array nothing is allocated in a step but for what is kept of it.
+//! Verner, *Numer. Algorithms* 53 (2010) 383), as in the crate `differential-equations`; stiff
+//! motions use the Radau IIA method of order 5 of the same crate. The tolerance bounds the error of
+//! one step, not of the run: on the pendulum the error after a hundred time units is some 60 times
+//! the tolerance. If the values are an array, a step allocates memory only for what is kept of it.
 
 pub mod energy;
 mod event;

@@ -1,7 +1,7 @@
-//! Newton's method for as many equations as there are unknowns.
+//! Newton's method for a square system of equations.
 //!
 //! In: a start, the residual of the equations with its Jacobian, and a judgement of each step. Out:
-//! the solution, or nothing.
+//! the solution, or `None`.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -32,7 +32,7 @@ pub enum Progress {
     Settled,
     /// The iteration continues.
     Going,
-    /// The step leads to nothing that is looked for.
+    /// The step leads away from every solution that is looked for.
     Lost,
 }
 

@@ -26,9 +26,9 @@ pub struct RealZero {
     pub crosses: bool,
 }
 
-/// The zeros of a polynomial, lowest coefficient first, between two ends, which may be infinite.
-/// Two zeros so close that the polynomial between them is below its rounding are one at which the
-/// sign does not change.
+/// Returns the zeros of a polynomial between two ends, which may be infinite; the lowest
+/// coefficient comes first. Two zeros so close that the polynomial between them is below its
+/// rounding are one at which the sign does not change.
 pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
     let Some(degree) = coefficients.iter().rposition(|coefficient| *coefficient != 0.0) else {
         return vec![];
@@ -60,9 +60,10 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
     zeros
 }
 
-/// The zeros of a polynomial that is monotonic between these places.
+/// Returns the zeros of a polynomial that is monotonic between neighbouring places.
 fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
-    /// Ratio to the sum of the sizes of all terms below which a value is rounding.
+    /// A value is rounding if its ratio to the sum of the absolute values of all terms is below
+    /// this.
     const ROUNDING: f64 = 1e-14;
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());

@@ -1,11 +1,11 @@
 //! The integral of a smooth function, with an error estimate.
 //!
-//! In: a function, an interval, a tolerance. Out: value and error estimate, or why there is none.
+//! In: a function, an interval, a tolerance. Out: the value and an error estimate, or an error.
 //!
-//! Gauss-Legendre with 20 points on a panel and on its two halves; the difference of the two is the
-//! error estimate of the panel (of its coarse value: the halves, which are what is added up, are
-//! far better). The panel with the largest estimate is halved until the estimates together are
-//! below the tolerance times the integral of |f|.
+//! The 20-point Gauss-Legendre rule is applied to a panel and to its two halves; the difference of
+//! the two is the error estimate of the panel. It is that of the coarse value: the halves, which
+//! make up the result, are far better. The panel with the largest estimate is halved until the
+//! estimates together are below the tolerance times the integral of |f|.
 //!
 //! Singular ends are to be substituted away first: `x = -A + s^2` makes the time integral of an
 //! energy `dx / sqrt(2 (V(A) - V(x)))` smooth.
@@ -65,7 +65,7 @@ pub enum QuadratureError {
 /// Points of the rule used on each panel.
 const POINTS: NonZeroUsize = NonZeroUsize::MIN.saturating_add(19);
 
-/// Panels after which the integrand is called not smooth.
+/// Number of panels after which the integrand counts as not smooth.
 const MAXIMUM_PANELS: usize = 1000;
 
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINTS));
@@ -91,12 +91,12 @@ pub fn integrate_smooth(
 /// Integral of a `function` that is smooth between neighbouring `ends`, from the first of them to
 /// the last, and its absolute error estimate.
 ///
-/// `tolerance` is relative to the integral of |f| over all pieces, so that one that adds next to
-/// nothing, where the integrand may be little but rounding, is not halved for the sake of its own
-/// size. Otherwise as [`integrate_smooth`].
+/// `tolerance` is relative to the integral of |f| over all pieces, so that a piece that adds next
+/// to nothing, on which the integrand may be little but rounding, is not halved in vain. Otherwise
+/// as [`integrate_smooth`].
 ///
 /// # Errors
-/// As [`integrate_smooth`], with a panel more for every further piece.
+/// As [`integrate_smooth`], with one more panel allowed for every further piece.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -113,9 +113,10 @@ pub fn integrate_piecewise(
     integrate_within(function, ends, [tolerance, 0.0], MAXIMUM_PANELS)
 }
 
-/// Integral of a smooth `function`, which is a part of a `whole` and is asked for to `tolerance`
-/// times the larger of the two: near the end of an interval where the integrand is a difference of
-/// nearly equal numbers, its own size would ask for digits that it lacks.
+/// Integral of a smooth `function` that is a part of a sum of size `whole`, with the error
+/// `tolerance` times the larger of the two. Near the end of an interval where the integrand is a
+/// difference of nearly equal numbers, a tolerance relative to the integral alone would demand
+/// digits that the integrand lacks.
 ///
 /// # Errors
 /// As [`integrate_smooth`].
@@ -129,9 +130,9 @@ pub fn integrate_part(
     Ok(integrate_within(function, &[from, to], tolerances, MAXIMUM_PANELS)?.0)
 }
 
-/// As [`integrate_piecewise`] with the relative and the absolute tolerance, of which the larger
-/// counts, and with as many panels as `most_panels` for the first piece, for who halves the
-/// interval otherwise.
+/// Integrates as [`integrate_piecewise`], with a relative and an absolute tolerance, of which the
+/// larger counts, and with at most `most_panels` panels for the first piece: few, if the caller
+/// itself halves the interval.
 ///
 /// # Errors
 /// As [`integrate_piecewise`].
@@ -157,7 +158,8 @@ pub(crate) fn integrate_within(
         panels.push(QuadraturePanel::split(&mut function, from, to, coarse)?);
     }
     let most = most_panels + panels.len().saturating_sub(1);
-    // The sums as they change panel by panel say when it is worth adding up all of them.
+    // The running sums cost nothing, but collect rounding errors: only when they are near the
+    // tolerance are all panels added up anew.
     let total = |panels: &[QuadraturePanel], of: fn(&QuadraturePanel) -> f64| {
         panels.iter().map(of).sum::<f64>()
     };
@@ -197,7 +199,7 @@ pub(crate) fn integrate_within(
     }
 }
 
-/// Nodes and weights of the 20-point Gauss-Legendre rule carried to `[from, to]`, for sums that
+/// Returns the nodes and weights of the 20-point Gauss-Legendre rule on `[from, to]`, for sums that
 /// need the points themselves, such as a least-squares fit.
 ///
 /// ```
@@ -245,7 +247,7 @@ impl QuadraturePanel {
     }
 }
 
-/// Integral of f and of |f| by one application of the rule.
+/// Returns the integrals of f and of |f| by one application of the rule.
 fn gauss(
     function: &mut impl FnMut(f64) -> f64,
     from: f64,

@@ -1,8 +1,8 @@
 //! Roots and minima of a function of one real variable, and the place where a property ends, from a
 //! bracket.
 //!
-//! In: a continuous function and an interval. Out: the point, to the last bits of a double.
-//! For a property that only holds or not, [`bisect`] halves the interval.
+//! In: a continuous function and an interval. Out: the point, to the last bits of a double. For a
+//! property that only holds or fails, [`bisect`] halves the interval.
 //!
 //! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R.
 //! Chandrupatla, *Adv. Eng. Software* 28 (1997) 145): the interpolation is taken only where the
@@ -48,8 +48,9 @@ pub enum RootError {
     },
 }
 
-/// The point between `a` and `b` (in either order) where the continuous function changes sign, as
-/// closely as doubles allow; an end at which the function is exactly zero is returned as it is.
+/// Returns the point between `a` and `b` (in either order) where the continuous function changes
+/// sign, as closely as doubles allow; an end at which the function is exactly zero is returned as
+/// it is.
 ///
 /// # Errors
 /// [`RootError::NotBracketed`] when both ends have the same sign, [`RootError::NonFinite`] when an
@@ -83,7 +84,8 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
         (x1, f1) = (x, f);
         let (best, best_value) = if f1.abs() <= f2.abs() { (x1, f1) } else { (x2, f2) };
         let width = (x2 - x1).abs();
-        // Two units in the last place: below that the middle of the bracket is one of its ends.
+        // The bracket is no wider than two units in the last place: its middle would be one of its
+        // ends.
         let resolution = f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
         if best_value == 0.0 || width <= 2.0 * resolution {
             return Ok(best);
@@ -110,9 +112,9 @@ pub enum BisectionStop {
     Width(f64),
 }
 
-/// The last place seen at which a property holds and the first seen at which it does not, by
-/// halving the interval between one where it holds and one where it does not (in either order). The
-/// ends themselves are not tried.
+/// Returns the last place found at which a property holds and the first at which it does not, by
+/// halving the interval between a place where it holds and one where it does not (in either order).
+/// The property is not evaluated at the ends themselves.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -131,7 +133,7 @@ pub fn bisect(
     ends
 }
 
-/// The bisection of a property that cannot be told everywhere.
+/// Bisects as [`bisect`], for a property whose evaluation may fail.
 ///
 /// # Errors
 /// The first error of the property.
@@ -159,10 +161,10 @@ pub fn try_bisect<E>(
     }
 }
 
-/// The point between `a` and `b` where the function is least, by golden section, stopping at once
-/// where it is not positive: what a search for a near miss wants. The function should have one
-/// minimum there. Returns the point and the value; the point is good to about the square root of
-/// the rounding error, the value to the rounding error.
+/// Returns the point between `a` and `b` where the function is least, and its value there, by
+/// golden section. The search stops as soon as a value is not positive, as suits a search for a
+/// near miss. The function should have one minimum there. The point is accurate to about the square
+/// root of the rounding error, the value to the rounding error.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

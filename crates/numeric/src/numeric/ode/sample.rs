@@ -27,7 +27,7 @@ pub trait Sample: Clone + Debug {
     /// The time.
     fn time(&self) -> f64;
 
-    /// The values at it.
+    /// The values at that time.
     fn values(&self) -> Self::Values;
 
     /// The values at `t` within a step of the implicit method, from those at its ends, where that
@@ -40,7 +40,7 @@ pub trait Sample: Clone + Debug {
         None
     }
 
-    /// Whether all of it is finite.
+    /// Whether the time and all values are finite.
     fn is_finite(&self) -> bool {
         self.time().is_finite() && self.values().as_ref().iter().all(|value| value.is_finite())
     }
@@ -86,8 +86,8 @@ impl Sample for State {
         [self.x, self.v]
     }
 
-    /// The cubic that has displacement and velocity of both ends of a step. The accelerations stay
-    /// out of it: where the motion is stiff they magnify every error of the velocity.
+    /// The cubic Hermite interpolant of displacement and velocity at both ends of a step. It leaves
+    /// out the accelerations, which in a stiff motion magnify every error of the velocity.
     fn between(
         (from, [x, v]): (f64, &[f64; 2]),
         (to, [x1, v1]): (f64, &[f64; 2]),

@@ -1,4 +1,5 @@
-//! The one-step methods of the library behind a run, and the motion within one of their steps.
+//! The one-step methods behind a run, from the crate `differential-equations`, and the motion
+//! within one of their steps.
 
 use differential_equations::error::Error as StepError;
 use differential_equations::interpolate::Interpolation;
@@ -8,11 +9,12 @@ use differential_equations::ode::OrdinaryNumericalMethod;
 use super::integrate::IntegrationOptions;
 use super::sample::{Sample, StateVector};
 
-/// A method: how to begin, and the values at a time within the step just taken.
+/// A method: a function that starts it, and one for the values within the step just taken.
 pub(super) struct Scheme<M, Y> {
-    /// With these tolerances, this first step (0: of its own choice) and this longest step.
+    /// Makes a solver with the tolerances of the options, a first step (0: chosen by the solver)
+    /// and a longest step.
     pub fresh: fn(&IntegrationOptions, f64, f64) -> M,
-    /// The values within the step.
+    /// Returns the values at a time within the step; `None` if they cannot be interpolated.
     pub inside: fn(&mut M, f64) -> Option<Y>,
 }
 

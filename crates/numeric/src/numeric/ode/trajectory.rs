@@ -1,5 +1,5 @@
-//! The path of a run: its values at every time between its ends, the events it met, and why it
-//! stopped.
+//! The path of a run: its values at every time between its ends, the events it met, and the reason
+//! why it stopped.
 //!
 //! Each accepted step is kept as one polynomial for each value in the fraction s of the step,
 //! written `x(s) = x0 + s q(s)`, so that a motion that starts on a surface leaves it with the right
@@ -34,7 +34,7 @@ pub struct Trajectory<S: Sample = State> {
     pub(super) evaluations: usize,
 }
 
-/// An event that was met.
+/// One occurrence of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EventOccurrence<S = State> {
     /// Index of the phase whose right side was in force (0 for [`integrate`](super::integrate)).
@@ -43,7 +43,7 @@ pub struct EventOccurrence<S = State> {
     pub event: usize,
     /// The state at the event, before a switch changed it.
     pub state: S,
-    /// Whether the function grew through zero.
+    /// Whether the function crossed zero from negative to positive.
     pub rising: bool,
 }
 
@@ -80,7 +80,7 @@ pub enum StopReason {
         /// The last time reached.
         time: f64,
     },
-    /// Switches followed each other without time going on.
+    /// Switches followed each other without progress of time.
     SwitchingStalled {
         /// The time at which it happened.
         time: f64,

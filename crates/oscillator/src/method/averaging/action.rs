@@ -20,7 +20,7 @@ use crate::oscillator::{Oscillator, Parts};
 use crate::solution::Note;
 use crate::symbol::Symbol;
 
-/// The only damping term of an equation.
+/// The damping of an equation that has a single damping term.
 enum OnlyDamping {
     /// `rate * x'`.
     Viscous(Expr),
@@ -28,7 +28,7 @@ enum OnlyDamping {
     Dry(Expr),
 }
 
-/// The damping, where it is one of the two alone.
+/// The damping, if it is viscous alone or dry alone; `None` for any other.
 fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<OnlyDamping> {
     if !parts.inertia.is_zero() || !parts.forcing.is_zero() {
         return None;
@@ -83,8 +83,8 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     note.into_iter().collect()
 }
 
-/// The time at which the amplitude is a part of that at the start, by the action; `None` if damping
-/// is not viscous alone.
+/// The time at which the amplitude has fallen to a given fraction of that at the start, by the
+/// action; `None` if the damping is not viscous alone.
 pub fn falls_to(
     oscillator: &Oscillator,
     equilibrium: &Expr,

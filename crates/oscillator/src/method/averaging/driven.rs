@@ -11,11 +11,12 @@
 //! F cos(Omega t) near 1:1      a' gains F sin(psi)/(2 omega0), psi' gains F cos(psi)/(2 omega0 a)
 //! ```
 //!
-//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'`
-//! that stand before it. Elsewhere, and to second order, the amplitude of the first harmonic and
-//! its phase are expanded as those of multiple scales are: with that amplitude both methods have
-//! the same series, here with the motion to one order less than the rates. What an order says
-//! nothing about, such as the parametric resonance 1:1, is left to the next one.
+//! A drive acts on the motion at this order if the product of its wave and the powers of `x` and
+//! `x'` that multiply it has a first harmonic. Elsewhere, and to second order, the amplitude of the
+//! first harmonic and its phase are expanded as those of multiple scales are: with that amplitude
+//! both methods have the same series, here with the motion to one order less than the rates. A
+//! resonance that does not appear at one order, such as the parametric resonance 1:1, is left to
+//! the next one.
 
 use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
@@ -36,7 +37,7 @@ use crate::solution::response::{ClosedRelation, Response};
 use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
-/// The highest power of the coordinate or the velocity before a wave.
+/// The highest power of the coordinate or the velocity that may multiply a wave.
 const HIGHEST_POWER: u32 = 24;
 
 /// The slow equations of a driven motion and its steady amplitudes.
@@ -97,17 +98,17 @@ pub(super) fn solve(
 /// A driven motion that is to be averaged.
 struct DrivenAveraging<'a> {
     oscillator: &'a Oscillator,
-    /// Without its drive.
+    /// The equation without its drive.
     free: &'a Oscillator,
     small: SmallTerms,
     asked: DrivenRequest<'a>,
 }
 
 impl DrivenAveraging<'_> {
-    /// All that is small as terms of an expansion.
+    /// The small terms as those of an expansion.
     ///
     /// # Errors
-    /// A term that is not a polynomial, nothing restores, powers that are too high.
+    /// A term that is not a polynomial, no restoring force, or powers that are too high.
     fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
         let mut force = match self.small.expand(order) {
             Ok(force) => force,
@@ -156,8 +157,8 @@ impl DrivenAveraging<'_> {
             (None, None) if forces => vec![(1, 1)],
             (None, None) => vec![(2, 1), (1, 1)],
         };
-        // Waves of several frequencies turn with several multiples of the phase, which is for
-        // expansions.
+        // Waves of several frequencies contain several multiples of the phase, which only
+        // expansions treat.
         let one_frequency = drive.terms.iter().all(|driven| driven.multiple == 1);
         let waves_at = |(p, q): (u32, u32)| match q {
             1 if one_frequency && is_ratio((p, q)) => {
@@ -205,7 +206,7 @@ struct DriveWaves {
 }
 
 impl DriveWaves {
-    /// Whether anything reaches the motion.
+    /// Whether the drive acts on the first harmonic.
     fn is_nonzero(&self) -> bool {
         self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
     }
@@ -214,7 +215,7 @@ impl DriveWaves {
 /// The first harmonics of a drive with `Omega t = p theta + psi`.
 ///
 /// # Errors
-/// A drive beside what is no power of the coordinate and its velocity.
+/// A drive multiplied by a factor that is not a power of the coordinate and its velocity.
 fn waves(
     drive: &Drive,
     oscillator: &Oscillator,
@@ -402,7 +403,7 @@ impl<'a> ResonantEquation<'a> {
             response.jumps = found.jumps;
             return Ok(response);
         }
-        // Of one wave its size is all that matters.
+        // If both rates contain the same wave, only its size matters.
         let [[rate_cos, rate_sin], [phase_cos, phase_sin]] = turning;
         let one_wave = phase_sin == rate_cos && *phase_cos == -rate_sin
             || *phase_sin == -rate_cos && phase_cos == rate_sin;

@@ -91,7 +91,7 @@ fn of_powers(
         (true, false) => (2, 1),
         _ => return zero(),
     };
-    // The integrals exist where the arguments of the Gamma functions above the line are positive.
+    // The integrals exist where the arguments of the Gamma functions in the numerator are positive.
     for (exponent, above) in
         [(&position.exponent, above_position), (&velocity.exponent, above_velocity)]
     {
@@ -114,8 +114,8 @@ fn of_powers(
     })
 }
 
-/// The power of a product of what is positive, each factor by itself, so that powers of the
-/// amplitude stand alone.
+/// The power of a product of positive factors, taken factor by factor, so that powers of the
+/// amplitude are separate.
 fn power_of_product(product: &Expr, exponent: &Expr) -> Option<Expr> {
     let (number, factors) = product.factors();
     let number = Expr::power(&Expr::number(number), exponent).ok()?;
@@ -185,7 +185,7 @@ fn projected(
         let [next, below] = [halves - j, j + 1].map(|n| Rational::from_integer(n.into()));
         binomial = -(binomial * next / below);
     }
-    // A projection may leave the coordinate in what it cannot take apart.
+    // A projection may leave the coordinate in a factor that it cannot resolve.
     let value = Expr::sum(sum).expand().ok()?;
     let (_, inside) = split(&value, variable);
     inside.is_empty().then_some(value)

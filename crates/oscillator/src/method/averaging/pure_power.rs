@@ -1,6 +1,6 @@
-//! Averaging along the true motion of a restoring force that is one power of the coordinate:
-//! nothing linear restores, and the motion without damping is not a wave, but of one shape at every
-//! amplitude.
+//! Averaging along the true motion of a restoring force that is one power of the coordinate: there
+//! is no linear restoring force, and the undamped motion is not harmonic, but has the same shape at
+//! every amplitude.
 //!
 //! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
 //! Oscillations*, Gordon and Breach 1961, section 25 (slow change of the energy); V. I.
@@ -18,7 +18,7 @@
 //!
 //! A damping that is odd in the coordinate does no work over a period. With `chi_1` the first
 //! harmonic of the motion that turns at one, `a = chi_1 r` is the amplitude of the first harmonic;
-//! the harmonics beside it are numbers, known by quadrature.
+//! the ratios of the other harmonics to it are numbers, found by quadrature.
 
 use std::collections::BTreeMap;
 
@@ -54,8 +54,8 @@ pub(super) struct PurePower {
 }
 
 impl PurePower {
-    /// The restoring force of a damped motion, where it is one power, a number above -1 other than
-    /// one; `None` for any other.
+    /// The restoring force of a damped motion, if it is one power, whose exponent is a number above
+    /// -1 other than one; `None` for any other.
     pub(super) fn from_parts(parts: &Parts, coordinate: Symbol) -> Option<Self> {
         if parts.damping.is_zero() || !parts.inertia.is_zero() || !parts.forcing.is_zero() {
             return None;
@@ -219,7 +219,7 @@ impl AnswerSymbols {
     }
 }
 
-/// The slow equations in the amplitude of the first harmonic, and how they were reached.
+/// The slow equations in the amplitude of the first harmonic, and their derivation.
 struct SlowEquations {
     amplitude_rate: Expr,
     phase_rate: Expr,
@@ -271,7 +271,8 @@ impl SlowEquations {
         !self.amplitude_rate.is_zero() && terms.all(|term| !term.has_leading_minus())
     }
 
-    /// The slow equations with the motion from its release, and what names of that stand for.
+    /// The slow equations with the motion from its release, and the definitions of the names that
+    /// it introduces.
     fn released(
         &self,
         names: &AnswerSymbols,
@@ -301,7 +302,7 @@ impl SlowEquations {
     }
 }
 
-/// The decay, or growth, of a motion in a force of one power, to first order in what damps.
+/// The decay, or growth, of a motion in a force of one power, to first order in the damping.
 ///
 /// # Errors
 /// A damping term without a closed mean, an order above one.
@@ -363,8 +364,8 @@ fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> 
     }
 }
 
-/// Powers of quotients as products of powers, so that the amplitude stands alone; what has no
-/// letters stays together.
+/// Powers of quotients as products of powers, so that the amplitude stands alone; factors without
+/// symbols stay together.
 fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     let (number, factors) = expression.factors();
     let mut product = Expr::number(number);
@@ -384,7 +385,7 @@ fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     Ok(product)
 }
 
-/// The small letters: those that are factors of the damping alone, or else a name for all of it.
+/// The small parameters: those that are factors of the damping alone, or else a name for all of it.
 fn small_in_words(
     oscillator: &Oscillator,
     parts: &Parts,

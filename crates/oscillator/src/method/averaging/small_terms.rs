@@ -5,8 +5,8 @@
 //! x'' + 2 zeta x' + sin(x) = 0            x'' + x + delta (2 zeta x' + sin(x) - x) = 0; delta = 1
 //! ```
 //!
-//! Letters are small where their vanishing leaves the linear restoring force alone; each must be a
-//! factor of the terms that it makes small. Where no letters do that, all other terms are small
+//! Parameters are small if their vanishing leaves the linear restoring force alone; each must be a
+//! factor of the terms that it makes small. If no parameters do that, all other terms are small
 //! together.
 
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ use crate::series::taylor::taylor;
 use crate::symbol::{Symbol, fresh};
 use num_traits::Zero as _;
 
-/// The force with `delta` before what is small.
+/// The force with the small terms multiplied by `delta`.
 pub(super) struct SmallTerms {
     marked: Oscillator,
     delta: Symbol,
@@ -29,10 +29,12 @@ pub(super) struct SmallTerms {
 }
 
 impl SmallTerms {
-    /// The split of a force, in the letter that is asked for and those that are needed beside it.
+    /// Splits a force, by the small parameter that is asked for and the others that are needed with
+    /// it.
     ///
     /// # Errors
-    /// A letter that does not occur, or a term that no letter makes small beside the one asked for.
+    /// A parameter that does not occur, or a term that no parameter makes small together with the
+    /// one asked for.
     pub(super) fn from_oscillator(
         oscillator: &Oscillator,
         options: &Options,
@@ -53,7 +55,7 @@ impl SmallTerms {
             .iter()
             .partition(|term| is_linear(term) && first.is_none_or(|name| !term.contains(name)));
         let x = oscillator.coordinate;
-        // As in x/sqrt(1 - x'^2), whose linear part restores.
+        // A term such as x/sqrt(1 - x'^2) has a linear part that restores.
         let slopes = others.iter().filter_map(|term| {
             let slow = term.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
             let (beside, _) = near_rest(&slow, x).ok()?;
@@ -93,7 +95,7 @@ impl SmallTerms {
             let scaled: BTreeMap<Symbol, Expr> = scaled.collect();
             split.marked.force = expanded.substitute_all(&scaled)?;
             split.letters = letters;
-            // A letter may stand where nothing can be expanded in it as well.
+            // A parameter may also occur where the force has no expansion in it.
             if split.first_order().is_ok() {
                 return Ok(split);
             }
@@ -110,7 +112,7 @@ impl SmallTerms {
         self.delta
     }
 
-    /// The letters that are small; none where all terms but the linear one are taken together.
+    /// The small parameters; empty if all terms but the linear one are small together.
     pub(super) fn letters(&self) -> &[Symbol] {
         &self.letters
     }
@@ -161,9 +163,10 @@ fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
     own.iter().all(|&name| !quotient.contains(name)).then_some(quotient)
 }
 
-/// Letters that are factors of all small terms and of no linear one, `first` among them: always the
-/// one next that takes most of what is left, of equally good ones a Greek one, the first in the
-/// alphabet. The error is a term that none takes.
+/// Parameters of which one is a factor of each small term and none of a linear one, `first` among
+/// them. Each step adds the parameter that is a factor of most of the remaining terms; of equally
+/// good ones a Greek one, the first in alphabetical order. The error is a term without such a
+/// factor.
 pub(super) fn letters(
     linear: &[&Expr],
     others: &[&Expr],

@@ -44,8 +44,8 @@ const HIGHEST: u32 = 3;
 /// The slow equations of a driven motion, its frequency-response equation and what follows from it.
 ///
 /// # Errors
-/// A drive that is not a single wave, a resonance that the equation does not have, or what stops an
-/// expansion.
+/// A drive that is not a single wave, a resonance that the equation does not have, or any error of
+/// an expansion.
 pub(super) fn solve(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -89,7 +89,7 @@ fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscilla
     Ok(free)
 }
 
-/// Expands the motion in the small parameter that is asked for, or in the likeliest.
+/// Expands the motion in the small parameter that is asked for, or in the likeliest one.
 fn expanded(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -161,12 +161,12 @@ fn is_linear(oscillator: &Oscillator, parts: &Parts) -> bool {
     slopes.iter().all(is_constant)
 }
 
-/// Whether a refusal is that of a resonance which is not there, or far away.
+/// Whether a refusal concerns a resonance that does not exist or is far away.
 pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
     matches!(refusal.reason, Reason::NoResonance { .. } | Reason::FarFromResonance { .. })
 }
 
-/// A driven motion that is to be expanded, by the method that asks.
+/// A driven motion to be expanded, and the method that requests it.
 pub(in crate::method) struct DrivenRequest<'a> {
     pub(in crate::method) method: Method,
     pub(in crate::method) oscillator: &'a Oscillator,
@@ -195,7 +195,7 @@ impl DrivenRequest<'_> {
             (Some(asked), _) => vec![asked],
             (None, Some(ratio)) => by_distance(self.drive.resonances(), ratio),
             (None, None) => {
-                // Of the first force, or else of what stands first.
+                // The first drive that is a force decides, or else the first drive.
                 let first = self.force().or(self.drive.terms.first());
                 let below = first.map_or(1, |driven| driven.multiple);
                 match self.force() {
@@ -207,7 +207,7 @@ impl DrivenRequest<'_> {
         }
     }
 
-    /// Whether the drive reaches the motion at a resonance.
+    /// Whether the drive acts on the motion at a resonance.
     pub(in crate::method) fn drives_resonance(
         &self,
         resonance: (u32, u32),
@@ -226,7 +226,8 @@ impl DrivenRequest<'_> {
     /// The answer at the likeliest resonance.
     ///
     /// # Errors
-    /// The drive reaches the motion at none, or at none that is near; nothing damps what it drives.
+    /// The drive acts at no resonance, or at none that is near; or a linear motion without damping
+    /// is driven at its own frequency.
     pub(in crate::method) fn answer(&self, scaling: &Scaling) -> Result<Solution, Refusal> {
         let candidates = self.candidates(scaling);
         let first = candidates.first().copied().unwrap_or((1, 1));
@@ -248,7 +249,7 @@ impl DrivenRequest<'_> {
         Ok(found)
     }
 
-    /// The answer at the likeliest resonance that is not far away; `None` if the drive reaches
+    /// The answer at the likeliest resonance that is not far away; `None` if the drive acts at
     /// none.
     pub(in crate::method) fn answer_near(
         &self,
@@ -263,7 +264,7 @@ impl DrivenRequest<'_> {
         self.answer_at(found, scaling).transpose()
     }
 
-    /// The answer at a resonance; `None` if the drive does not reach the motion there.
+    /// The answer at a resonance; `None` if the drive does not act on the motion there.
     pub(in crate::method) fn answer_at(
         &self,
         resonance: (u32, u32),
@@ -293,7 +294,7 @@ fn is_driven_at_own_frequency(scaling: &Scaling, drive: &Drive, (p, q): (u32, u3
         && squared.is_some_and(|squared| squared == scaling.force.linear_in_full())
 }
 
-/// A question to the expansion.
+/// A driven motion at one resonance, to be expanded.
 pub(super) struct DrivenProblem<'a> {
     method: Method,
     pub(super) oscillator: &'a Oscillator,
@@ -351,7 +352,7 @@ impl<'a> DrivenProblem<'a> {
         self.scaling.small_order
     }
 
-    /// A driven term in powers of what is small.
+    /// A driven term with its power of the small parameter.
     fn scaled(&self, driven: &Driven) -> Result<DrivenTerm, Refusal> {
         let own = [self.oscillator.coordinate, self.oscillator.velocity()];
         let not_polynomial =
@@ -367,7 +368,7 @@ impl<'a> DrivenProblem<'a> {
         if let Some(marker) = self.scaling.marker {
             rest = rest.without(marker);
         }
-        // A drive without a small parameter counts as small as what it has to balance.
+        // A drive without a small parameter counts as small as the terms that balance it.
         let above = driven.above as usize;
         let natural = match self.scaling.marker {
             None => ((position + velocity) as usize).saturating_sub(1 + above),
@@ -375,7 +376,7 @@ impl<'a> DrivenProblem<'a> {
         };
         let order = match usize::try_from(written) {
             Ok(written) if written > 0 && self.scaling.marker.is_some() => written,
-            // Beside a force that is not small at all.
+            // A term of the series of a drive whose first term is a force that is not small.
             _ if above > 0 && self.forces(driven) => above,
             _ => natural.max(self.small_order()) + above,
         };
@@ -390,7 +391,7 @@ impl<'a> DrivenProblem<'a> {
         })
     }
 
-    /// The expansion; `still` leaves damping out, and a small drive.
+    /// The expansion; `still` leaves out the damping and small drives.
     fn expand(&self, still: bool) -> Result<MultipleScalesExpansion, Refusal> {
         let (p, q) = self.resonance;
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
@@ -491,7 +492,7 @@ impl<'a> DrivenProblem<'a> {
 struct DrivenExpansion {
     expansion: MultipleScalesExpansion,
     slow: SlowRates,
-    /// Without damping and drive.
+    /// The rates without damping and drive.
     still: SlowRates,
 }
 
@@ -559,8 +560,8 @@ impl DrivenProblem<'_> {
         Ok(motion.into_solution(self.oscillator))
     }
 
-    /// The quantities that are small beside the small parameters of the answer: the detuning, and
-    /// drives without such a parameter.
+    /// The quantities that count as small in addition to the small parameters of the answer: the
+    /// detuning, and drives without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];
         for driven in self.drive.terms.iter().filter(|driven| driven.above == 0) {

@@ -1,5 +1,5 @@
-//! Free motions: slow equations in the amplitude alone, solved from a start where they can be; of a
-//! self-excited one the limit cycle on which it ends as well.
+//! Free motions: the slow equations, in the amplitude alone, and their solution from a start if it
+//! has a closed form; for a self-excited equation also the limit cycle.
 
 use num_traits::Zero as _;
 
@@ -22,8 +22,8 @@ use crate::solution::modulation::Release;
 use crate::solution::{Definition, Law, LimitCycle, Modulation, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
-/// Default and highest orders in a parameter and in the amplitude, of which an odd force has every
-/// other one.
+/// Default and highest orders in a parameter and in the amplitude, of which an odd force uses only
+/// the even ones.
 const DEFAULT: [u32; 2] = [2, 4];
 const HIGHEST: [u32; 2] = [3, 6];
 
@@ -102,7 +102,8 @@ impl Free<'_> {
         polynomial.truncated(self.names.marker, self.scaling.order as i32)
     }
 
-    /// As it stands in the answer: without a marker that is one, powers of a root in numbers.
+    /// A polynomial as the answer prints it: a marker whose value is one is left out, and even
+    /// powers of a root are numbers.
     fn written(&self, polynomial: &Polynomial) -> Polynomial {
         let unmarked = self.scaling.unmarked(polynomial, self.names.marker);
         match (&self.linear.root, self.scaling.force.linear.as_number()) {
@@ -116,7 +117,7 @@ impl Free<'_> {
     }
 
     fn modulation(&self, [amplitude_rate, phase_rate]: [Expr; 2]) -> Modulation {
-        // In powers of the amplitude nothing else tells where it stays.
+        // In powers of the amplitude only the leading rate determines a steady amplitude.
         let steady = match self.scaling.marker {
             Some(_) => vec![],
             None => transient::steady(self.names.amplitude, &self.leading_amplitude_rate()),
@@ -138,7 +139,7 @@ impl Free<'_> {
     /// The rate of the amplitude to the lowest order at which it changes: where its terms balance,
     /// as in `mu*a/2 - a^3/8`, the damping is as small as `a^2`, as it was taken to be. A term of
     /// higher order, as in `-zeta*a + 3*zeta*a^3/8`, balances it at an amplitude that is not small,
-    /// of which the expansion says nothing.
+    /// for which the expansion does not hold.
     fn leading_amplitude_rate(&self) -> Expr {
         let rate = &self.slow.amplitude;
         let lowest = rate.exponent_range(self.names.marker).map_or(0, |(lowest, _)| lowest);

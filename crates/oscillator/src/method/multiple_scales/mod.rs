@@ -47,7 +47,7 @@ use crate::solution::{AmplitudeConvention, Method, Solution};
 /// Derives the slow equations and the motion as power series in the small parameter.
 ///
 /// # Errors
-/// A drive, or a force that cannot be expanded, each by name; an order above those that there are.
+/// A drive, or a force that cannot be expanded, each by name; an order above the highest.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if options.amplitude == Some(AmplitudeConvention::Initial) {
@@ -63,7 +63,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     free::solve(oscillator, &parts, options)
 }
 
-/// A term of a force that does not know the time.
+/// A term of a force without drive.
 fn undriven(term: &Term) -> DrivenTerm {
     DrivenTerm {
         order: term.order,

@@ -12,7 +12,7 @@ use crate::symbol::{Symbol, fresh, fresh_stem};
 /// The symbols.
 pub(super) struct ExpansionSymbols {
     pub(super) complex: ComplexAmplitude,
-    /// Marks the orders: the small parameter, or a symbol that is one.
+    /// The symbol that marks the orders: the small parameter, or a symbol whose value is one.
     pub(super) marker: Symbol,
     /// The slow phase.
     pub(super) phase: Symbol,

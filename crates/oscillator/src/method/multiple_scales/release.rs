@@ -48,7 +48,7 @@ pub(super) fn release(
     Some([amplitude, phase])
 }
 
-/// The value of a series at an amplitude and a phase that vanishes with what is small.
+/// The value of a series at an amplitude and a phase that vanishes with the small parameter.
 fn value(
     series: &FourierSeries<Polynomials>,
     a: Symbol,

@@ -2,9 +2,9 @@
 //!
 //! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing
 //! leaves the linear oscillator marks the orders; several that have to vanish together count as
-//! equally small; otherwise the amplitude marks them, a linear damping by the power at which the
-//! nonlinear terms change the frequency first: its square for quadratic and cubic terms, its fourth
-//! power for `x^5` alone.
+//! equally small; otherwise the amplitude marks them, and a linear damping counts as the power at
+//! which the nonlinear terms change the frequency first: its square for quadratic and cubic terms,
+//! its fourth power for `x^5` alone.
 
 use num_traits::One;
 
@@ -41,7 +41,8 @@ pub(in crate::method) struct Scaling {
 }
 
 impl Scaling {
-    /// A polynomial with a marker that the equation does not have as its value.
+    /// A polynomial with the value of the marker in its place, if the equation does not contain the
+    /// marker.
     pub(super) fn unmarked(&self, polynomial: &Polynomial, marker: Symbol) -> Polynomial {
         let value = match (&self.marks, self.marker) {
             (Some(value), _) => value.clone(),
@@ -57,8 +58,8 @@ impl Scaling {
     }
 
     /// Returns the scaling with the small parameter, or the number, in the coefficients and a
-    /// bookkeeping parameter that is one: for a motion with a small quantity that does not contain
-    /// it, such as the detuning. An expansion in the amplitude stays as it is.
+    /// bookkeeping parameter that is one: needed if a small quantity such as the detuning does not
+    /// contain the parameter. An expansion in the amplitude stays as it is.
     pub(super) fn spelt_out(mut self, taken: &[Symbol]) -> Self {
         let (Some(marker), None) = (self.marker, &self.marks) else {
             return self;
@@ -87,7 +88,7 @@ impl Scaling {
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
         let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
-        // The marker itself is the small parameter where no letter is one.
+        // The marker itself is the small parameter if no parameter of the equation is.
         let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
         Note::Cut(Truncation::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
@@ -101,7 +102,7 @@ impl Scaling {
 /// and in the amplitude.
 ///
 /// # Errors
-/// A term that is not small or no polynomial, by name; an order above those that there are.
+/// A term that is not small or no polynomial, by name; an order above the highest.
 pub(super) fn scaling(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -129,7 +130,8 @@ pub(super) fn scaling(
                 });
             }
             Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
-            // A name alone says little: what is not a polynomial may be one for small motions.
+            // The name `eps` alone does not decide: a force that is not a polynomial may have a
+            // series for small motions.
             Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => {
                 refused = Some(error)
             }
@@ -144,7 +146,7 @@ pub(super) fn scaling(
     let order = order_of(options, times * default[1], times * highest[1])?;
     match (in_amplitude(oscillator, order), refused) {
         (Err(_), Some(error)) => Err(error.into()),
-        // To a lower order nothing drains a motion that is damped.
+        // At a lower order a damped motion would not lose energy.
         (Ok(found), _) if found.damping.is_some() && found.is_below_balance() => {
             let lowest = SHIFT_OF_A_CUBE;
             Err(Reason::BelowBalance(lowest).to(Method::MultipleScales))
@@ -232,15 +234,14 @@ fn in_amplitude(oscillator: &Oscillator, order: u32) -> Result<Scaling, Refusal>
 const SHIFT_OF_A_CUBE: u32 = 2;
 
 /// The order in the amplitude as which damping, detuning and a small drive count: that at which the
-/// nonlinear terms change the frequency first, but to a lower order, which has none of these terms,
-/// its own.
+/// nonlinear terms change the frequency first, but if `order` is lower, and so contains none of
+/// these terms, `order` itself.
 pub fn order_of_balance(oscillator: &Oscillator, order: u32) -> u32 {
     order_of_shift(oscillator).min(order.max(SHIFT_OF_A_CUBE))
 }
 
 /// The order in the amplitude at which the terms of a force change the frequency first: `n - 1` of
-/// an odd power `n`, `2 (n - 1)` of an even one; that of a cubic force where no term is known that
-/// does.
+/// an odd power `n`, `2 (n - 1)` of an even one; that of a cubic force if no such term is known.
 fn order_of_shift(oscillator: &Oscillator) -> u32 {
     const HIGHEST: u32 = 8;
     let Ok((oscillator, _)) = without_linear_damping(oscillator) else {
@@ -263,14 +264,14 @@ fn order_of_shift(oscillator: &Oscillator) -> u32 {
     SHIFT_OF_A_CUBE
 }
 
-/// Whether quadratic terms are there about `x = 0`: what they do to the frequency is as large as
-/// what cubic ones do, and comes one order later where both count as equally small.
+/// Whether the force has quadratic terms about `x = 0`: their effect on the frequency is as large
+/// as that of cubic ones, and appears one order later if both count as equally small.
 pub(in crate::method) fn has_quadratic_terms(oscillator: &Oscillator) -> bool {
     let expanded = in_amplitude(oscillator, 1);
     expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(|term| term.order == 1))
 }
 
-/// Whether a quadratic term drains or feeds energy about `x = 0`, as `x*x'` does: with other
+/// Whether a quadratic term dissipates or feeds energy about `x = 0`, as `x*x'` does: with other
 /// quadratic terms it acts on the amplitude as a cubic damping does.
 pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool {
     let expanded = in_amplitude(oscillator, 1);
@@ -278,7 +279,7 @@ pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool 
     expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(drains))
 }
 
-/// Whether all that damps is proportional to the velocity alone.
+/// Whether all damping is proportional to the velocity.
 pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
     let is_all =
         |linear: Expr| (&linear - &parts.damping).expand().is_ok_and(|rest| rest.is_zero());
@@ -293,7 +294,7 @@ fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprE
     for term in damping.terms() {
         let factor = Expr::divide(term, &velocity)?;
         let proportional = !factor.contains(oscillator.velocity());
-        // Without a value at rest the expansion refuses it by name.
+        // A term without a value at rest stays, and the expansion refuses it by name.
         if let (true, Ok(at_rest)) =
             (proportional, factor.substitute(oscillator.coordinate, &Expr::zero()))
         {
@@ -303,7 +304,7 @@ fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprE
     Expr::sum(linear).expand()
 }
 
-/// The equation without what is linear in the velocity at rest, and that.
+/// The equation without the damping that is linear in the velocity at rest, and that damping.
 fn without_linear_damping(oscillator: &Oscillator) -> Result<(Oscillator, Expr), Refusal> {
     let damping = linear_damping(&oscillator.parts()?.damping, oscillator)?;
     let mut rest = oscillator.clone();
@@ -327,7 +328,7 @@ fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::Secul
     bounded(terms.map(|term| term.position + term.velocity), order)
 }
 
-/// As [`within_reach`], for the powers alone.
+/// Like [`within_reach`], for the orders and powers of the terms alone.
 pub(in crate::method) fn bounded(
     powers: impl Iterator<Item = u32>,
     order: u32,

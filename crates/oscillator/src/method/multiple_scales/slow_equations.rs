@@ -76,7 +76,7 @@ impl SlowEquations {
     }
 }
 
-/// The limit cycles of a self-excited equation, and which of them is asked for.
+/// The limit cycles of a self-excited equation, and the number of the one asked for.
 pub(super) struct Cycles {
     pub(super) equation: AmplitudeEquation,
     pub(super) cycles: Vec<Cycle>,
@@ -86,7 +86,7 @@ pub(super) struct Cycles {
 /// The limit cycles of an equation whose amplitude is not free; `None` if it has none.
 ///
 /// # Errors
-/// The amplitudes have no closed form, or one that is not there is asked for.
+/// The amplitudes have no closed form, or the cycle asked for does not exist.
 pub(super) fn cycles(
     scaling: &Scaling,
     units: &FrequencyUnits,

@@ -1,5 +1,5 @@
-//! The expansion in slow times: what each order adds to the motion, and how fast the complex
-//! amplitude changes on each time.
+//! The expansion in slow times: the contribution of each order to the motion, and the rate of the
+//! complex amplitude on each time.
 //!
 //! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.3.3, 4.1
 //! and 5.7.
@@ -15,8 +15,8 @@
 //! `D_k B` found before, and there are as many slow times as there are orders. `x_k` has no
 //! homogeneous solution. A free motion has `s = 1` and turns with the linear frequency; a driven
 //! one turns with a fraction of the driving frequency, from which the linear frequency is detuned.
-//! `Lambda e^(i r phi)` solves the linear equation with a drive far from resonance, so the two drop
-//! out together.
+//! `Lambda e^(i r phi)` solves the linear equation with a drive far from resonance, so the two
+//! cancel.
 
 use std::collections::BTreeMap;
 
@@ -61,8 +61,7 @@ pub(super) struct DrivenTerm {
     pub velocity: u32,
     /// The rest, without the small parameter.
     pub coefficient: Polynomial,
-    /// The wave `cos(m phi)` or `sin(m phi)` of the drive; `None` for a force that does not know
-    /// the time.
+    /// The wave `cos(m phi)` or `sin(m phi)` of the drive; `None` for a term without time.
     pub drive: Option<(i32, Quadrature)>,
 }
 
@@ -265,7 +264,7 @@ impl ScaledProblem {
         // d/dt of the free part, order by order; that of a forced part is known beforehand.
         let mut velocity = vec![self.derivative(&found, 0, &found.displacement[0], amplitude)];
         for order in 1..=self.order {
-            // With D_k B left out: it is what the resonant terms are to fix.
+            // D_k B is zero for now: the resonant terms of this order will fix it.
             found.rates.push(Complex::zero());
             let mut moving = FastPhaseSeries::new();
             for j in 1..=order {
@@ -392,7 +391,8 @@ impl ScaledProblem {
         sum
     }
 
-    /// The particular solution, without what is resonant: divided by `omega0^2 (1 - (m/s)^2)`.
+    /// The particular solution for the terms that are not resonant, each divided by `omega0^2 (1 -
+    /// (m/s)^2)`.
     fn particular(&self, right: &FastPhaseSeries, inverse: &Polynomial) -> FastPhaseSeries {
         let own = i64::from(self.own);
         let solved = right.iter().filter(|entry| entry.0.abs() != self.own).map(|(m, value)| {

@@ -1,5 +1,4 @@
-//! The slow equations of a driven motion as waves of the slow phase, and the steady motions that
-//! they have.
+//! The slow equations of a driven motion as waves of the slow phase, and their steady motions.
 
 use std::collections::BTreeMap;
 
@@ -73,7 +72,7 @@ impl SlowRates {
                 }
             }
         }
-        // A wave that does not turn has no sine.
+        // The constant part has no sine.
         for waves in [&mut amplitude, &mut phase] {
             if let Some([_, sine]) = waves.get_mut(&0) {
                 *sine = Polynomial::zero();
@@ -86,8 +85,8 @@ impl SlowRates {
         self.multiple() > 0
     }
 
-    /// The multiple of the phase of which all that turns is a multiple: one, unless a symmetry
-    /// makes it more; zero where nothing turns.
+    /// The greatest common divisor of the multiples of the phase that occur: one, unless a symmetry
+    /// makes it larger; zero if the phase does not occur.
     fn multiple(&self) -> u32 {
         let moving = self.amplitude.iter().chain(&self.phase);
         let moving = moving.filter(|(_, waves)| !waves.iter().all(Zero::is_zero));
@@ -136,8 +135,8 @@ impl SlowRates {
     }
 }
 
-/// The frequency of the motion itself where `Q = 0` without damping and drive, in powers of the
-/// marker: `omega0 + sigma/p`.
+/// The frequency of the free undamped motion, at which `Q = 0`, in powers of the marker: `omega0 +
+/// sigma/p`.
 pub(super) fn backbone(still: &Polynomial, question: &DrivenProblem) -> Polynomial {
     let names = &question.names;
     let order = question.scaling.order as i32;
@@ -145,7 +144,7 @@ pub(super) fn backbone(still: &Polynomial, question: &DrivenProblem) -> Polynomi
     let own = Monomial::power_of(sigma, 1)
         .product(&Monomial::power_of(a, 1))
         .product(&names.mark(question.small_order()));
-    // Q = (sigma/p) a + rest: sigma = -p rest/a, put in until nothing changes.
+    // Q = (sigma/p) a + rest: sigma = -p rest/a, substituted until it no longer changes.
     let mut rest = still.clone();
     let slope = rest.coefficient(&own);
     rest.add_term(own, -slope.clone());
@@ -282,7 +281,7 @@ fn plane(
     for order in parts.values().flat_map(BTreeMap::values) {
         rates.accumulate(order);
     }
-    // From the order that leads on, also those that add nothing.
+    // All orders from the leading one on, including those that are zero.
     let by_orders = |orders: &BTreeMap<usize, Complex>| {
         let (first, last) = (orders.keys().next()?, orders.keys().next_back()?);
         let order = |k| unmarked(orders.get(&k).unwrap_or(&Complex::zero()));

@@ -1,11 +1,11 @@
 //! The denominators of an expansion, guessed from its first orders.
 //!
 //! The elimination divides order `n` by `1 - k^2` for its harmonics `k`, so that no prime above the
-//! highest harmonic can stand in a denominator, and their powers grow by what `lcm(1 .. highest)`
-//! has of them. Often much cancels: Duffing's denominators are powers of two, the pendulum's divide
-//! `64^n (2n+1)!`. Which of these it is is read off the first orders, half of them to fit and the
-//! other half to test. It is a guess: every number that is found with it is tried modulo one more
-//! prime.
+//! highest harmonic can stand in a denominator, and its exponent grows at each order by no more
+//! than that in `lcm(1 .. highest)`. Often much cancels: Duffing's denominators are powers of two,
+//! the pendulum's divide `64^n (2n+1)!`. The kind of growth is inferred from the first orders, half
+//! of them for the fit and the other half for a test. It is a guess: every number that is found
+//! with it is tried modulo one more prime.
 
 use std::sync::LazyLock;
 
@@ -15,8 +15,8 @@ use num_traits::{One, ToPrimitive, Zero};
 use crate::exact::residue::{Modulus, primes_up_to};
 use crate::exact::{Integer, Rational};
 
-/// The primes that are looked for in denominators: larger ones come from coefficients with such a
-/// number in them.
+/// The primes that are looked for in denominators: larger ones could only come from a coefficient
+/// of the equation.
 static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
 
 /// A positive whole number by its prime factors, in order, and their exponents.
@@ -31,7 +31,7 @@ impl Factored {
         let halvings = remove(&mut rest, 2, u64::MAX);
         factored.set(2, halvings);
         for prime in SMALL.iter().skip(1) {
-            // Most often nothing is left for the others, or no more than a word.
+            // The rest is mostly one, or fits a word, before all primes have been tried.
             if let Some(word) = rest.to_u64() {
                 return factored.with_factors_of(word);
             }
@@ -106,7 +106,7 @@ impl Factored {
         product
     }
 
-    /// The quotient, where what the divisor has more of is left out.
+    /// The quotient; factors that the divisor has in excess are ignored.
     pub fn quotient(&self, divisor: &Self) -> Self {
         let left = self
             .0
@@ -125,7 +125,7 @@ impl Factored {
             .product()
     }
 
-    /// As residues of it are formed.
+    /// The number in the form from which residues are computed.
     pub(super) fn ladder(&self) -> ExponentBits {
         let digits = self.0.iter().map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
         let digits = digits.max().unwrap_or(0);
@@ -157,7 +157,7 @@ impl Factored {
         (numerator, denominator.value())
     }
 
-    /// The fraction with this number, whose `value` is known, for a denominator.
+    /// The fraction with this number, whose `value` is known, as its denominator.
     pub fn fraction(&self, numerator: &Integer, value: &Integer) -> Rational {
         if numerator.is_zero() {
             return Rational::zero();
@@ -172,7 +172,7 @@ impl Factored {
             let divisor = common.value();
             numerator /= &divisor;
             denominator /= &divisor;
-            // Of a prime no more than a word was looked for.
+            // Each step removes at most one word of each prime.
             left = left.quotient(&common);
         }
     }
@@ -184,7 +184,7 @@ impl Factored {
         let halvings = numbers.iter().filter_map(|number| number.halvings()).min();
         let halvings = halvings.map_or(0, |count| count as u64);
         common.set(2, halvings.min(self.exponent(2)));
-        // Many primes in one division: most are in common with none of the first numbers already.
+        // One division tests many primes: most do not divide even the first numbers.
         let odd: Vec<u64> =
             self.0.iter().map(|factor| factor.0).filter(|prime| *prime != 2).collect();
         let mut shared: Vec<u64> = Vec::new();
@@ -207,8 +207,8 @@ impl Factored {
 
     /// The highest powers of these primes in all of the numbers, at most those of this one.
     fn least_powers(&self, primes: &[u64], numbers: &[&Integer]) -> Vec<(u64, u64)> {
-        // Squares first, several in a word; alone, as high as a word goes, those that have more
-        // than a square.
+        // Squares are tested first, several in a word; then each prime with more than a square, to
+        // its highest power in a word.
         let squares: Vec<u64> = primes.iter().map(|prime| prime * prime).collect();
         let mut least: Vec<(u64, u64)> =
             primes.iter().map(|prime| (*prime, self.exponent(*prime).min(2))).collect();
@@ -236,8 +236,9 @@ impl Factored {
     }
 }
 
-/// A number by the binary digits of the exponents of its primes, the highest first: for each digit
-/// the product of the primes that have it, in words. A square for each digit serves all primes.
+/// A number by the binary digits of the exponents of its primes, the highest digit first: for each
+/// digit the product of the primes whose exponent has it, in words. One squaring for each digit
+/// serves all primes.
 pub(super) struct ExponentBits(Vec<Vec<u64>>);
 
 impl ExponentBits {
@@ -268,7 +269,7 @@ fn lower(exponents: &mut [(u64, u64)], number: u64) {
     }
 }
 
-/// Cuts a list of numbers into lots whose products are words.
+/// Splits a list of numbers into groups whose products fit a word.
 fn words(numbers: &[u64]) -> Vec<&[u64]> {
     let mut lots = Vec::new();
     let mut rest = numbers;
@@ -324,21 +325,21 @@ fn remove(number: &mut Integer, prime: u64, most: u64) -> u64 {
     removed
 }
 
-/// The growth of denominators with the order, beside a factor `c^n`.
+/// The growth of denominators with the order, apart from a factor `c^n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Growth {
-    /// No growth beside that factor.
+    /// No growth apart from that factor.
     Power,
     /// As `(2n+1)!`.
     Factorial,
-    /// As the product of `lcm(1 .. highest factor)` over the orders: no structure is left out.
+    /// As the product of `lcm(1 .. highest factor)` over the orders, the upper bound.
     Multiples,
     /// As both together: a force with factorials in its coefficients.
     FactorialMultiples,
 }
 
 impl Growth {
-    /// All kinds, that with the shortest numbers first.
+    /// All kinds, the one with the shortest numbers first.
     pub const ALL: [Self; 4] =
         [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 
@@ -391,8 +392,7 @@ impl Growth {
             base
         };
         let base = fitted(known.len());
-        // The last resort is not tested here: what it says is tried modulo another prime, as
-        // everything is.
+        // The last resort is not tested here, because every result is tested modulo another prime.
         let last_resort = matches!(self, Self::Multiples | Self::FactorialMultiples);
         let untested = last_resort || known.len() > highest;
         // Factorials have primes that no divisor of the elimination has, and hide how fast the

@@ -1,8 +1,8 @@
-//! The first orders of an expansion in numbers of a fixed width, as far as these hold it.
+//! The first orders of an expansion in integers of fixed width, as far as they do not overflow.
 //!
 //! The recursion of the head of [the module](super) on [short series](crate::series::fixed_width),
 //! whose symmetries are those of the [plan](super::modular) for primes. Low orders need no more
-//! than this, and long expansions read off what it finds how their denominators grow.
+//! than this, and long expansions estimate the growth of their denominators from it.
 //!
 //! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics;
 //! two words hold Duffing's equation to order 25.
@@ -36,8 +36,8 @@ pub(super) struct FirstOrders {
 /// Order beyond which two words are too short.
 const LONG: usize = 28;
 
-/// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than
-/// show how it goes on.
+/// The orders up to the highest of the plan, or as many as fit; of a long expansion only as many as
+/// show how its denominators grow.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
@@ -57,8 +57,8 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
 
 struct Recursion<'a> {
     plan: &'a Plan<'a>,
-    /// The terms with their coefficients, each over the power whose derivative is meant; without
-    /// one that does not fit.
+    /// The terms with their coefficients, each divided by the power of which the term is a
+    /// derivative; `None` for one that overflows.
     terms: Vec<(&'a PlannedTerm, Option<(i128, i128)>)>,
     /// The tables of the plan, an entry for each order; the first is the motion.
     tables: Vec<Vec<ShortSeries>>,
@@ -68,7 +68,7 @@ struct Recursion<'a> {
     damped: Vec<Option<ShortSeries>>,
     frequency_squared: Vec<ShortSeries>,
     frequency: Vec<ShortSeries>,
-    /// A sine beside the terms.
+    /// A sine in addition to the terms.
     sine: Option<Sine>,
     variation: Option<Variation>,
     /// Number of orders whose amplitudes are known, too.
@@ -155,8 +155,8 @@ impl<'a> Recursion<'a> {
             .collect()
     }
 
-    /// Solves the order after those that are known; the last one of a limit cycle gives nothing but
-    /// the amplitude before it. `None` if a number does not fit, and if a secular sine stays.
+    /// Solves the order after those that are known; the last one of a limit cycle only fixes the
+    /// amplitude of the order before. `None` if a number overflows, or if a secular sine remains.
     fn next_order(&mut self) -> Option<()> {
         let (plan, order) = (self.plan, self.tables[0].len());
         let mut right_side = self.right_side(order)?;
@@ -192,7 +192,7 @@ impl<'a> Recursion<'a> {
     fn frequency(&self, order: usize, square: &ShortSeries) -> Option<ShortSeries> {
         let mut parts = Vec::with_capacity(order / 2 + 1);
         parts.push((1, 2, square));
-        // Of the sum over all pairs, each pair once and the middle.
+        // The sum over all pairs is twice that over one of each pair, plus the middle term.
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
             let (own, other) = (&self.frequency[i], &self.frequency[order - i]);
             let times = if 2 * i == order { 2 } else { 1 };
@@ -242,7 +242,8 @@ impl<'a> Recursion<'a> {
         }
     }
 
-    /// The terms with a derivative or without, each with its table's series that `at` takes.
+    /// The terms with a derivative or those without, each with the series that `at` selects from
+    /// its table.
     fn parts<'b>(
         &'b self,
         derivative: bool,
@@ -267,7 +268,7 @@ impl<'a> Recursion<'a> {
             return Some(right_side);
         }
         let slope = &variation.slope;
-        // Minus the sine over its slope.
+        // The change of the amplitude is minus the sine over its slope.
         let sign = -slope.numerator(0).signum();
         let amplitude = ShortSeries::constant(
             sine.harmonics(),
@@ -358,7 +359,7 @@ impl<'a> Recursion<'a> {
     /// amplitude.
     fn variation(&self) -> Option<Variation> {
         let plan = self.plan;
-        // Of y and of omega y': themselves.
+        // The first tables, of y and of omega y', are their own variations.
         let leaves = 1 + usize::from(plan.has_velocity);
         let mut tables: Vec<ShortSeries> =
             self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
@@ -390,7 +391,7 @@ fn frequency_factor(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeri
     }
 }
 
-/// The sum, where there is anything to sum.
+/// The sum of the parts; the inner `None` if there are none.
 fn sum_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
     match parts.is_empty() {
         true => Some(None),
@@ -398,7 +399,7 @@ fn sum_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeri
     }
 }
 
-/// Its derivative.
+/// The derivative of the sum of the parts; the inner `None` if there are none.
 fn derivative_of_parts(parts: &[(i128, i128, &ShortSeries)]) -> Option<Option<ShortSeries>> {
     match sum_of_parts(parts)? {
         Some(sum) => Some(Some(sum.derivative()?.reduced())),
@@ -413,7 +414,7 @@ struct Sine {
     scaled: Vec<ShortSeries>,
     sine: Vec<ShortSeries>,
     cosine: Vec<ShortSeries>,
-    /// `S` of the next order without what it has of the motion.
+    /// `S` of the next order without the contribution of its own motion.
     rest: Option<ShortSeries>,
 }
 
@@ -439,7 +440,7 @@ impl Sine {
                 self.sine.push(combination(&[(1, 1, &rest), (1, 1, displacement)])?.reduced())
             }
             None => {
-                // Of order zero the sine is the motion, and the cosine is one.
+                // At order zero the sine is the motion, and the cosine is one.
                 self.sine.push(displacement.clone());
                 let harmonics = displacement.harmonics().times(displacement.harmonics());
                 self.cosine.push(ShortSeries::constant(harmonics, 1, 1)?);

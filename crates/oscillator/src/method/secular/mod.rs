@@ -46,8 +46,8 @@ pub struct ForceTerm<R: Ring> {
     pub order: usize,
     /// Power of `y`.
     pub position: u32,
-    /// Power of `y'` (derivative in the time of the linear frequency; of the frequency itself where
-    /// the detuning stands before `y`).
+    /// Power of `y'` (derivative in the time of the linear frequency, or in that of the frequency
+    /// itself if the detuning multiplies `y`).
     pub velocity: u32,
     /// A constant series.
     pub coefficient: FourierSeries<R>,
@@ -90,11 +90,11 @@ pub struct Scheme {
 pub struct SecularExpansion<R: Ring> {
     /// `W_n`: omega^2 in powers of the small parameter, constant series; `W_0 = 1`.
     pub frequency_squared: Vec<FourierSeries<R>>,
-    /// omega itself, likewise.
+    /// omega in powers of the small parameter, constant series.
     pub frequency: Vec<FourierSeries<R>>,
     /// `y_n(tau)`.
     pub displacement: Vec<FourierSeries<R>>,
-    /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
+    /// The resonant part of `-r_n`, which the frequency had to remove, from order one on.
     pub removed: Vec<FourierSeries<R>>,
     /// The condition that fixed the amplitude of each `y_n` of a limit cycle, from order one on;
     /// empty if the amplitude is free.
@@ -161,10 +161,11 @@ pub fn bounded(
     terms: impl Iterator<Item = (usize, u32)>,
     highest: usize,
 ) -> Result<(), SecularError> {
-    /// Powers below are left alone: of them any order may be asked for.
+    /// Lower powers are not checked: for them any order may be asked for.
     const HIGH_POWER: u32 = 30;
     const MOST_WORK: f64 = 1e9;
-    // By order: the power n + 1 that a sine has at order n brings one harmonic more.
+    // Number of harmonics per order: the power n + 1 of a sine at order n adds one harmonic per
+    // order.
     let rate = |(order, power): (usize, u32)| power / u32::try_from(order.max(1)).unwrap_or(1);
     let degree = terms.map(rate).max().unwrap_or(0);
     if degree <= HIGH_POWER {
@@ -215,8 +216,8 @@ pub fn expand<R: Ring>(
     expand_from_root(ring, force, highest, scheme, None)
 }
 
-/// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are
-/// long. Of the [frequency alone](ExpansionScope::Frequency) where no more is wanted.
+/// Expands like [`expand`] over the whole numbers, with the same result, but modulo many primes if
+/// the numbers are long; on request only the [frequency](ExpansionScope::Frequency).
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -248,7 +249,7 @@ pub fn expand_numbers(
     expand_numbers_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
-/// As [`expand_numbers`], to the order that it has reached where it is stopped.
+/// Expands like [`expand_numbers`], to the order reached if it is interrupted.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -283,8 +284,8 @@ pub(crate) fn expand_numbers_supervised(
     })
 }
 
-/// As [`expand`] over polynomials with whole coefficients, and with the same result: from numbers
-/// at many values of the symbols where there are many products of them.
+/// Expands like [`expand`] over polynomials with whole coefficients, with the same result, but by
+/// interpolation from many values of the symbols if these have many products.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -320,7 +321,7 @@ pub fn expand_polynomials(
     expand_polynomials_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
-/// As [`expand_polynomials`], to the order that it has reached where it is stopped.
+/// Expands like [`expand_polynomials`], to the order reached if it is interrupted.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -348,7 +349,7 @@ pub(crate) fn expand_polynomials_supervised(
 }
 
 impl<R: Ring> SecularExpansion<R> {
-    /// Leaves the frequency alone.
+    /// Empties every list but those of the frequency.
     pub fn forget_motion(&mut self) {
         self.displacement.clear();
         self.removed.clear();
@@ -379,9 +380,9 @@ impl SecularExpansion<Integers> {
     }
 }
 
-/// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is
-/// `1/J`, a constant series. Secular sines vanish by the equation of that root, which the ring does
-/// not know, so none is looked for.
+/// Expands like [`expand`] about a limit cycle whose amplitude is a symbol for a root:
+/// `inverse_slope` is `1/J`, a constant series. Secular sines vanish by the equation of that root,
+/// which the ring does not contain, so they are not checked.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -415,8 +416,8 @@ pub fn expand_from_root<R: Ring>(
     expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
 }
 
-/// As [`expand_from_root`], to the order that it has reached where it is stopped; the first is
-/// waited for.
+/// Expands like [`expand_from_root`], to the order reached if it is interrupted, but at least to
+/// the first.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -647,7 +648,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         self.convolutions.push(self.position, displacement.clone());
         self.result.displacement.push(displacement.clone());
         let velocity = match self.scheme.detuning {
-            // Time is measured in the frequency itself, none of it expanded.
+            // Time is measured in the frequency itself, which is not expanded here.
             Detuning::Displacement => displacement.derivative(),
             Detuning::Acceleration => {
                 let derivatives: Vec<_> =
@@ -663,7 +664,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
     }
 }
 
-/// A series of order `order`, where its ring could divide by all that it had to.
+/// A series of order `order`; an error if its ring could not divide by one of its divisors.
 fn divided<R: Ring>(
     order: usize,
     series: FourierSeries<R>,

@@ -1,11 +1,10 @@
 //! The elimination of secular terms modulo eight primes at once, on values at points.
 //!
-//! The recursion of [the ring's own](super) with three changes that make it fast. Products of
-//! series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
-//! instead of products of Fourier series. A term `y^p (omega y')` is the derivative of
-//! `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a
-//! [residue](crate::exact::residue), of eight runs side by side: modulo eight primes, or modulo one
-//! with eight sets of coefficients.
+//! The [recursion in a ring](super) with three changes that make it fast. Products of series are
+//! sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`, instead of
+//! products of Fourier series. A term `y^p (omega y')` is the derivative of `y^(p+1)/(p+1)` and
+//! needs no values of the velocity. And everything is a [residue](crate::exact::residue), of eight
+//! runs side by side: modulo eight primes, or modulo one with eight sets of coefficients.
 //!
 //! Cost for `P` products to order `N` with `K` harmonics: `P K N^2/2` multiplications of words
 //! (half for a square), `K N^2/6` for each series that is multiplied by the frequency, and `N`
@@ -52,13 +51,13 @@ impl PrimeImage {
     }
 }
 
-/// The recursion in eight runs after the other eight, in the same memory.
+/// Runs the recursion, eight runs at a time, in the same memory.
 pub(super) struct Recursion<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     interrupt: Interrupt,
-    /// Values at the points, an entry for each order; of a product that is no factor of another the
-    /// latest alone.
+    /// Values at the points, an entry for each order; of a product that is not a factor of another,
+    /// only the latest.
     tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
     motion: HarmonicTable<'a>,
@@ -79,7 +78,7 @@ pub(super) struct ResidueField<A> {
     pub residues: Residues<A>,
     waves: Waves,
     factors: Factors,
-    /// The coefficients of the terms, each over the power whose derivative is meant.
+    /// The coefficients of the terms, each divided by the power of which the term is a derivative.
     pub coefficients: Vec<Lanes>,
     sine: Option<SineFactors>,
 }
@@ -145,11 +144,11 @@ fn coefficient(moduli: &[Modulus], number: &Rational, power: i64) -> Option<Lane
 struct Factors {
     /// `1/(1 - k^2)`, zero for the first harmonic.
     solution: Vec<Lanes>,
-    /// `-k^2`, or minus one where the frequency stands before `y`.
+    /// `-k^2`, or minus one if the frequency multiplies `y`.
     detuning: Vec<Lanes>,
-    /// `k`: from sines to the cosines of their derivative.
+    /// `k`, which takes sines to the cosines of their derivative.
     rising: Vec<Lanes>,
-    /// `-k`: from cosines to sines.
+    /// `-k`, which takes cosines to the sines of their derivative.
     falling: Vec<Lanes>,
 }
 
@@ -262,7 +261,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         [plan.most_harmonics(), if has_damping { plan.most_harmonics() } else { 0 }]
     }
 
-    /// All orders in that much [room](Self::entry_count).
+    /// An empty recursion in slices of [these sizes](Self::entry_count).
     pub fn new(
         arithmetic: A,
         plan: &'a Plan<'a>,
@@ -294,9 +293,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
     }
 
-    /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on
-    /// that is `wanted` of each. `None` if a divisor is a multiple of a prime, where a secular sine
-    /// stays (the ring's own recursion says which), and if it is stopped.
+    /// The expansion modulo each of up to eight primes, with the motion from the order `wanted` of
+    /// each prime on. `None` if a divisor is a multiple of a prime, if a secular sine remains (the
+    /// recursion in the ring names its order), or if the work is interrupted.
     pub fn images(
         &mut self,
         primes: &[u64],
@@ -398,7 +397,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             Wave::Sine => Lanes::default(),
             Wave::Cosine => residues.negative(self.right_side[resonant]),
         };
-        // Of a sum over all pairs, each pair once and the middle.
+        // The sum over all pairs is twice that over one of each pair, plus the middle term.
         let mut products = Lanes::default();
         for i in 1..order.div_ceil(2) {
             if self.frequency[i] != Lanes::default() {
@@ -564,7 +563,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             FrequencyFactor::Damped => (&self.damped, &self.frequency),
         };
         let step = plan.step();
-        // Latest first, as the frequencies stand.
+        // The latest order comes first, because the frequencies are stored so.
         let last = range.end - 1 - (order + range.end - 1) % step;
         self.reversed.clear();
         for i in (range.start..=last).rev().step_by(step) {
@@ -640,7 +639,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         displacement[self.plan.resonant()] = residues.negative(at_zero);
     }
 
-    /// Takes what stands in `right_side` for `y_n`.
+    /// Stores the solution in `right_side` as `y_n`.
     #[inline(always)]
     fn push_displacement(&mut self, field: &mut ResidueField<A>, order: usize) {
         let residues = field.residues;
@@ -680,7 +679,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let points = self.values.len();
         let none = Lanes::default();
         let mut tables: Vec<Vec<Lanes>> = Vec::with_capacity(plan.tables);
-        // Of y and of omega y': themselves.
+        // The first tables, of y and of omega y', are their own variations.
         for table in 0..1 + usize::from(plan.has_velocity) {
             let mut change = vec![none; points];
             for (point, change) in change.iter_mut().enumerate() {
@@ -727,8 +726,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 }
 
-/// The factor of the frequency corrections of later orders: `y_n`, with which its derivatives go,
-/// and that of the terms with one velocity.
+/// The series that the frequency corrections of later orders multiply: `y_n`, with its derivatives,
+/// or that of the terms with one velocity.
 #[derive(Clone, Copy)]
 enum FrequencyFactor {
     Motion,

@@ -16,7 +16,7 @@ pub(super) struct ExpansionOrder {
     /// The common denominator of all coefficients of the motion, in lowest terms.
     pub denominator: Integer,
     pub displacement: Vec<Integer>,
-    /// The coefficient of `cos tau`; asked for of limit cycles alone.
+    /// The coefficient of `cos tau`, used for limit cycles only.
     pub first_harmonic: Rational,
     pub frequency_squared: Rational,
     pub frequency: Rational,

@@ -2,8 +2,8 @@
 //!
 //! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time,
 //! where `y_n` consists of cosines (every `q` even) or of cosines for even `n` and of sines for odd
-//! `n` (every `q` as even as the order of its term). An equation without the second is left to the
-//! ring's own recursion.
+//! `n` (every `q` as even as the order of its term). An equation without the second symmetry is
+//! left to the recursion in the ring.
 
 use std::ops::Range;
 
@@ -41,21 +41,21 @@ pub(super) struct Plan<'a> {
     /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
     pub tables: usize,
     pub products: Vec<Product>,
-    /// Index of the table of each term, and whether its derivative is meant.
+    /// Index of the table of each term, and whether the term is the derivative of that table.
     pub of_terms: Vec<(usize, bool)>,
     pub has_velocity: bool,
-    /// Harmonics that the frequency of the last order does not depend on are left out.
+    /// Whether harmonics on which the frequency of the last order does not depend are left out.
     frequency_alone: bool,
     /// Start of the coefficients of each order in a list of all, and the end of the last.
     pub starts: Vec<usize>,
-    /// A sine beside the terms, with its rate.
+    /// A sine in addition to the terms, with its rate.
     pub sine: Option<(Sine, Rational)>,
 }
 
 impl<'a> Plan<'a> {
     /// `None` for an equation without the symmetry under reversal of time, and for one without
-    /// terms. With `frequency_alone` nothing but the frequency is right in the image; `sine` is the
-    /// rate of a [sine](super::sine) beside the terms, for a free motion.
+    /// terms. With `frequency_alone` only the frequency in the image is correct; `sine` is the rate
+    /// of a [sine](super::sine) in addition to the terms, for a free motion.
     pub fn new(
         terms: &'a [PlannedTerm],
         sine: Option<Rational>,
@@ -76,9 +76,9 @@ impl<'a> Plan<'a> {
         let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
         let determined = scheme.amplitude == AmplitudeKind::Determined;
         let last = highest + usize::from(determined);
-        // The frequency of a limit cycle is the same however its motion is normalised, and without
-        // the sum over all harmonics that the initial value is, the high ones are not needed. That
-        // of a free motion belongs to one amplitude or the other.
+        // The frequency of a limit cycle does not depend on the normalisation of its motion.
+        // Without an initial value, which is a sum over all harmonics, the high ones are not
+        // needed. The frequency of a free motion does depend on the definition of its amplitude.
         let frequency_alone = frequency_alone
             && (determined || scheme.normalisation == AmplitudeConvention::FirstHarmonic);
         let normalisation = match frequency_alone {
@@ -178,13 +178,13 @@ impl<'a> Plan<'a> {
         self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
-    /// Number of points that tell the harmonics apart: with `K` of them, a product's index `j` is
-    /// aliased to `2K - 1 - j` (`2K - j` if all harmonics stand), which must be none that is
-    /// computed.
+    /// Number of points that resolve the harmonics: with `K` of them, index `j` of a product is
+    /// aliased to `2K - 1 - j` (`2K - j` if all harmonics occur), which must not be an index that
+    /// is computed.
     fn points(&self) -> usize {
         match self.frequency_alone {
             true => self.harmonics_in_reach(self.last) / 2 + self.growth + 3,
-            // One more than there are, for the last order is only looked at in its first harmonic.
+            // One more than the harmonics of the last order, of which only the first is used.
             false => self.harmonics_in_reach(self.last) + 1,
         }
     }
@@ -213,7 +213,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The number of which a prime minus one has to be a multiple: the order of a root of unity.
+    /// The order of the root of unity: a prime minus one has to be a multiple of it.
     pub fn circle(&self) -> u64 {
         self.grid.circle() as u64
     }
@@ -236,7 +236,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The distance of orders of the same symmetry.
+    /// The distance between neighbouring orders of the same symmetry.
     #[inline(always)]
     pub fn step(&self) -> usize {
         if self.alternating { 2 } else { 1 }
@@ -259,8 +259,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each
-/// symmetry of its own, all in one memory.
+/// Coefficients of harmonics: one row for each harmonic and each symmetry, with the orders at which
+/// it is not zero, all in one slice.
 pub(super) struct HarmonicTable<'m> {
     rows: [Vec<OrderRange>; 2],
     entries: &'m mut [Lanes],
@@ -305,7 +305,7 @@ impl<'m> HarmonicTable<'m> {
         self.rows.iter_mut().flatten().for_each(|row| row.length = 0);
     }
 
-    /// All that there is.
+    /// All entries.
     pub fn entries(&mut self) -> impl Iterator<Item = &mut Lanes> {
         self.entries.iter_mut()
     }
@@ -314,7 +314,7 @@ impl<'m> HarmonicTable<'m> {
         if self.rows[1].is_empty() { 0 } else { order % 2 }
     }
 
-    /// The coefficients of the next order.
+    /// Appends the coefficients of the next order.
     pub fn push(&mut self, plan: &Plan, order: usize, coefficients: &[Lanes]) {
         let parity = self.parity(order);
         for (index, (row, coefficient)) in
@@ -327,7 +327,7 @@ impl<'m> HarmonicTable<'m> {
         }
     }
 
-    /// The last order of a symmetry.
+    /// The coefficient at the last order with the symmetry of `order`.
     pub fn last(&mut self, order: usize, index: usize) -> Option<&mut Lanes> {
         let row = self.rows[self.parity(order)].get(index)?;
         let last = row.length.checked_sub(1)?;

@@ -1,14 +1,13 @@
-//! An exact expansion put together from what many primes see of it.
+//! An exact expansion reconstructed from its images modulo many primes.
 //!
 //! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
 //! sections 5.4 (many small primes) and 5.10 (rational numbers).
 //!
 //! 1. A few primes give the first orders as fractions, and with them how the
-//!    [denominators](super::denominators) grow.
-//! 2. The numerators over these denominators are whole numbers, and as many primes are run as they
-//!    have digits.
-//! 3. Each numerator is [lifted](crate::exact::residue::remainder) and tried modulo one prime more,
-//!    which its digits know nothing of.
+//!    [denominators](super::denominators) grow. 2. The numerators over these denominators are whole
+//!    numbers, and as many primes are run as they have digits. 3. Each numerator is
+//!    [lifted](crate::exact::residue::remainder) and tested modulo one more prime, which was not
+//!    used to find its digits.
 //!
 //! A wrong number would have to agree with the right one modulo that prime by chance, once in 2^50
 //! (2^30 on processors without wide multiply-add). Primes are independent, and run on all threads
@@ -44,9 +43,9 @@ pub enum ExpansionScope {
     Frequency,
 }
 
-/// The expansion by words, or by many primes; `None` if the equation has no symmetry to use, where
-/// the denominators grow in no known way, where numbers are short, and if there is none: the ring's
-/// own recursion answers then.
+/// The expansion in integers of fixed width, or modulo many primes; `None` if the equation has no
+/// symmetry to use, if the growth of the denominators is of no known kind, if the numbers are
+/// short, or if no expansion exists. The recursion in the ring is used then.
 pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
@@ -91,7 +90,7 @@ fn slope(
     Some(in_lowest_terms(&numerator, denominator))
 }
 
-/// Order up to which one thread is done before others have begun.
+/// Order up to which one thread is faster than starting several.
 const ALONE: usize = 40;
 
 /// The order to which long expansions are first derived to see how their denominators grow.
@@ -100,7 +99,7 @@ const GUESSED: usize = 32;
 /// The equation to be expanded.
 struct SecularEquation {
     terms: Vec<PlannedTerm>,
-    /// The rate of a sine beside the terms.
+    /// The rate of a sine in addition to the terms.
     sine: Option<Rational>,
     scheme: Scheme,
     extent: ExpansionScope,
@@ -140,7 +139,7 @@ struct ExpandByPrimes<'a> {
     equation: &'a SecularEquation,
     plan: &'a Plan<'a>,
     slope: Option<Rational>,
-    /// The first ones, in numbers of a fixed width.
+    /// The first orders, in integers of fixed width.
     orders: Vec<ExpansionOrder>,
     supervision: Supervision,
 }
@@ -222,7 +221,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let highest = self.plan.highest;
         let of_motion = |order| self.plan.largest_factor(order);
         let of_frequency = |order| self.plan.largest_factor_of_frequency(order);
-        // One guess is enough about a motion that is not wanted.
+        // If the motion is not wanted, the guess about its denominators does not matter.
         let guesses = match self.extent {
             ExpansionScope::Frequency => &Growth::ALL[..1],
             ExpansionScope::Motion => &Growth::ALL[..],
@@ -247,7 +246,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 }
             }
         }
-        // Numbers may shrink more slowly later on.
+        // The sizes may decrease more slowly later on, so the second try does not assume it.
         beginning.shrinks().then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
@@ -267,14 +266,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// Images of the primes from `self.first.len()` on, in eights, until there are `count`, each
-    /// from the order on that it is wanted for; fewer where the work is stopped.
+    /// from the order on from which it is needed; fewer if the work is interrupted.
     fn images(
         &mut self,
         count: usize,
         wanted: &(dyn Fn(usize) -> usize + Sync),
     ) -> Option<Vec<PrimeImage>> {
-        /// Eights of a lot use the same memory; after this many lots for each thread all threads
-        /// meet, so that what is there when the work is stopped has no gaps.
+        /// Number of blocks of eight primes that one thread runs in the same memory. After some
+        /// such lots for each thread all threads are joined, so that an interrupted computation has
+        /// no gaps.
         const LOT: usize = 8;
         const LOTS: usize = 4;
         let begun = self.first.len();
@@ -329,9 +329,10 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 
     /// The first orders as fractions, by as many primes as they need.
     fn beginning(&mut self) -> Option<FirstGuesses> {
-        /// Enough to see how denominators grow.
+        /// Number of orders that show how denominators grow.
         const ORDERS: usize = 10;
-        /// More than any such beginning needs: its denominators are no small numbers.
+        /// Largest number of primes for the first orders; more are needed only if the denominators
+        /// have large factors.
         const MOST_PRIMES: usize = 100;
         let last = self.plan.highest.min(ORDERS);
         let mut beginning = FirstGuesses::default();
@@ -393,8 +394,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         for bits in bits {
             counts.push(self.primes_for(*bits)?);
         }
-        // Orders share the primes of the longest among their neighbours: what a set of primes needs
-        // is computed once.
+        // Orders share the primes of the longest among their neighbours: the constants of a set of
+        // primes are computed once.
         let longest = counts.iter().copied().max()?;
         let mut least = 1;
         for count in &mut counts {
@@ -422,7 +423,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         if all.len() <= most && !stopped {
             return None;
         }
-        // Of work that was stopped there are the orders for which the primes are enough.
+        // If the work was interrupted, only the orders are kept for which the primes suffice.
         counts.truncate(counts.partition_point(|count| *count < all.len()));
         let mut groups: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
         for (order, count) in counts.into_iter().enumerate().skip(first) {
@@ -503,7 +504,7 @@ impl FirstGuesses {
         self
     }
 
-    /// Whether all denominators grow like powers: of these a few orders show everything.
+    /// Whether all denominators grow like powers, which a few orders show reliably.
     fn is_power(&self, plan: &Plan) -> bool {
         let fits = |guess: &Guess| {
             let divisors = |order| plan.largest_factor(order);
@@ -556,8 +557,8 @@ impl Guess {
         self.growth = self.growth.max(size / order.max(1) as f64);
         self.known.push(denominator);
         self.sizes.push(size);
-        // Of the second half of what is known; what is no more than a power of the order is not
-        // counted.
+        // The growth is that of the second half of the known orders; a growth like a power of the
+        // order is not counted.
         let middle = order / 2;
         let slope = (size - self.sizes[middle]) / (order - middle).max(1) as f64;
         self.decay = if order >= Self::ENOUGH { (slope + 1.0).min(0.0) } else { 0.0 };
@@ -566,8 +567,8 @@ impl Guess {
     /// Least number of orders from which a decrease is inferred.
     const ENOUGH: usize = 8;
 
-    /// The binary digits before the point of the largest number of an order, at most; negative
-    /// where it is small.
+    /// Upper estimate of the binary digits before the point of the largest number of an order;
+    /// negative if it is below one.
     fn size(&self, order: usize) -> f64 {
         let last = self.sizes.len().saturating_sub(1);
         match self.sizes.last() {
@@ -579,20 +580,20 @@ impl Guess {
     }
 }
 
-/// The way back for orders that share their primes.
+/// The reconstruction of orders that share their primes.
 struct LiftOrders<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     images: &'a [&'a PrimeImage],
     remainders: Remainders<A>,
-    /// The prime that only tests.
+    /// The image modulo the prime that serves only as a test.
     test: &'a PrimeImage,
     /// The residues of the powers of a digit modulo that prime.
     powers: Vec<u64>,
 }
 
 impl<'a, A: Arithmetic> LiftOrders<'a, A> {
-    /// The last of the images is the one that tests.
+    /// Prepares the reconstruction; the last of the images serves as the test.
     fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a PrimeImage]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
@@ -666,7 +667,7 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
         Some(lifted)
     }
 
-    /// Empty where no prime keeps the motion.
+    /// The numerators of the motion; empty if no prime keeps it.
     fn displacement(&self, order: usize, over: &WeightedDenominator) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
         self.numbers(over, count, |image, block, lanes| {
@@ -737,12 +738,12 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
     }
 }
 
-/// A denominator, as the way back needs it.
+/// A denominator prepared for the reconstruction.
 struct WeightedDenominator {
     denominator: Factored,
     /// The factors of the residues.
     weights: Vec<u64>,
-    /// Its residue modulo the prime that tests.
+    /// The residue of the denominator modulo the prime of the test.
     in_test: u64,
 }
 

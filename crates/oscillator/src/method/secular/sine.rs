@@ -1,4 +1,5 @@
-//! The sine of the motion by its differential equation, where a force is the whole series of one.
+//! The sine of the motion by its differential equation, for a force that is the whole series of a
+//! sine.
 //!
 //! Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.7
 //! (functions of power series).
@@ -49,12 +50,12 @@ impl Sine {
     pub const TABLES: usize = 5;
 }
 
-/// The rate `k` of a sine that the terms contain up to an order, and the terms beside it.
+/// The rate `k` of a sine that the terms contain up to an order, and the remaining terms.
 pub(super) fn split(
     mut terms: Vec<PlannedTerm>,
     highest: usize,
 ) -> (Option<Rational>, Vec<PlannedTerm>) {
-    /// Number of terms below which powers are as fast.
+    /// Number of terms below which separate powers are as fast.
     const LONG: usize = 6;
     let enough = (LONG..=terms.len()).contains(&highest);
     let rate = if enough { rate(&terms, highest) } else { None };
@@ -128,7 +129,7 @@ impl SineFactors {
         MixtureTerm { factor: self.scaled[order], table: 0, order }
     }
 
-    /// `S_n` without what it has of `y_n`.
+    /// `S_n` without the contribution of `y_n`.
     pub fn sine(&self, sine: &Sine, order: usize) -> MixtureTerm {
         MixtureTerm { factor: self.sine[order], table: sine.of_sine.to, order }
     }

@@ -1,5 +1,5 @@
-//! An exact expansion whose coefficients contain symbols, from what primes see of it at many values
-//! of them.
+//! An exact expansion whose coefficients contain symbols, reconstructed from its images modulo
+//! primes at many values of the symbols.
 //!
 //! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
 //! section 5.5 (change of representation); N. Dyn and M. S. Floater, *Multivariate polynomial interpolation
@@ -17,7 +17,7 @@
 //! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each
 //! prime, where products of polynomials would take `P^2` products of coefficients each. The points
 //! are independent, and run on all threads with one result; those of the lowest orders come first,
-//! so that what is there when the work is stopped is all that the lower orders need.
+//! so that an interrupted computation has all points of the lower orders.
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each prime, at most half a gigabyte.
 
@@ -40,12 +40,12 @@ use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
 
-/// Number of points times orders up to which one thread is done before others have begun.
+/// Number of points times orders up to which one thread is faster than starting several.
 const ALONE: usize = 200;
 
-/// The expansion, to the order that it has reached where it is stopped; `None` if the equation has
-/// no symmetry to use, no term of the first order, an amplitude that is determined, or too many
-/// symbols, and if it is stopped before any order is there: the ring's own recursion answers then.
+/// The expansion, to the order reached if it is interrupted. `None` if the equation has no symmetry
+/// to use, no term of the first order, a determined amplitude or too many symbols, or if it is
+/// interrupted before the first order; the recursion in the ring is used then.
 pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
@@ -67,16 +67,16 @@ impl Work for ExpandSymbols<'_> {
     type Output = Option<SecularExpansion<Symbols>>;
 
     fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        /// More are as slow as polynomials.
+        /// With more points this is as slow as polynomials.
         const MOST_POINTS: usize = 5000;
-        /// Expansions to this order are done at once.
+        /// Expansions to this order take no noticeable time.
         const SHORT: usize = 12;
         let Self(force, highest, scheme, extent, supervision) = self;
         let (terms, groups) = grouped(force)?;
         let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
-        // Half of the orders cost a thirtieth: they are there where the work is stopped on the way
-        // to all.
+        // Half of the orders cost a thirtieth of the work: they are kept in case it is interrupted
+        // later.
         let halves =
             std::iter::successors(Some(highest), |order| (*order > SHORT).then_some(order / 2));
         let stages: Vec<usize> = halves.collect();
@@ -106,7 +106,7 @@ impl Work for ExpandSymbols<'_> {
                 break;
             }
         }
-        // Stopped before the first correction there is nothing.
+        // An expansion interrupted before the first correction is of no use.
         best.filter(|best| best.frequency.len() > highest.min(1))
     }
 }
@@ -119,7 +119,7 @@ struct Groups {
     of_terms: Vec<usize>,
 }
 
-/// The terms of the force with numbers for coefficients, and what symbols each of them has.
+/// The terms of the force with numbers for coefficients, and the group of symbols of each.
 fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<PlannedTerm>, Groups)> {
     let mut terms = Vec::new();
     let mut groups = Groups { kinds: vec![], of_terms: vec![] };
@@ -145,7 +145,7 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<PlannedTerm>, Groups)> {
 
 /// All exponents with `sum weight exponent <= highest`, those of lower weight first.
 struct LowerSet {
-    /// One list of exponents a point; that of the group whose value is one is zero.
+    /// One list of exponents for each point; that of the group whose value is one is zero.
     points: Vec<Vec<usize>>,
     /// Number of points of each order.
     counts: Vec<usize>,
@@ -247,8 +247,8 @@ impl LowerSet {
         }
     }
 
-    /// The symbols that belong to each point but for those of the group whose value is one, and the
-    /// weight of the point; and that group's.
+    /// The product of symbols at each point, without the group whose value is one, and the weight
+    /// of the point; then the product of symbols of that group.
     fn monomials(
         &self,
         kinds: &[(usize, Monomial)],
@@ -265,9 +265,9 @@ impl LowerSet {
     }
 }
 
-/// The expansion modulo one prime, of all orders or of the lower ones if it was stopped: for each
-/// order the plain residues of the coefficients, point by point; of the frequency, of its square,
-/// and of the harmonics if they are wanted.
+/// The expansion modulo one prime, of all orders, or of the lower ones if it was interrupted: for
+/// each order the plain residues of the coefficients, point by point; of the frequency, of its
+/// square, and of the harmonics if they are wanted.
 struct SymbolicImage {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
@@ -301,7 +301,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
         }
     }
 
-    /// The numbers of all orders at these points, as far as the work is not stopped.
+    /// The numbers of all orders at these points, unless the work is interrupted.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = ResidueField::new(self.arithmetic, self.plan, &[modulus])?;
         let mut memory = Memory::zeroed(Recursion::<A>::entry_count(self.plan));
@@ -346,8 +346,8 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
         Some(found)
     }
 
-    /// The numbers at all points, in their order; where the work is stopped, at as many of the
-    /// first ones as there are.
+    /// The numbers at all points, in their order; if the work is interrupted, at the first ones
+    /// that are complete.
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
         if points.len() * self.plan.highest > ALONE {
@@ -375,13 +375,13 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
         self.interpolated(modulus, &self.values_at_points(modulus)?)
     }
 
-    /// The orders that these numbers at the first points are enough for.
+    /// The orders that are determined by these numbers at the first points.
     fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<SymbolicImage> {
         let highest = self.plan.highest;
         let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
         modulus.invert(&mut inverses)?;
         inverses.insert(0, 0);
-        // An order is there where all its points are.
+        // An order is complete when all its points are.
         let counts = &self.lower_set.counts;
         let reached = counts.partition_point(|count| *count <= at_points.len());
         let mut taken = vec![0; at_points.len()];
@@ -400,8 +400,8 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
         Some(SymbolicImage { modulus, orders })
     }
 
-    /// All orders, by as many primes as their fractions need; those for which there are enough
-    /// where the work is stopped.
+    /// All orders, by as many primes as their fractions need; if the work is interrupted, the
+    /// orders for which the primes suffice.
     fn orders(&mut self) -> Option<Vec<SymbolicOrder>> {
         /// Residues kept at once, half a gigabyte of them.
         const MOST_RESIDUES: usize = 1 << 26;
@@ -416,7 +416,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
             if count >= most {
                 return None;
             }
-            // One prime more, to test.
+            // One more prime serves as a test.
             let runs = (count + 1 - self.images.len()) * self.lower_set.points.len();
             self.supervision.progress.begin(runs);
             while self.images.len() <= count && !stopped {
@@ -463,7 +463,8 @@ fn fractions<A: Arithmetic>(
     let mut weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
     let mut residues = vec![Lanes::default(); images.len()];
     let mut eight = ReconstructedIntegers::default();
-    // The place of the first of eight that were put together over the present denominator.
+    // Index of the first of the eight numbers that were lifted together over the present
+    // denominator.
     let mut first = None;
     for index in 0..images[0].orders[order].len() {
         let start = *first.get_or_insert_with(|| {
@@ -498,7 +499,7 @@ fn fractions<A: Arithmetic>(
 }
 
 impl SymbolicOrder {
-    /// Whether a prime that knows nothing of these numbers sees the same.
+    /// Whether the numbers agree with their residues modulo a prime that was not used to find them.
     fn agrees(&self, modulus: &Modulus, plain: &[u64]) -> bool {
         let denominator = modulus.integer(&self.denominator);
         let pairs = self.numerators.iter().zip(plain);

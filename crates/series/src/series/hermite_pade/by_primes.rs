@@ -1,9 +1,9 @@
-//! Exact approximants: modulo primes of one word, then put together.
+//! Exact approximants, computed modulo primes of one word and reconstructed.
 //!
-//! Modulo a prime the recursion is a matter of words. The coefficients of the result are fractions
-//! over one denominator, whose digits are as many as those of all coefficients of the series
-//! together allow, mostly far fewer: primes are added until one entry shows itself as a fraction
-//! and all others, over its denominator, agree with a prime that they were not made from.
+//! Modulo a prime the recursion needs only words. The coefficients of the result are fractions over
+//! one denominator. They may have as many digits as all coefficients of the series together, but
+//! mostly have far fewer: primes are added until one entry is recognized as a fraction, and all
+//! others, over its denominator, agree with a further prime that was not used for them.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
@@ -14,10 +14,10 @@ use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, 
 use crate::exact::{Integer, Rational};
 use crate::parallel::par_map;
 
-/// The combination of these series, each with the degree of its factor, that vanishes to the
-/// highest order: whole numbers without a common factor, a list for each series, the lowest power
-/// first. `None` if there is none whose first number is not zero, or more than one, or if its
-/// digits would take too long.
+/// Returns the combination of these series, each given with the degree of its factor, that vanishes
+/// to the highest order: whole numbers without a common factor, a list for each series, the lowest
+/// power first. Returns `None` if there is no combination with a non-zero first number, if there
+/// are several, or if the numbers would be too long.
 pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
     by_widest(Exact(series))
 }
@@ -50,7 +50,8 @@ impl Field for PrimeField {
     }
 }
 
-/// The coefficients modulo one prime: plain residues, over the first of them.
+/// The coefficients of the combination modulo one prime: plain residues, divided by the first of
+/// them.
 struct CoefficientImage {
     modulus: Modulus,
     numbers: Vec<u64>,
@@ -82,7 +83,7 @@ impl Exact<'_> {
             work.advance();
         }
         let best = work.best();
-        // With room to spare there are several.
+        // If room is left, the combination is not unique.
         if best.room != 0 {
             return None;
         }
@@ -106,9 +107,10 @@ impl Work for Exact<'_> {
     type Output = Option<Vec<Vec<Integer>>>;
 
     fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        /// As many as [`Remainders`] takes.
+        /// The largest number of primes, which is that of [`Remainders`].
         const MOST: usize = 1 << 13;
-        /// If so many see nothing there is nothing.
+        /// Number of primes without a result beyond which the search fails, besides one in a
+        /// hundred.
         const BLIND: usize = 4;
         let mut source = primes_below(A::BITS, 2);
         let mut images: Vec<CoefficientImage> = vec![];
@@ -137,8 +139,8 @@ impl Work for Exact<'_> {
     }
 }
 
-/// All numbers over their common denominator, which is the first of them; `None` if the images, of
-/// which the last only tests, are too few.
+/// Reconstructs all numbers over their common denominator, which becomes the first of them; `None`
+/// if there are too few images. The last image serves only as a test.
 fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<Vec<Integer>> {
     let (test, images) = images.split_last()?;
     let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
@@ -159,7 +161,7 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<V
     let mut over = weights(&denominator);
     let mut place = length - 1;
     let mut first = true;
-    // Eight numbers down to a place, over the present denominator.
+    // Eight numbers, from a place downwards, over the present denominator.
     let mut residues = vec![Lanes::default(); images.len()];
     let mut eight = ReconstructedIntegers::default();
     let mut lifted = None;
@@ -191,14 +193,15 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<V
             return None;
         }
         lifted = None;
-        // The earlier numerators are over the shorter denominator.
+        // The earlier numerators have the smaller denominator.
         numerators.iter_mut().for_each(|numerator: &mut Integer| *numerator *= &more);
         denominator *= more;
         over = weights(&denominator);
         first = false;
     }
     numerators.reverse();
-    // The first number is one over the denominator: nothing is common to all of them.
+    // The first number was one, so a common factor of all numerators is one of the denominator as
+    // well.
     let common = numerators.iter().fold(Integer::zero(), |common, number| common.gcd(number));
     if common > Integer::one() {
         numerators.iter_mut().for_each(|number| *number /= &common);

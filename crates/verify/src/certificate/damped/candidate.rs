@@ -1,5 +1,5 @@
 //! The numbers of a certificate of a limit cycle or a driven motion: Newton's iteration from the
-//! true one in doubles. Nothing here is trusted.
+//! true motion in doubles. The theorem trusts nothing here.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -44,8 +44,8 @@ pub fn certify_cycle(
     certified_cycle(oscillator, solution, at, true)
 }
 
-/// A certificate of the limit cycle that a formula is about, without the formula: it may have no
-/// value there.
+/// A certificate of the limit cycle that a formula is about, without the formula: the formula may
+/// have no value there.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -94,7 +94,7 @@ fn certified_cycle(
         reciprocal: units(reciprocal, bits),
         cosines: coefficients(&harmonics.cosines),
         sines: coefficients(&harmonics.sines),
-        // Many harmonics bring it near in few steps; how many a proof needs is another question.
+        // With many harmonics few steps suffice; the number that a proof needs is found later.
         highest: (3 * seen / 2).clamp(15, last_harmonic_of_largest_block(odd)) | 1,
         inverse_bits: INVERSE_BITS,
         inverse: vec![],
@@ -215,7 +215,7 @@ fn judged_driven(
     for state in solution.steady_states(&|name| at.get(name)) {
         let mut values = at.clone();
         let number = |value: f64| Expr::number(from_f64(value).unwrap_or_default());
-        // The two letters of the slow equations have no values of their own.
+        // Amplitude and phase of the slow equations get their steady values.
         let taken = [(slow.amplitude, state.amplitude), (slow.phase, state.phase)]
             .into_iter()
             .any(|(name, value)| values.insert(name, number(value)).is_err());
@@ -248,12 +248,12 @@ fn is_near_all(exact: &FourierSeries, harmonics: &Harmonics) -> bool {
     })
 }
 
-/// The harmonics of samples of one period, the constant as it is, without those at the end that
-/// have no digits.
+/// The harmonics of samples of one period, the constant being the mean, without trailing ones that
+/// have no significant digits.
 fn harmonics_of(places: &[f64]) -> Harmonics {
     let mut found =
         Transform::new(places.len()).harmonics(places, HIGHEST_HARMONIC.min(places.len() / 2));
-    // Of the constant twice the mean.
+    // The coefficient of the constant was twice the mean.
     found.cosines[0] /= 2.0;
     let largest = found.cosines.iter().chain(&found.sines);
     let largest = largest.fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -265,7 +265,7 @@ fn harmonics_of(places: &[f64]) -> Harmonics {
     found
 }
 
-/// Whether the even harmonics are noise.
+/// Whether the even harmonics are zero up to numerical noise.
 fn has_odd_alone(harmonics: &Harmonics) -> bool {
     let all = || harmonics.cosines.iter().chain(&harmonics.sines);
     let largest = all().fold(0.0_f64, |most, value| most.max(value.abs()));
@@ -287,7 +287,7 @@ fn driven_parts(
     }
     let in_numbers = |expression: Expr| {
         let expression = expression.substitute_all(values)?;
-        // First the coordinate, which may have the letter of a wave.
+        // The coordinate is substituted first, because its name may be that of a wave.
         let expression = expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?;
         in_waves(&expression, time, frequency)
     };
@@ -296,7 +296,7 @@ fn driven_parts(
     Ok([written_out(damping)?, force])
 }
 
-/// Brings a certificate near, and finds the smallest block that proves it.
+/// Refines a certificate, and finds the smallest block that proves it.
 ///
 /// # Errors
 /// As [`certify_cycle`].
@@ -327,10 +327,10 @@ const fn last_harmonic_of_largest_block(odd: bool) -> usize {
     }
 }
 
-/// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics
-/// and with its square the time grow with them.
+/// Binary digits behind the point, the fewer the more harmonics a motion has: with the digits grows
+/// the number of harmonics, and with its square the time.
 fn digits(seen: usize) -> usize {
-    /// A motion of this many harmonics in doubles has all digits.
+    /// Number of harmonics in doubles up to which all digits are used.
     const MANY: usize = 120;
     /// The least number of bits: those of doubles.
     const FEWEST: usize = 60;
@@ -364,8 +364,8 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
     Ok([in_numbers(damping)?, in_numbers(force)?])
 }
 
-/// Whether a term is a multiple of a letter, or free of it. The derivative alone does not say: that
-/// of `sgn` is zero.
+/// Whether a term is a multiple of a symbol, or free of it. The derivative alone does not decide:
+/// that of `sgn` is zero.
 fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
     let slope = term.differentiate(letter)?;
     let rest = (term - &(&slope * &Expr::from(letter))).expand()?;
@@ -373,7 +373,7 @@ fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
 }
 
 /// The equation of `v = x'`, `v'' + D'(v) v' + k v = 0` where that of x is `x'' + D(x') + k x = 0`,
-/// in the letter of x.
+/// written with the symbol of x.
 fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
     let (coordinate, velocity) = (oscillator.coordinate, oscillator.velocity());
     let stiffness = parts.restoring.differentiate(coordinate).ok()?;
@@ -445,7 +445,7 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
     })
 }
 
-/// Checks a certificate with its block, and claims what is proved.
+/// Checks a certificate with its block, and enters the proved values as claims.
 fn proved(certificate: &mut DampedCertificate) -> Result<Certified, NotProved> {
     certificate.inverse = inverse(certificate)?;
     if certificate.drive.is_none() {

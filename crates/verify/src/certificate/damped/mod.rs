@@ -1,10 +1,10 @@
 //! Certificates of equations with damping: limit cycles of `x'' + g(x) x' + h(x) = 0`, and steady
-//! motions of the same with a drive in h.
+//! motions of such an equation with a drive in h.
 //!
-//! In: numbers from which a motion can be proved, anything. Out: that there is exactly one so near,
-//! its frequency or amplitude, whether a cycle attracts, and how far a formula for it is off. Where
-//! a motion on a cycle begins is free: here, and in the formula that is compared, the first
-//! harmonic has no sine. That of a driven motion is given by the drive.
+//! In: any numbers from which a motion may be proved. Out: a proof that there is exactly one motion
+//! near them, its frequency or amplitude, whether a cycle attracts, and the error of a formula for
+//! it. The phase of a motion on a cycle is free: here, and in the formula that is compared, the
+//! first harmonic has no sine. The phase of a driven motion is determined by the drive.
 
 mod candidate;
 mod theorem;
@@ -25,7 +25,7 @@ use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
 use theorem::DampedProblem;
 
-/// The drive of a motion, whose period is a whole number of its own.
+/// The drive of a motion, whose period is a whole number of drive periods.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Drive {
     /// Omega, a positive fraction.
@@ -40,10 +40,10 @@ pub struct Drive {
 /// anything: [`check_damped`] trusts none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DampedCertificate {
-    /// `g` of `x'' + g(x) x' + h(x) = 0`, in the letter [`x`](super::coordinate) and numbers.
+    /// `g` of `x'' + g(x) x' + h(x) = 0`, in the symbol [`x`](super::coordinate) and numbers.
     pub damping: Expr,
-    /// `h`, likewise; of a driven equation it has the letters `c` and `s` too, `cos(Omega t)` and
-    /// `sin(Omega t)`.
+    /// `h` of the equation, in the same symbols; with a drive also in `c` and `s`, which stand for
+    /// `cos(Omega t)` and `sin(Omega t)`.
     pub force: Expr,
     /// The drive; `None` for a limit cycle.
     pub drive: Option<Drive>,
@@ -129,7 +129,7 @@ impl DampedCertificate {
         let phase = &Expr::number(drive.frequency.clone()) * &Expr::symbol("t");
         let waves = [phase.cos(), phase.sin()].into_iter().flatten();
         let values = theorem::waves_of_drive().into_iter().zip(waves).collect();
-        // Without a value there it is shown as it is checked.
+        // If the substitution has no value, the force is shown as it is checked.
         self.force.substitute_all(&values).unwrap_or_else(|_| self.force.clone())
     }
 
@@ -174,7 +174,8 @@ impl DampedCertificate {
             inverse: &self.inverse,
             expressions: &[(&self.damping, &letters[letters.len() - 1..]), (&self.force, &letters)],
         };
-        // Sizes before arithmetic: the block may be as long as it is said to be.
+        // Sizes are checked before any arithmetic, because a certificate may claim a block of any
+        // size.
         fits.of_numbers()?;
         if let Some(drive) = drive {
             drive.well_formed()?;
@@ -212,7 +213,8 @@ impl DampedCertificate {
         self.law_is_held(formula).map(|_| ())
     }
 
-    /// Returns whether the law of the formula was read and gives its numbers; `false` of words.
+    /// Returns whether the law of the formula was read and gives its numbers; `false` if the law is
+    /// only words.
     ///
     /// # Errors
     /// A law that gives others.
@@ -226,11 +228,11 @@ impl DampedCertificate {
         }
     }
 
-    /// Returns the motions that the symmetries of the equation make of one, itself first. With a
-    /// drive of n periods that is the motion any number of periods of the drive later. Of an
-    /// equation that stays as it is with x turned, `-X` is one as well, and where it does so half a
-    /// period of the drive later, `-X` half a period later is; of a limit cycle that is `-X` half
-    /// its own period later, whose first harmonic is a positive cosine too.
+    /// Returns the images of a motion under the symmetries of the equation, itself first. With a
+    /// drive of n periods these are the motion any number of drive periods later. If the equation
+    /// does not change with the sign of x, `-X` is one as well; if that holds half a drive period
+    /// later, `-X` half a drive period later; and for a limit cycle `-X` half its own period later,
+    /// whose first harmonic is a positive cosine too.
     fn copies(&self, motion: &FourierSeries) -> Result<Vec<FourierSeries>, ExprError> {
         let periods = self.drive.as_ref().map_or(1, |drive| drive.periods);
         let [alone, with_drive] = self.mirrors()?;
@@ -282,7 +284,7 @@ impl DampedCertificate {
         let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
         let motion = self.motion();
         let formula = self.formula.as_ref();
-        // Only what is compared has copies to be looked at.
+        // Only the comparison with a formula needs the copies.
         let copies = match formula {
             Some(_) => self.copies(&motion)?,
             None => vec![],

@@ -10,9 +10,9 @@
 //! norm: sigma |p| + sum_k (|a_k| + |b_k|)
 //! ```
 //!
-//! The approximate inverse B is a matrix on the harmonics up to N, and `-1/k^2` beyond. With
-//! `alpha = ||B||`, and `beta` the norm of B after a derivative by theta, both over what the
-//! equations are of,
+//! The approximate inverse B is a matrix on the harmonics up to N, and `-1/k^2` beyond. With `alpha
+//! = ||B||`, and `beta` the norm of B times a derivative by theta, both on the space of the
+//! equations,
 //!
 //! ```text
 //! alpha = max(max_(k <= N) ||B e_k||, 1/(N+1)^2)         beta = max(max_(k <= N) k ||B e_k||, 1/(N+1))
@@ -26,11 +26,10 @@
 //! Z2 = max(2 alpha ||h||/sigma^2, (beta ||g|| + 2 P alpha ||h'||)/sigma, beta P ||g'|| + alpha P^2 ||h''||),   P = p + R/sigma
 //! ```
 //!
-//! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X),
-//! and the norms of Z2 are over the ball of radius R. Z2 bounds the second derivative of F at u =
-//! (q, v) and u' = (q', v'),
-//! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by
-//! term.
+//! where `D = g(X) X'`, eps is the norm of the truncated part of a series, W is the last harmonic
+//! of g(X) and h'(X), and the norms of Z2 are over the ball of radius R. Z2 bounds the second
+//! derivative of F at u = (q, v) and u' = (q', v'), `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q
+//! v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by term.
 //!
 //! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and
 //! `r < a_1`, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
@@ -42,19 +41,18 @@
 //! cycle, and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is
 //! negative.
 //!
-//! If the motion is looked for among those of odd harmonics, all of this is said of them alone:
-//! there is exactly one zero of odd harmonics in the ball, and one with even harmonics may be as
-//! near. A limit cycle is isolated all the same: half a period and a turn of x are a map whose
-//! second multiplier is positive, and the root of that of the period; were that one, so were this,
-//! and the solution above would have odd harmonics.
+//! If the motion is sought among those of odd harmonics, the statement is about these alone: there
+//! is exactly one zero of odd harmonics in the ball, and one with even harmonics may be as near. A
+//! limit cycle is isolated all the same: half a period and a turn of x are a map whose second
+//! multiplier is positive, and the root of that of the period; were that one, so were this, and the
+//! solution above would have odd harmonics.
 //!
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
 //! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is not an
-//! unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two
-//! terms of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and
-//! `sin(n theta)`; its derivative is that by x. The zero in the ball is a motion that repeats
-//! itself after n periods of the drive; that it takes fewer, and that it attracts, are not
-//! excluded.
+//! unknown, b_1 is one, and all terms that belong to p above are left out: its column, the first
+//! two terms of Z2, and `R/sigma` in P. h along X contains the drive as `cos(n theta)` and `sin(n
+//! theta)`; h' is its derivative by x. The zero in the ball is a motion that repeats itself after n
+//! periods of the drive; its smallest period may be shorter, and nothing is said of its stability.
 //!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
 //! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),
@@ -77,10 +75,10 @@ use crate::symbol::Symbol;
 /// Columns beyond which those of all further harmonics are bounded together.
 const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 
-/// Binary digits of a series of which only the size of a product counts.
+/// Binary digits of a series that is used only to bound the size of a product.
 const ROUGH: i32 = 40;
 
-/// The letters of `cos(Omega t)` and `sin(Omega t)` in a force that is driven.
+/// The symbols of `cos(Omega t)` and `sin(Omega t)` in a driven force.
 pub(super) fn waves_of_drive() -> [Symbol; 2] {
     ["c", "s"].map(Symbol::new)
 }
@@ -89,7 +87,7 @@ pub(super) fn waves_of_drive() -> [Symbol; 2] {
 pub(super) struct DampedProblem<'a> {
     /// g.
     pub(super) damping: &'a Expr,
-    /// h, with the letters of the [drive](waves_of_drive) where there is one.
+    /// h, with the symbols of the [drive](waves_of_drive) if there is one.
     pub(super) force: &'a Expr,
     /// Number of drive periods in one period of the motion; `None` for a limit cycle, of which p is
     /// an unknown.
@@ -120,8 +118,8 @@ impl DampedProblem<'_> {
         if self.odd { 2 } else { 1 }
     }
 
-    /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the
-    /// first: there p has its place among the unknowns.
+    /// The equations of the block. For a limit cycle the sine of the first harmonic comes first:
+    /// among the unknowns p takes its place.
     pub(super) fn block(&self) -> Vec<BasisFunction> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
         let waves = harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)]);
@@ -161,8 +159,8 @@ impl DampedProblem<'_> {
     /// harmonics alone.
     pub(super) fn is_odd(&self) -> Result<bool, ExprError> {
         let [cosine, sine] = waves_of_drive();
-        // Half a period of the motion is a whole number of those of the drive, or half of one
-        // beside.
+        // Half a period of the motion is a whole number of drive periods, or a whole number and a
+        // half.
         let letters = match self.drive {
             Some(periods) if periods % 2 == 1 => vec![coordinate(), cosine, sine],
             _ => vec![coordinate()],
@@ -172,13 +170,13 @@ impl DampedProblem<'_> {
         Ok(even.all(Ball::is_zero) && self.is_mirror_image(&letters)?)
     }
 
-    /// Returns whether the equation is its own mirror image, all these letters with the other sign.
+    /// Returns whether the equation does not change if all these symbols change their sign.
     pub(super) fn is_mirror_image(&self, letters: &[Symbol]) -> Result<bool, ExprError> {
         Ok(is_even(self.damping, letters)? && is_odd(self.force, letters)?)
     }
 
-    /// Whether what is so near is no motion at rest, nor one of another period. Where p is known,
-    /// nothing of that kind is claimed.
+    /// Whether no state of rest and no motion of a shorter period lies within this radius. Always
+    /// `true` where p is known, since no such claim is made then.
     fn is_distinct(&self, radius: Bound, sigma: Bound) -> bool {
         !self.is_free()
             || self.reciprocal.middle.is_positive()
@@ -246,7 +244,7 @@ pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>
     Ok(equations.block.iter().map(row).collect())
 }
 
-/// A function by which is multiplied: `s_m` and `t_m`, its coefficients as those of exponentials.
+/// A function that multiplies another: `s_m` and `t_m`, its coefficients as those of exponentials.
 struct Multiplier {
     cosines: Vec<Ball>,
     sines: Vec<Ball>,
@@ -288,7 +286,7 @@ impl Multiplier {
                 SHORT.sum(&apart(j < k), &sine(k + j))
             }
         };
-        // Of the constant both are one.
+        // For the constant the two terms coincide.
         if k == 0 { SHORT.divided(&both, 2) } else { both }
     }
 }
@@ -447,7 +445,7 @@ impl<'a> DampedBoundData<'a> {
         Ok(Self { equations, inverse, size, size_of_derivative })
     }
 
-    /// `B F`: the correction of p and of every harmonic, by which the approximation is the further
+    /// `B F`: the correction of p and of every harmonic, the amount by which the approximation is
     /// off.
     fn correction(&self) -> Correction<BasisFunction> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
@@ -562,7 +560,7 @@ impl<'a> DampedBoundData<'a> {
                 SHORT.magnitude(&SHORT.divided(&derivative.bent(row, column), row.squared()))
             })
             .sum();
-        // Far beyond, nothing of g and h' reaches the block.
+        // Far beyond the block, g and h' do not couple a wave to it.
         if j > self.equations.problem.highest + width {
             return tail;
         }

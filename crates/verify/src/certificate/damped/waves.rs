@@ -1,4 +1,4 @@
-//! Sines and cosines of time as letters: those of the drive, and of multiples of its frequency.
+//! Sines and cosines of time as symbols: those of the drive, and of multiples of its frequency.
 //!
 //! In: an expression in time, and a frequency. Out: the same in `c = cos(Omega t)` and
 //! `s = sin(Omega t)`, exactly.
@@ -18,8 +18,8 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 
 /// The displacement of a driven motion by its law as text, `x = a*cos(Omega*t - psi)` with values
-/// of all letters but t, over the periods of the motion; `None` for words, and of what has no such
-/// series.
+/// of all symbols but t, over the periods of the motion; `None` for words, and for a law without
+/// such a series.
 pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<FourierSeries> {
     let time = Symbol::new("t");
     let (_, value) = law::with_values(law, values)?;
@@ -34,7 +34,7 @@ pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<
     along_all(&value, &letters).ok()
 }
 
-/// An expression with the letters of `cos(Omega t)` and `sin(Omega t)` in place of time.
+/// An expression with the symbols of `cos(Omega t)` and `sin(Omega t)` in place of time.
 pub(super) fn in_waves(
     expression: &Expr,
     time: Symbol,
@@ -67,13 +67,13 @@ pub(super) fn in_waves(
                 _ => &(&sine * &cosine_of_rest) + &(&cosine * &sine_of_rest),
             })
         }
-        // Time itself stays until a wave takes it up.
+        // Time itself stays until it is found inside a wave.
         Node::Symbol(_) | Node::Number(_) | Node::Pi => Ok(node.clone()),
         _ => Ok(node.with_children(children)?),
     })
 }
 
-/// Cosine and sine of a whole multiple of an angle, in those of the angle.
+/// Cosine and sine of a whole multiple of an angle in terms of those of the angle.
 fn multiple([cosine, sine]: [Symbol; 2], times: i32) -> Option<[Expr; 2]> {
     const MOST: u32 = 20;
     let [one_cosine, one_sine] = [cosine, sine].map(Expr::from);

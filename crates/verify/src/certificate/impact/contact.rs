@@ -12,10 +12,10 @@
 //!
 //! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm
 //! is the only root, and two signs enclose it. The integral is taken piece by piece by the Taylor
-//! series of the integrand about the middle; what is left is at most the next coefficient over the
-//! whole piece (Corliss and Rall).
+//! series of the integrand about the middle; the remainder is at most the next coefficient enclosed
+//! over the whole piece (Corliss and Rall).
 //!
-//! In: the place of the barrier, its stiffness, the speed. Out: depth and duration as balls. A
+//! In: the position of the barrier, its stiffness, the speed. Out: depth and duration as balls. A
 //! piece costs three products of series.
 //!
 //! Source: G. F. Corliss, L. B. Rall: Adaptive, self-validating numerical quadrature, SIAM J. Sci.
@@ -56,7 +56,7 @@ fn sum(left: &Ball, right: &Ball) -> Ball {
     WORKING.sum(left, right)
 }
 
-/// Sine and cosine; `None` for what is too large.
+/// Sine and cosine; `None` if the angle is too large.
 pub(super) fn sine_and_cosine(angle: &Ball) -> Option<[Ball; 2]> {
     let (series, largest) = ([angle.clone()], WORKING.magnitude(angle));
     let first = |p| even_function(&series, p, largest)?.into_iter().next();
@@ -78,7 +78,7 @@ impl HertzContact {
         Some(WORKING.difference(&WORKING.difference(&self.speed_squared, &swing), &elastic))
     }
 
-    /// The root `qm` by Newton's method; nothing is proved of it.
+    /// The root `qm` by Newton's method, without a proof.
     fn candidate(&self) -> Option<Ball> {
         const STEPS: usize = 200;
         let power = 1.25 * WORKING.nearest(&self.speed_squared) / WORKING.nearest(&self.stiffness);
@@ -148,8 +148,8 @@ impl HertzContact {
         Ok(WORKING.scaled(&product(&root, &integral), 8))
     }
 
-    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` if too much is left of its
-    /// series.
+    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` if the remainder of its
+    /// series is too large.
     fn piece(&self, qm: &Ball, halvings: u32, middle: u64) -> Option<Ball> {
         let half = WORKING.dyadic(&Integer::from(1), halvings as usize);
         let centre = WORKING.scaled(&half, i64::try_from(middle).ok()?);
@@ -210,7 +210,7 @@ impl HertzContact {
     }
 }
 
-/// The middle alone, of what is only a guess.
+/// The middle without the radius, for a mere guess.
 fn without_radius(ball: Ball) -> Ball {
     Ball { radius: Bound::ZERO, ..ball }
 }
@@ -253,13 +253,14 @@ fn multiplied(left: &[Ball], right: &[Ball]) -> Vec<Ball> {
 }
 
 /// `sum_k (-1)^k y^(2 k)/(2 k + p)!`: the cosine for p = 0, `sin(y)/y` for p = 1. In the circle of
-/// radius 1 about zero `|y|` is at most `largest`, so that by Cauchy what is left out has no
-/// coefficient beyond its own size there.
+/// radius 1 about zero `|y|` is at most `largest`, so that, by Cauchy's estimate, no coefficient of
+/// the truncated part exceeds the size of that part there.
 fn even_function(y: &[Ball], p: u32, largest: Bound) -> Option<Vec<Ball>> {
     const MOST: u32 = 200;
     let square = multiplied(y, y);
     let size = largest * largest;
-    // Of a ratio below 1/2 from here on: what is left out is less than twice its first term.
+    // From here on the ratio of terms is below 1/2: the truncated part is less than twice its first
+    // term.
     let (mut count, mut term) = (0, Bound::exactly(1.0));
     while !(term <= Bound::power_of_two(-215)
         && size <= Bound::exactly(f64::from(2 * count * count)))

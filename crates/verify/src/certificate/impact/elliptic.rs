@@ -6,9 +6,9 @@
 //! max(x, y, z)^(-1/2) <= R_F(x, y, z) <= min(x, y, z)^(-1/2)
 //! ```
 //!
-//! In: balls. Out: a ball that contains the integral of all numbers in them. Each step brings the
-//! three four times nearer to each other, so that half as many steps as there are binary digits
-//! leave nothing between the two ends.
+//! In: balls. Out: a ball that contains the integral of all numbers in them. Each step divides the
+//! distances between the three arguments by four, so that half as many steps as there are binary
+//! digits bring both bounds together.
 //!
 //! Source: B. C. Carlson: Numerical computation of real or complex elliptic integrals, Numerical
 //! Algorithms 10 (1995), 13-26.

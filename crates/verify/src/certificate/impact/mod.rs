@@ -1,5 +1,5 @@
 //! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9), its
-//! three phases in numbers that are proved.
+//! three phases with proved bounds.
 //!
 //! ```text
 //! x'' + sin x + gamma (x - xc)^(3/2) H(x - xc) = 0,     x(0) = -A,  x'(0) = 0
@@ -8,10 +8,10 @@
 //! T = 2 t1 + (duration of the contact)
 //! ```
 //!
-//! The force is not analytic where the contact begins, so that the cosine series of a whole period
-//! prove nothing; in each phase the energy is kept, and what it leaves are two integrals
-//! (`elliptic.rs`, `contact.rs`). In: numbers as fractions. Out: every number that is asked of an
-//! impact, with the distance that it may be off. Some 0.1 s.
+//! The force is not analytic where the contact begins, so that cosine series of a whole period
+//! prove nothing; in each phase the energy is conserved, and two integrals remain (`elliptic.rs`,
+//! `contact.rs`). In: numbers as fractions. Out: the characteristic numbers of an impact, each with
+//! a bound of its error. It takes some 0.1 s.
 //!
 //! Source: equation (9) of the paper; for enclosures phase by phase see W. Tucker: Validated
 //! Numerics, Princeton (2011).
@@ -60,7 +60,7 @@ impl ImpactEnclosure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotEnclosed {
-    /// The release is no swing.
+    /// The release does not lead to a swing.
     #[error("the release -A must be a swing below the top: 0 < A < pi")]
     Release,
     /// The barrier is out of reach, or too far out.
@@ -69,7 +69,7 @@ pub enum NotEnclosed {
     /// There is no barrier.
     #[error("the stiffness gamma must be positive")]
     Stiffness,
-    /// The depth goes beyond where it is known to be the only one.
+    /// The contact goes deeper than the range in which its deepest point is known to be unique.
     #[error(
         "the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one"
     )]

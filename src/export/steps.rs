@@ -89,9 +89,6 @@ pub fn text(solution: &Solution) -> String {
             let _ = writeln!(text, "{line}");
         }
     }
-    if solution.steps.is_empty() {
-        text.push('\n');
-    }
     text
 }
 

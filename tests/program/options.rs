@@ -450,7 +450,12 @@ fn a_sweep_that_is_stopped_keeps_its_motions() {
         ]
         .concat(),
     );
-    assert_eq!(motions[0]["final_state"], alone["final_state"]);
+    // To rounding: alone the work of damping and drive is accounted for, by which steps are chosen too.
+    for name in ["x", "x'"] {
+        let state =
+            |motion: &Value| motion["final_state"]["state"][name].as_f64().expect("a number");
+        assert!((state(&motions[0]) - state(&alone)).abs() < 1e-11, "{name}: {alone}");
+    }
 }
 
 /// Power series end at the touch of a contact: with both integrators that is said, and the motion

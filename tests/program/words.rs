@@ -217,6 +217,10 @@ fn pages_show_what_commands_print() {
         }
     }
     assert!(count >= 19, "{count}");
+    for method in lindstedt::Method::ALL {
+        let page = root.join(format!("docs/methods/{}.md", method.name()));
+        assert!(page.exists(), "{page:?}");
+    }
 }
 
 /// Completions name every command, and the manual page of each is its own.

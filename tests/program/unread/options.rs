@@ -134,6 +134,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", [&long[1..], &["--timeout", NO_TIME]].concat(), vec!["--quiet"]),
         ("simulate", own[1..].to_vec(), vec!["--from", "x'=0.5"]),
         ("simulate", own[1..].to_vec(), vec!["--until", "3"]),
+        ("simulate", own[1..].to_vec(), vec!["--step-limit", "3"]),
         ("simulate", own[1..4].to_vec(), vec!["--at", "k=2"]),
         ("simulate", own[1..].to_vec(), vec!["--integrator", "both"]),
         ("simulate", own[1..].to_vec(), vec!["--chain"]),

@@ -78,7 +78,8 @@ impl TaylorSteps {
     pub(super) fn zeros(&self, [from, end]: [f64; 2], state: usize) -> Vec<f64> {
         let first = self.step_at(from).unwrap_or(0);
         let mut zeros = Vec::new();
-        for step in first..self.count() {
+        let steps = if state < self.states { first..self.count() } else { 0..0 };
+        for step in steps {
             let (start, series) = (self.starts[step], self.series(step, state));
             let end = self.starts.get(step + 1).map_or(end, |next| *next);
             let met = roots(series, (from - start).max(0.0), end - start);

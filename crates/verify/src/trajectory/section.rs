@@ -211,7 +211,9 @@ impl TrajectorySegment {
     fn turning_times(&self, velocity: usize, from: f64) -> Vec<f64> {
         /// Number of values per step of the integrator.
         const VALUES: usize = 8;
-        if let Some(zeros) = self.path.zeros(velocity, from).filter(|_| !self.is_held()) {
+        if !self.is_held()
+            && let Some(zeros) = self.path.zeros(velocity, from)
+        {
             return zeros;
         }
         let value = |time: f64| self.states_at(time).map_or(f64::NAN, |states| states[velocity]);

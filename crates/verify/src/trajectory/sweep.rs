@@ -33,7 +33,8 @@ pub struct SweptMotion {
 /// Follows the course at every one of the values; `progress` is called after each motion. The cost
 /// is that of the motions, or less where eight of them are integrated side by side, on all cores.
 /// After an interrupt no other motion is begun; those that have passed the time `after` are
-/// returned.
+/// returned. No energy is accounted for: each motion is bit for bit that of the course without
+/// its `energy`.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and the reason.

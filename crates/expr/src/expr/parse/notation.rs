@@ -316,7 +316,7 @@ mod tests {
     fn long_texts_are_not_corrected_without_end() {
         let text = format!("x''{}", " + 2x".repeat(3_000));
         assert_eq!(equation_in_grammar(&text), text);
-        let text = format!("x''{}", " + 2x".repeat(600));
-        assert!(parse_equation(&equation_in_grammar(&text)).is_err());
+        let text = format!("x''{}", " + 2x".repeat(400));
+        assert!(parse_equation(&equation_in_grammar(&text)).is_ok());
     }
 }

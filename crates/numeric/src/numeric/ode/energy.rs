@@ -19,6 +19,7 @@ use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::IntegrationError;
+use super::mean_value::MeanValues;
 use super::quadrature::{QuadratureError, integrate_within, nodes_and_weights};
 use super::root::{RootError, find_root};
 
@@ -261,6 +262,8 @@ pub struct TimePerAngle<'a> {
     /// `V(start) - V` at the knots, summed from the start and from the far turning point.
     below_start: Vec<f64>,
     below_end: Vec<f64>,
+    /// The means of the force from both ends of each piece, where it has a series there.
+    means: Vec<Option<MeanValues>>,
 }
 
 impl<'a> TimePerAngle<'a> {
@@ -308,9 +311,14 @@ impl<'a> TimePerAngle<'a> {
                 FRAC_PI_2 - 2.0 * (1.0 - part).max(0.0).sqrt().asin()
             }
         };
+        let series = |pair: &[f64]| match infinite_middle {
+            true => None,
+            false => MeanValues::new(force.value, [pair[0], pair[1]]),
+        };
         Ok(Self {
             force,
             weight,
+            means: knots.windows(2).map(series).collect(),
             angles: knots.iter().map(angle).collect(),
             knots,
             infinite_middle,
@@ -343,8 +351,17 @@ impl<'a> TimePerAngle<'a> {
     pub fn time_per_angle(&self, piece: usize, phi: f64) -> Result<f64, QuadratureError> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
-        let mean_force = |from: f64, to: f64| {
+        let by_quadrature = |from: f64, to: f64| {
             integral(&|u| self.force.value_at(from + (to - from) * u), 0.0, 1.0, 0.0)
+        };
+        // Both between a position and an end of the piece.
+        let mean_from_low = |x: f64| match &self.means[piece] {
+            Some(means) => Ok(means.from_first(x)),
+            None => by_quadrature(low, x),
+        };
+        let mean_to_high = |x: f64| match &self.means[piece] {
+            Some(means) => Ok(means.to_last(x)),
+            None => by_quadrature(x, high),
         };
         // The position from the nearer end, or from an infinite middle: beside a pole the distance
         // from it must keep its digits, not the position.
@@ -358,14 +375,14 @@ impl<'a> TimePerAngle<'a> {
         // The energy from the nearer end, so that nothing cancels; in the outermost piece the
         // distance from that end divides out.
         let quotient = if phi >= 0.0 && piece + 2 == self.knots.len() {
-            mean_force(x, start)? / (x - end)
+            mean_to_high(x)? / (x - end)
         } else if phi < 0.0 && piece == 0 {
-            -mean_force(end, x)? / (start - x)
+            -mean_from_low(x)? / (start - x)
         } else {
             let energy = if phi >= 0.0 {
-                self.below_start[piece + 1] + (high - x) * mean_force(x, high)?
+                self.below_start[piece + 1] + (high - x) * mean_to_high(x)?
             } else {
-                self.below_end[piece] - (x - low) * mean_force(low, x)?
+                self.below_end[piece] - (x - low) * mean_from_low(x)?
             };
             let span = (start - end).powi(2);
             energy

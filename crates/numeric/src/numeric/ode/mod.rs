@@ -41,6 +41,7 @@
 pub mod energy;
 mod event;
 mod integrate;
+mod mean_value;
 pub mod newton;
 pub mod polynomial;
 pub mod quadrature;

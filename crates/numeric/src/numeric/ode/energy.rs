@@ -311,9 +311,13 @@ impl<'a> TimePerAngle<'a> {
                 FRAC_PI_2 - 2.0 * (1.0 - part).max(0.0).sqrt().asin()
             }
         };
+        // At a turning point the mean divides, elsewhere it is added to an energy.
         let series = |pair: &[f64]| match infinite_middle {
             true => None,
-            false => MeanValues::new(force.value, [pair[0], pair[1]]),
+            false => {
+                let turning = [pair[0] == end, pair[1] == start];
+                MeanValues::new(force.value, [pair[0], pair[1]], turning)
+            }
         };
         Ok(Self {
             force,

@@ -10,7 +10,7 @@
 //! mean over [u, 1]:   q_0/2 + sum_j q_j T_j(u),   q_j = 2 sum_(k>j) (k - j) b_k
 //! ```
 //!
-//! Costs some fifty to five hundred values of the function, and then a sum of as many terms for each
+//! Costs some fifty to two thousand values of the function, as it has waves, and then a sum of as many terms for each
 //! mean, where a quadrature takes seventy values of the function or more.
 
 use std::f64::consts::PI;
@@ -26,32 +26,43 @@ pub(super) struct MeanValues {
 
 impl MeanValues {
     /// Expands a function between two places, in either order; `None` if its Chebyshev series has
-    /// not converged to rounding within 256 terms, or the function nearly vanishes at an end, where
-    /// the digits of a mean are relative to it.
-    pub(super) fn new(function: &dyn Fn(f64) -> f64, ends: [f64; 2]) -> Option<Self> {
+    /// not converged to rounding within 1024 terms, or the function nearly vanishes at an end at
+    /// which the digits of a mean matter relative to the mean itself.
+    pub(super) fn new(
+        function: &dyn Fn(f64) -> f64,
+        ends: [f64; 2],
+        relative_at: [bool; 2],
+    ) -> Option<Self> {
         const FEWEST: usize = 16;
-        const MOST: usize = 256;
+        const MOST: usize = 1024;
         /// Ratio of the last half of the coefficients to the largest one at which the series has
         /// converged: what is left out is then below the rounding of those.
         const CONVERGED: f64 = 1e-15;
         /// Ratio of the function at an end to its largest coefficient.
         const LEAST_AT_ENDS: f64 = 0.1;
-        let mut count = FEWEST;
+        /// Decay of the last half of the coefficients with twice the points that tells of a power at
+        /// a singularity: unresolved waves do not decay, and what is smooth decays faster. Twice in
+        /// a row it is no accident.
+        const ALGEBRAIC: std::ops::Range<f64> = 0.1..0.6;
+        let (mut count, mut before, mut algebraic) = (FEWEST, f64::INFINITY, 0);
         let coefficients = loop {
             let mut coefficients = chebyshev_coefficients(function, ends, count)?;
             let size = |part: &[f64]| part.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
             let largest = size(&coefficients);
             if size(&coefficients[count / 2..]) <= CONVERGED * largest {
-                let least =
-                    ends.map(|end| function(end).abs()).into_iter().fold(f64::INFINITY, f64::min);
-                if least < LEAST_AT_ENDS * largest {
+                let small = |(end, relative): (f64, bool)| {
+                    relative && function(end).abs() < LEAST_AT_ENDS * largest
+                };
+                if ends.into_iter().zip(relative_at).any(small) {
                     return None;
                 }
                 coefficients.truncate(count / 2);
                 break coefficients;
             }
-            count *= 2;
-            if count > MOST {
+            let last = size(&coefficients[count / 2..]);
+            algebraic = if ALGEBRAIC.contains(&(last / before)) { algebraic + 1 } else { 0 };
+            (count, before) = (2 * count, last);
+            if count > MOST || algebraic == 2 {
                 return None;
             }
         };
@@ -133,7 +144,8 @@ mod tests {
     #[test]
     fn means_are_those_of_the_integral() {
         let [first, last] = [1.7, -0.4];
-        let exponential = MeanValues::new(&f64::exp, [first, last]).expect("a smooth function");
+        let exponential =
+            MeanValues::new(&f64::exp, [first, last], [true; 2]).expect("a smooth function");
         for part in [1e-12_f64, 1e-6, 0.1, 0.5, 0.9, 1.0] {
             let near_last = last + (first - last) * part;
             // (e^b - e^a)/(b - a) = e^a expm1(b - a)/(b - a)
@@ -148,7 +160,8 @@ mod tests {
             let found = exponential.from_first(near_first);
             assert!((found - expected).abs() < allowed, "{part}: {found} {expected}");
         }
-        let waves = MeanValues::new(&|x| 2.0 + (30.0 * x).cos(), [0.0, 3.0]).expect("some waves");
+        let waves = MeanValues::new(&|x| 2.0 + (30.0 * x).cos(), [0.0, 3.0], [true; 2])
+            .expect("some waves");
         for x in [0.01_f64, 1.0, 2.5] {
             let expected = 2.0 + (30.0 * x).sin() / (30.0 * x);
             assert!((waves.from_first(x) / expected - 1.0).abs() < 1e-14);
@@ -157,10 +170,13 @@ mod tests {
 
     #[test]
     fn what_does_not_converge_is_left_out() {
-        assert!(MeanValues::new(&|x| x.abs().sqrt() + 1.0, [-1.0, 1.0]).is_none());
-        assert!(MeanValues::new(&|x| (x - 0.3).recip(), [-1.0, 1.0]).is_none());
-        assert!(MeanValues::new(&|x| 2.0 + (300.0 * x).cos(), [0.0, 3.0]).is_none());
+        assert!(MeanValues::new(&|x| x.abs().sqrt() + 1.0, [-1.0, 1.0], [true; 2]).is_none());
+        assert!(MeanValues::new(&|x| (x - 0.3).recip(), [-1.0, 1.0], [true; 2]).is_none());
+        let waves = |x: f64| 2.0 + (1000.0 * x).cos();
+        assert!(MeanValues::new(&waves, [0.0, 3.0], [true; 2]).is_none());
         // Nothing at the end that digits could be relative to.
-        assert!(MeanValues::new(&|x| (20.0 * x).exp(), [-1.0, 1.0]).is_none());
+        let steep = |x: f64| (20.0 * x).exp();
+        assert!(MeanValues::new(&steep, [-1.0, 1.0], [true, false]).is_none());
+        assert!(MeanValues::new(&steep, [-1.0, 1.0], [false, true]).is_some());
     }
 }

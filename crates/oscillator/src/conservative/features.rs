@@ -1,10 +1,10 @@
 //! Narrow features of a force: corners, steep walls and narrow bumps, found from the structure of
 //! its expression.
 //!
-//! A grid of points, however fine, misses a bump narrower than itself: `x - 1e5*(x + 1)*exp(-1e4*(x
-//! + 1)^2)` looks like `x`. The expression knows better. With `u` the argument of a function or the
-//! base of a power, the force may vary on a short scale only where `u` takes a special value or is
-//! stationary:
+//! A grid of points, however fine, misses a bump narrower than itself:
+//! `x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)` looks like `x`. The expression knows better. With `u` the
+//! argument of a function or the base of a power, the force may vary on a short scale only where
+//! `u` takes a special value or is stationary:
 //!
 //! ```text
 //! H(u), abs(u), sgn(u), max(u, v), min(u, v)    u = 0, u - v = 0                 a corner

@@ -360,11 +360,11 @@ impl<'a> TimePerAngle<'a> {
         };
         // Both between a position and an end of the piece.
         let mean_from_low = |x: f64| match &self.means[piece] {
-            Some(means) => Ok(means.from_first(x)),
+            Some(means) => Ok(means.since_first(x)),
             None => by_quadrature(low, x),
         };
         let mean_to_high = |x: f64| match &self.means[piece] {
-            Some(means) => Ok(means.to_last(x)),
+            Some(means) => Ok(means.until_last(x)),
             None => by_quadrature(x, high),
         };
         // The position from the nearer end, or from an infinite middle: beside a pole the distance

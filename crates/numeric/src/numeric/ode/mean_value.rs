@@ -72,13 +72,13 @@ impl MeanValues {
     }
 
     /// The mean between the first end and a place.
-    pub(super) fn from_first(&self, place: f64) -> f64 {
+    pub(super) fn since_first(&self, place: f64) -> f64 {
         let [first, last] = self.ends;
         sum(&self.series[0], 1.0 - 2.0 * (place - first) / (last - first))
     }
 
     /// The mean between a place and the last end.
-    pub(super) fn to_last(&self, place: f64) -> f64 {
+    pub(super) fn until_last(&self, place: f64) -> f64 {
         let [first, last] = self.ends;
         sum(&self.series[1], 1.0 - 2.0 * (last - place) / (last - first))
     }
@@ -151,20 +151,20 @@ mod tests {
             // (e^b - e^a)/(b - a) = e^a expm1(b - a)/(b - a)
             let mean = |a: f64, width: f64| a.exp() * width.exp_m1() / width;
             let expected = mean(last, (first - last) * part);
-            let found = exponential.to_last(near_last);
+            let found = exponential.until_last(near_last);
             // Of the largest value.
             let allowed = 2e-15 * first.exp();
             assert!((found - expected).abs() < allowed, "{part}: {found} {expected}");
             let near_first = first - (first - last) * part;
             let expected = mean(first, (last - first) * part);
-            let found = exponential.from_first(near_first);
+            let found = exponential.since_first(near_first);
             assert!((found - expected).abs() < allowed, "{part}: {found} {expected}");
         }
         let waves = MeanValues::new(&|x| 2.0 + (30.0 * x).cos(), [0.0, 3.0], [true; 2])
             .expect("some waves");
         for x in [0.01_f64, 1.0, 2.5] {
             let expected = 2.0 + (30.0 * x).sin() / (30.0 * x);
-            assert!((waves.from_first(x) / expected - 1.0).abs() < 1e-14);
+            assert!((waves.since_first(x) / expected - 1.0).abs() < 1e-14);
         }
     }
 

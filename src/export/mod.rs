@@ -47,6 +47,7 @@ pub(crate) fn rounding_noise(motion: &FourierSeries<Doubles>) -> f64 {
 }
 
 /// Text with the special characters of HTML escaped.
+#[cfg(any(feature = "html", feature = "plot"))]
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

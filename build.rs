@@ -1,10 +1,15 @@
 //! The version of the program, with the commit that it is built from where that is known.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    println!("cargo:rerun-if-changed=.git/HEAD");
+    // A commit on the same branch changes the log alone; a package has neither.
+    for file in [".git/HEAD", ".git/logs/HEAD"].into_iter().filter(|file| Path::new(file).exists())
+    {
+        println!("cargo:rerun-if-changed={file}");
+    }
     let package = env!("CARGO_PKG_VERSION");
     let commit = Command::new("git").args(["rev-parse", "--short=9", "HEAD"]).output().ok();
     let commit = commit.filter(|output| output.status.success());

@@ -27,12 +27,12 @@ const SPARSE: usize = 4;
 
 /// The box of the exponents of a product.
 struct ExponentBox {
-    axes: Vec<Axis>,
+    axes: Vec<ExponentRange>,
     places: usize,
 }
 
 /// The range of the exponents of one symbol.
-struct Axis {
+struct ExponentRange {
     symbol: Symbol,
     /// The least exponent in each factor.
     least: [i32; 2],
@@ -93,7 +93,7 @@ impl ExponentBox {
         let (mut places, mut axes) = (1_usize, Vec::with_capacity(symbols.len()));
         for symbol in symbols {
             let exponents = |factor| monomials(factor).map(|monomial| monomial.exponent(symbol));
-            let mut axis = Axis { symbol, least: [0; 2], step: 0, length: 1 };
+            let mut axis = ExponentRange { symbol, least: [0; 2], step: 0, length: 1 };
             let mut range = 0;
             for (least, factor) in axis.least.iter_mut().zip([left, right]) {
                 *least = exponents(factor).min()?;
@@ -120,7 +120,7 @@ impl ExponentBox {
 
     /// The product of powers at a place of the product.
     fn monomial(&self, mut place: usize) -> Monomial {
-        let power = |axis: &Axis| {
+        let power = |axis: &ExponentRange| {
             let steps = (place % axis.length) as i32 * axis.step as i32;
             let exponent = axis.least[0] + axis.least[1] + steps;
             place /= axis.length;

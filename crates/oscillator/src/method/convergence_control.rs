@@ -29,15 +29,15 @@ type Samples = [f64; SAMPLES];
 pub(super) struct FormulaInHbar {
     /// Every power of a symbol that occurs.
     powers: Vec<(Symbol, i32)>,
-    frequency: Vec<Term>,
+    frequency: Vec<TermInHbar>,
     /// Number of each harmonic, cosine and sine.
-    harmonics: Vec<(usize, [Vec<Term>; 2])>,
+    harmonics: Vec<(usize, [Vec<TermInHbar>; 2])>,
     /// `cos(k theta)` and `sin(k theta)` at the samples, for each harmonic.
     waves: Vec<[Samples; 2]>,
 }
 
 /// A coefficient, the power of hbar, and the indices of the other powers.
-struct Term {
+struct TermInHbar {
     coefficient: Scaled,
     hbar: usize,
     factors: Vec<usize>,
@@ -56,7 +56,7 @@ impl FormulaInHbar {
                     let next = places.len();
                     *places.entry(factor).or_insert(next)
                 };
-                Some(Term {
+                Some(TermInHbar {
                     coefficient: Scaled::of_fraction(number),
                     hbar: usize::try_from(own.first().map_or(0, |factor| factor.1)).ok()?,
                     factors: others.into_iter().map(place).collect(),
@@ -128,7 +128,7 @@ impl FormulaInHbar {
 }
 
 /// The coefficients of the powers of hbar, with these values of the other powers.
-fn in_hbar(terms: &[Term], powers: &[Scaled]) -> Vec<f64> {
+fn in_hbar(terms: &[TermInHbar], powers: &[Scaled]) -> Vec<f64> {
     let length = terms.iter().map(|term| term.hbar + 1).max().unwrap_or(0);
     let mut by_power = vec![vec![]; length];
     for term in terms {

@@ -44,8 +44,8 @@ fn derivations(criterion: &mut Criterion) {
     }
 }
 
-/// What a person waits for: homotopy analysis by its order, hbar sought at each of many amplitudes;
-/// an approximant with numbers of thousands of digits; a table of a force with a root.
+/// Measures the calculations that take longest for a user: homotopy analysis by its order, hbar
+/// sought at each of many amplitudes; an approximant with numbers of thousands of digits; a table of a force with a root.
 fn waiting(criterion: &mut Criterion) {
     let pendulum = Oscillator::parse("x'' + sin(x) = 0").expect("an oscillator");
     let at = Values::try_from([("A", 2.0)]).expect("values");

@@ -15,10 +15,6 @@ pub mod friction;
 #[cfg(feature = "html")]
 pub mod html;
 #[cfg(feature = "json")]
-#[cfg_attr(
-    not(feature = "schema"),
-    allow(dead_code, unused_imports, reason = "lists of names stand in schemas alone")
-)]
 pub mod json;
 pub mod latex;
 pub mod materials;

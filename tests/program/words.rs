@@ -195,7 +195,7 @@ fn help_begins_with_a_command_and_its_output() {
     assert_eq!(count, 16);
 }
 
-/// What pages show below a command is what it prints, in a terminal of 90 characters.
+/// Every example on a page shows what its command prints in a terminal of 90 characters.
 #[test]
 fn pages_show_what_commands_print() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));

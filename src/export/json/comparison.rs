@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::number::{constants, finite, named, text};
 use super::{Constant, DocumentKind, Map};
 use crate::solution::Degrees;
+#[cfg(feature = "schema")]
+use crate::verify::Verdict;
 use crate::verify::comparison::{Comparison, ComparisonRow, Refused};
-use crate::verify::{Verdict, validity};
+use crate::verify::validity;
 
 /// Every method on one equation at given values, beside the true motion of the equation as it was
 /// typed.

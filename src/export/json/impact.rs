@@ -11,10 +11,13 @@ use super::number::text;
 use super::solution::{SolutionDocument, solution};
 use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
-use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
+#[cfg(feature = "schema")]
+use crate::impact::Rule;
+#[cfg(feature = "schema")]
+use crate::impact::contact::ContactLaw;
+use crate::impact::contact::{ContactErrors, ContactMotion, ContactRow, SineSeries};
 use crate::impact::{
-    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Rule, Setup, SiImpact,
-    Side,
+    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Setup, SiImpact, Side,
 };
 use crate::verify::Verdict;
 
@@ -664,6 +667,7 @@ impl Parameters {
 /// The name of the law of a contact that loses energy.
 const HUNT_CROSSLEY: &str = "hunt-crossley";
 
+#[cfg(feature = "schema")]
 fn law_names() -> Vec<&'static str> {
     let names = ContactLaw::ALL.map(ContactLaw::name);
     names.into_iter().chain([HUNT_CROSSLEY]).collect()

@@ -8,6 +8,7 @@ use super::DocumentKind;
 use super::impact::{Judged, Parameters};
 use crate::impact::{ImpactComparison, ImpactRow};
 use crate::solution::Degrees;
+#[cfg(feature = "schema")]
 use crate::verify::Verdict;
 
 /// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a

@@ -6,8 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
 use super::number::text;
-use super::simulation::{Barrier, Dissipation, ROUTES};
-use crate::impact::{self, ContactDamping, FirstContact, MaterialStudy, Parameter};
+#[cfg(feature = "schema")]
+use super::simulation::ROUTES;
+use super::simulation::{Barrier, Dissipation};
+use crate::impact::{self, FirstContact, MaterialStudy};
+#[cfg(feature = "schema")]
+use crate::impact::{ContactDamping, Parameter};
 use crate::report::material_sentences;
 
 /// The same swing against barriers of several materials. Angles are in radians, time is in units of

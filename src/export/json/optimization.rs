@@ -15,9 +15,9 @@ use super::simulation::Barrier;
 use super::{DocumentKind, JsonError};
 use crate::genetic::{Coding, Crossover, GeneticStop, Mutation, Penalty, StallTest};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
-use crate::optimize::{
-    self, Found, Objective, OptimizationProblem, SearchRun, Study, VariableRole, WITHIN,
-};
+#[cfg(feature = "schema")]
+use crate::optimize::VariableRole;
+use crate::optimize::{self, Found, Objective, OptimizationProblem, SearchRun, Study, WITHIN};
 use crate::report::optimization_sentences;
 
 /// A search for the best damper. Angles are in radians, everything else in SI units, unless another

@@ -10,6 +10,7 @@ use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::motion_frequency;
 use crate::response::slow::SlowResponse;
 use crate::response::{self, ResponseDiagram};
+#[cfg(feature = "schema")]
 use crate::verify::Verdict;
 
 /// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those

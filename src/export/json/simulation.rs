@@ -8,8 +8,10 @@ use super::DocumentKind;
 use super::number::text;
 use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
 use crate::impact::{
-    self, ClosedForm, ContactDeviation, Friction, Geometry, Integrator, PathSegment, Regime, Side,
+    self, ClosedForm, ContactDeviation, Geometry, Integrator, PathSegment, Regime,
 };
+#[cfg(feature = "schema")]
+use crate::impact::{Friction, Side};
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of
 /// 1/omega of small swings, sqrt(L/g), energies in units of m g L.
@@ -397,8 +399,10 @@ pub struct Difference {
 }
 
 /// The routes by which a motion is found.
+#[cfg(feature = "schema")]
 pub(super) const ROUTES: [&str; 2] = ["integration", "chain"];
 
+#[cfg(feature = "schema")]
 const INTEGRATORS: [Integrator; 3] =
     [Integrator::Taylor, Integrator::RungeKutta, Integrator::Chain];
 

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize, Serializer};
 use super::DocumentKind;
 use super::simulation::State;
 use crate::export::simulation::{Column, SweepReport, columns};
-use crate::impact::sweep::{Spacing, Summary};
+#[cfg(feature = "schema")]
+use crate::impact::sweep::Spacing;
+use crate::impact::sweep::Summary;
 
 /// Many runs of the paper's equation (7), over every combination of the values of some parameters;
 /// units as in a document of kind `simulation`.

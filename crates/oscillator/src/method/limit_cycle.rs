@@ -14,8 +14,8 @@
 //! the amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
 //!
 //! An amplitude that is neither a fraction nor a product of parameters enters as a symbol `a0`.
-//! Where `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay
-//! exact: powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
+//! All coefficients stay exact if `a0^2` is the root of a polynomial with rational coefficients:
+//! powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};

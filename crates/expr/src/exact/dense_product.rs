@@ -94,13 +94,13 @@ impl ExponentBox {
         for symbol in symbols {
             let exponents = |factor| monomials(factor).map(|monomial| monomial.exponent(symbol));
             let mut axis = ExponentRange { symbol, least: [0; 2], step: 0, length: 1 };
-            let mut range = 0;
+            let mut range = 0_u32;
             for (least, factor) in axis.least.iter_mut().zip([left, right]) {
                 *least = exponents(factor).min()?;
                 for distance in exponents(factor).map(|exponent| exponent.abs_diff(*least)) {
                     axis.step = axis.step.gcd(&distance);
                 }
-                range += exponents(factor).max()?.abs_diff(*least);
+                range = range.saturating_add(exponents(factor).max()?.abs_diff(*least));
             }
             axis.step = axis.step.max(1);
             axis.length += (range / axis.step) as usize;

@@ -40,22 +40,6 @@ impl WithSimd for EvaluatePolynomial<'_> {
     }
 }
 
-/// Fills `into` with `h^0, h^1, ...`, with one multiplication for each power.
-pub(super) fn powers(h: f64, into: &mut [f64]) {
-    let Some(first) = into.first_mut() else {
-        return;
-    };
-    *first = 1.0;
-    // The powers from h^half on are the powers before it times h^half.
-    let (mut half, mut square) = (1, h);
-    while half < into.len() {
-        for k in half..into.len().min(2 * half) {
-            into[k] = into[k - half] * square;
-        }
-        (half, square) = (2 * half, square * square);
-    }
-}
-
 /// Returns the roots after `from` up to `to` at which the polynomial changes its sign, in order, and
 /// whether it grows there; a root at `from` itself does not count.
 ///
@@ -74,9 +58,10 @@ pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
         return roots;
     }
     let mut open = vec![(from, to)];
+    let mut backwards = Vec::with_capacity(series.len());
     for _ in 0..MOST_INTERVALS {
         let Some((low, high)) = open.pop() else { break };
-        let changes = sign_changes(series, low, high);
+        let changes = sign_changes(series, low, high, &mut backwards);
         if changes > 1 && high - low > 2e-13 * (to - from) {
             let middle = 0.5 * (low + high);
             open.extend([(middle, high), (low, middle)]);
@@ -103,28 +88,32 @@ pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
 
 /// Returns the number of sign changes of the Bernstein coefficients on an interval: with
 /// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
-fn sign_changes(series: &[f64], low: f64, high: f64) -> usize {
-    let mut coefficients = if low == 0.0 { series.to_vec() } else { about(series, low) };
-    let degree = coefficients.len() - 1;
+/// They are computed in `backwards`, the last first, so that an addition reads what the next one
+/// writes, and many can be done at once.
+fn sign_changes(series: &[f64], low: f64, high: f64, backwards: &mut Vec<f64>) -> usize {
+    backwards.clear();
+    backwards.extend(series.iter().rev());
+    if low != 0.0 {
+        about(backwards, low);
+    }
+    let degree = backwards.len() - 1;
     let mut factor = 1.0;
-    for (k, coefficient) in coefficients.iter_mut().enumerate().skip(1) {
+    for (k, coefficient) in backwards.iter_mut().rev().enumerate().skip(1) {
         factor *= (high - low) * (k as f64 / (degree + 1 - k) as f64);
         *coefficient *= factor;
     }
     // Pascal's triangle, column by column.
-    for first in 1..=degree {
-        let mut before = coefficients[first - 1];
-        for coefficient in &mut coefficients[first..] {
-            let own = *coefficient;
-            *coefficient += before;
-            before = own;
+    for last in (1..=degree).rev() {
+        let column = &mut backwards[..=last];
+        for index in 0..last {
+            column[index] += column[index + 1];
         }
     }
-    // The last is the value at the end, where a root counts.
-    let mut changes = usize::from(coefficients[degree] == 0.0);
+    // The first is the value at the end, where a root counts.
+    let mut changes = usize::from(backwards[0] == 0.0);
     let mut before = 0.0;
-    for coefficient in coefficients {
-        if coefficient != 0.0 {
+    for coefficient in backwards {
+        if *coefficient != 0.0 {
             changes += usize::from(before * coefficient.signum() < 0.0);
             before = coefficient.signum();
         }
@@ -150,35 +139,19 @@ pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
     }
 }
 
-/// Expands the polynomial about another centre, by Horner's scheme.
-fn about(series: &[f64], centre: f64) -> Vec<f64> {
-    let mut shifted = series.to_vec();
-    for start in 0..shifted.len() {
-        for k in (start..shifted.len() - 1).rev() {
-            shifted[k] += centre * shifted[k + 1];
+/// Expands a polynomial, whose last coefficient is the first here, about another centre, by Horner's
+/// scheme.
+fn about(backwards: &mut [f64], centre: f64) {
+    for end in (1..=backwards.len()).rev() {
+        for k in 1..end {
+            backwards[k] += centre * backwards[k - 1];
         }
     }
-    shifted
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn powers_are_those_of_the_standard_library() {
-        for length in 0..40 {
-            let mut table = vec![0.0; length];
-            powers(-0.7, &mut table);
-            for (k, power) in table.iter().enumerate() {
-                let expected = (-0.7_f64).powi(k as i32);
-                assert!(
-                    (power - expected).abs() <= 1e-15 * expected.abs(),
-                    "{k}: {power} {expected}"
-                );
-            }
-        }
-    }
 
     #[test]
     fn every_root_is_found_in_its_turn() {

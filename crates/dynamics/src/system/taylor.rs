@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! y(t + s) = sum_n y_n s^n,   (n + 1) y_(n+1) = F_n      F_n: coefficient of s^n along the expression, each part once
-//! step: the largest h with |y_p| h^p <= tolerance * size of y on the step, for the last orders p; events and corners alike
+//! step: the longest h with |y_k| h^k <= tolerance^(k/p) * size of y on the step, for the last orders k; events and corners alike
 //! event: g(t, y) = 0, found on the series of g itself, so that two crossings in one step are two
 //! ```
 //!
@@ -15,8 +15,10 @@
 
 use std::collections::BTreeMap;
 
+use pulp::{Arch, Simd, WithSimd};
+
 use super::narrow::{FunctionGrowth, end_of_step};
-use super::polynomial::{powers, roots, sign_at_start, value};
+use super::polynomial::{roots, sign_at_start, value};
 use super::steps::TaylorSteps;
 use super::{
     Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
@@ -59,7 +61,7 @@ pub(super) fn expansion(
         order,
         outputs,
         narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
-        powers: PowerTable::new(order),
+        longest_step: f64::NAN,
         of_steps: Allowance::new(tolerance, order),
         of_arguments: Allowance::new(CLOSELY, order),
     })
@@ -83,7 +85,7 @@ pub(super) fn first_step(
     let mut expansion = expansion(system, events, tolerance).ok()?;
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
-    let reach = expansion.step();
+    let reach = expansion.longest_step;
     // The series of a free flight reaches to infinity, but the flight ends at the next corner.
     let longest = reach.min(end - start);
     let corner = expansion.first_corner(longest).filter(|(_, place)| *place > 0.0);
@@ -131,9 +133,11 @@ pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, Syst
                 break;
             }
             tape.expand(&rates);
-            for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
+            let longest_steps = runs.first().map(|run| run.expansion.longest_steps(&tape));
+            let lanes = runs.iter_mut().zip(&mut *ends).zip(longest_steps.iter().flatten());
+            for (lane, ((run, end), longest_step)) in lanes.enumerate() {
                 if end.is_none() {
-                    run.expansion.take_from(&tape, lane);
+                    run.expansion.take_from(&tape, lane, *longest_step);
                     *end = run.step().transpose();
                 }
             }
@@ -311,7 +315,7 @@ impl<'a> TaylorRun<'a> {
     /// Returns the length of the next step: the largest within the tolerance, shortened so that it
     /// crosses no critical time and no narrow place.
     fn step_length(&mut self, now: f64) -> f64 {
-        let reach = self.expansion.step().min(self.duration - self.time);
+        let reach = self.expansion.longest_step.min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
         let reach = self.expansion.short_of_narrow(reach);
@@ -457,7 +461,8 @@ pub(super) struct SystemSeries {
     /// The places of the rates, then of the events, then of the arguments of narrow functions.
     outputs: Vec<usize>,
     narrow: Vec<FunctionGrowth>,
-    powers: PowerTable,
+    /// The longest step within the bounds of states, events and corners.
+    longest_step: f64,
     /// Bounds of the last terms of states, events and corners.
     of_steps: Allowance,
     /// Bounds of the last terms of the arguments of narrow functions.
@@ -518,12 +523,22 @@ impl SystemSeries {
     /// Computes all coefficients about the present point.
     fn compute(&mut self) {
         self.tape.expand(&self.outputs[..self.states]);
+        [self.longest_step] = self.longest_steps(&self.tape);
     }
 
-    /// Takes the series that were computed in a lane.
-    fn take_from(&mut self, tape: &Tape<LANES>, lane: usize) {
+    /// Takes the series that were computed in a lane, with the longest step along them.
+    fn take_from(&mut self, tape: &Tape<LANES>, lane: usize, longest_step: f64) {
         let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
         tape.copy_lane_to(lane, places, &mut self.tape);
+        self.longest_step = longest_step;
+    }
+
+    /// Returns the longest step within the bounds of every state, event and argument of a corner,
+    /// for each lane of a tape of these recurrences.
+    fn longest_steps<const L: usize>(&self, tape: &Tape<L>) -> [f64; L] {
+        let events = &self.outputs[self.states..][..self.events];
+        let places = (0..self.states).chain(events.iter().chain(tape.corner_places()).copied());
+        self.of_steps.longest_steps(tape, places)
     }
 
     /// The places of the rates.
@@ -581,19 +596,6 @@ impl SystemSeries {
         self.tape.series(self.outputs[self.states + event])
     }
 
-    /// The longest step within the tolerance of every state, event and argument of a corner.
-    pub(super) fn step(&mut self) -> f64 {
-        let followed = (0..self.states).map(|state| self.tape.series(state));
-        let events = self.outputs.iter().skip(self.states).take(self.events);
-        let events = events.map(|output| self.tape.series(*output));
-        // A corner whose argument has no value is left out.
-        let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
-        let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
-        followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
-            self.of_steps.longest_step(series, longest, &mut self.powers)
-        })
-    }
-
     /// Returns the length, at most `longest`, of a step that ends beside the first narrow place, if
     /// there is one.
     fn short_of_narrow(&mut self, longest: f64) -> f64 {
@@ -605,7 +607,8 @@ impl SystemSeries {
                 continue;
             }
             // The series of the argument is valid only within its own step length.
-            length = self.of_arguments.longest_step(series, length, &mut self.powers);
+            let [valid] = self.of_arguments.longest_steps(&self.tape, [*output].into_iter());
+            length = length.min(valid);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -709,164 +712,118 @@ impl SystemSeries {
 /// Number of last terms of a series that are examined: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
-/// The factor by which a step that is too long for the tolerance is shortened.
-const SHORTER: f64 = 0.9;
-
-/// Bounds of the last terms of a series, relative to its size on the step.
+/// Bounds of the last terms of a series, relative to its largest term of lower order on the step:
+///
+/// ```text
+/// |c_k| h^k <= tolerance^(k/p) max_(j<first) |c_j| h^j      for the last orders k = first..p
+/// ```
+///
+/// Each bound holds up to an `h` and not beyond, so that the longest step is the least over k of the
+/// greatest over j of `(tolerance^(k/p) |c_j/c_k|)^(1/(k - j))`: differences of logarithms.
 #[derive(Clone, Debug)]
 struct Allowance {
-    order: usize,
-    /// The bounds for the orders from [`Self::first`] on.
-    parts: [f64; LAST],
+    /// The lowest of the last orders.
+    first: usize,
+    /// The binary logarithms of the bounds `tolerance^(k/p)` from the order `first` on.
+    bounds: Vec<f64>,
+    /// The reciprocals `1/n`.
+    reciprocals: Vec<f64>,
 }
 
 impl Allowance {
-    /// The bounds `tolerance^(k/order)` for the last orders k.
+    /// The bounds for series up to this order.
     fn new(tolerance: f64, order: usize) -> Self {
-        let mut parts = [0.0; LAST];
-        let first = Self::first(order);
-        for (part, k) in parts.iter_mut().zip(first..=order) {
-            *part = tolerance.powf(k as f64 / order as f64);
+        let first = order.saturating_sub(LAST - 1).max(order / 2 + 1);
+        let bound = |k: usize| tolerance.log2() * k as f64 / order as f64;
+        Self {
+            first,
+            bounds: (first..=order).map(bound).collect(),
+            reciprocals: (0..=order).map(|n| 1.0 / n as f64).collect(),
         }
-        Self { order, parts }
     }
 
-    /// Returns the lowest of the last orders, which lies above the orders that determine the size.
-    fn first(order: usize) -> usize {
-        order.saturating_sub(LAST - 1).max(order / 2 + 1)
+    /// Returns the longest step on which the series at these places are within their bounds, for
+    /// each lane; infinity if nothing bounds it. A series without a value bounds nothing.
+    ///
+    /// Some hundred subtractions, multiplications and comparisons for each series.
+    fn longest_steps<const L: usize>(
+        &self,
+        tape: &Tape<L>,
+        places: impl Iterator<Item = usize>,
+    ) -> [f64; L] {
+        struct Shorten<'a, const L: usize> {
+            allowance: &'a Allowance,
+            series: &'a [[f64; L]],
+            least: &'a mut [f64; L],
+        }
+        impl<const L: usize> WithSimd for Shorten<'_, L> {
+            type Output = ();
+
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, _: S) {
+                self.allowance.shorten(self.series, self.least);
+            }
+        }
+        let mut least = [f64::INFINITY; L];
+        let arch = Arch::new();
+        for place in places {
+            let series = tape.lanes(place);
+            arch.dispatch(Shorten { allowance: self, series, least: &mut least });
+        }
+        least.map(f64::exp2)
     }
 
-    /// Returns the longest step, at most `longest`, on which the last terms of a series are within
-    /// their bounds.
-    fn longest_step(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
-        const TRIALS: usize = 400;
-        let order = self.order;
-        let Some(lead) = series.iter().position(|c| *c != 0.0) else {
-            return longest;
-        };
-        // The root test gives a first step, which is shortened until the last terms are small
-        // enough.
-        let mut h = longest;
-        let of_longest = powers.powers(longest);
-        let first = Self::first(order).max(lead + 1);
-        // A root is computed only if it may be the shortest.
-        let (mut ratios, mut least) = ([f64::NAN; LAST], [f64::INFINITY; LAST]);
-        let mut shortest = f64::INFINITY;
-        for (slot, k) in (first..=order).enumerate() {
-            let (size, power) = (series[k].abs(), of_longest[k - lead]);
-            let clearly_longer =
-                power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
-            if size != 0.0 && !clearly_longer {
-                ratios[slot] = series[lead].abs() / size;
-                let [low, high] = coarse_logarithm(ratios[slot]);
-                least[slot] = low / (k - lead) as f64;
-                shortest = shortest.min(high / (k - lead) as f64);
+    /// Reduces the logarithms of the steps to what a series allows.
+    #[inline(always)]
+    fn shorten<const L: usize>(&self, series: &[[f64; L]], least: &mut [f64; L]) {
+        const MOST: usize = 32;
+        let mut lower = [[0.0; L]; MOST];
+        let lower = &mut lower[..self.first];
+        let mut sum = [0.0; L];
+        for (logarithms, coefficients) in lower.iter_mut().zip(series) {
+            for lane in 0..L {
+                logarithms[lane] = logarithm(coefficients[lane]);
+                sum[lane] += coefficients[lane];
             }
         }
-        for (slot, k) in (first..=order).enumerate() {
-            if least[slot] <= shortest {
-                h = h.min(ratios[slot].powf(1.0 / (k - lead) as f64));
+        let mut shortest = [f64::INFINITY; L];
+        for (k, bound) in (self.first..).zip(&self.bounds) {
+            let mut room = [0.0; L];
+            for lane in 0..L {
+                room[lane] = bound - logarithm(series[k][lane]);
+                sum[lane] += series[k][lane];
+            }
+            let mut longest = [f64::NEG_INFINITY; L];
+            for (logarithms, reciprocal) in lower.iter().zip(self.reciprocals[..=k].iter().rev()) {
+                for lane in 0..L {
+                    let step = (logarithms[lane] + room[lane]) * reciprocal;
+                    longest[lane] = if step > longest[lane] { step } else { longest[lane] };
+                }
+            }
+            for lane in 0..L {
+                let bounds = longest[lane] > f64::NEG_INFINITY && longest[lane] < shortest[lane];
+                shortest[lane] = if bounds { longest[lane] } else { shortest[lane] };
             }
         }
-        let in_vain = match h.is_finite() {
-            true => self.trials_in_vain(series, lead, powers.powers(h)).min(TRIALS),
-            false => 0,
-        };
-        let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
-        // If powers underflow, the trials cannot be skipped: they would give another result.
-        let is_known = powers.powers(first_trial)[order] >= f64::MIN_POSITIVE;
-        let (mut h, trials) =
-            if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
-        for _ in trials {
-            if h.is_infinite() || self.is_within(series, lead, powers.powers(h)) {
-                break;
-            }
-            h *= SHORTER;
+        for lane in 0..L {
+            let bounds = sum[lane].is_finite() && shortest[lane] < least[lane];
+            least[lane] = if bounds { shortest[lane] } else { least[lane] };
         }
-        h
-    }
-
-    /// Returns the number of trials, from the step with these powers on, that are certain to fail:
-    /// the size of a series falls with the step, so that the last terms must at least fall to their
-    /// bounds relative to the present size.
-    fn trials_in_vain(&self, series: &[f64], lead: usize, powers: &[f64]) -> usize {
-        let size = self.size(series, lead, powers);
-        let first = Self::first(self.order);
-        // A logarithm is computed only if it may be the largest.
-        let (mut ratios, mut greatest) = ([f64::NAN; LAST], [f64::NEG_INFINITY; LAST]);
-        let mut largest = 0.0_f64;
-        for (slot, k) in (first..=self.order).enumerate() {
-            let (term, allowed) = (series[k].abs() * powers[k], self.parts[slot] * size);
-            if k > lead && term.is_finite() && allowed > 1e-280 {
-                ratios[slot] = term / allowed;
-                let [low, high] = coarse_logarithm(ratios[slot]);
-                greatest[slot] = high / k as f64;
-                largest = largest.max(low / k as f64);
-            }
-        }
-        let trials =
-            (first..=self.order).enumerate().map(|(slot, k)| match greatest[slot] >= largest {
-                true => ratios[slot].ln() / (-(k as f64) * SHORTER.ln()),
-                false => 0.0,
-            });
-        (trials.fold(0.0, f64::max) - 1e-6) as usize
-    }
-
-    /// Returns the size of a series on the step with these powers: its largest leading term.
-    fn size(&self, series: &[f64], lead: usize, powers: &[f64]) -> f64 {
-        let leading = lead..lead.max(self.order / 2) + 1;
-        let terms = series[leading.clone()].iter().zip(&powers[leading]);
-        let sizes = terms.map(|(coefficient, power)| coefficient.abs() * power);
-        sizes.fold(0.0, |largest, size| if size > largest { size } else { largest })
-    }
-
-    /// Whether the last terms of a series that begins with the order `lead` are within their bounds
-    /// on the step with these powers.
-    fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
-        let term = |k: usize| series[k].abs() * powers[k];
-        let size = self.size(series, lead, powers);
-        let first = Self::first(self.order);
-        for (k, part) in (first..self.order + 1).zip(self.parts) {
-            let is_within = k <= lead || term(k) <= size * part;
-            if !is_within {
-                return false;
-            }
-        }
-        true
     }
 }
 
-/// Returns bounds of the binary logarithm of a number that is not negative, from its bits: the
-/// exponent, and a straight line for the mantissa, which is at most 0.0861 too low.
-fn coarse_logarithm(number: f64) -> [f64; 2] {
-    const TOO_LOW: f64 = 0.0861;
-    if !number.is_normal() {
-        return [f64::NEG_INFINITY, f64::INFINITY];
-    }
-    let low = number.to_bits() as f64 / (1_u64 << 52) as f64 - 1023.0;
-    [low, low + TOO_LOW]
-}
-
-/// A table of the powers of one number, kept from call to call, since most series of a step are
-/// evaluated at the same place.
-#[derive(Clone, Debug)]
-struct PowerTable {
-    base: f64,
-    table: Vec<f64>,
-}
-
-impl PowerTable {
-    /// A table for this order and those below it.
-    fn new(order: usize) -> Self {
-        Self { base: f64::NAN, table: vec![0.0; order + 1] }
-    }
-
-    /// Returns `h^0, h^1, ...`
-    fn powers(&mut self, h: f64) -> &[f64] {
-        if h != self.base {
-            powers(h, &mut self.table);
-            self.base = h;
-        }
-        &self.table
-    }
+/// Returns the binary logarithm of the absolute value of a number to 0.01, from its bits: the
+/// exponent, and a parabola for the mantissa. It is minus infinity for zero.
+#[inline(always)]
+fn logarithm(number: f64) -> f64 {
+    const EXPONENT: u32 = 52;
+    const MANTISSA: u64 = (1 << EXPONENT) - 1;
+    /// Of `f + c f (1 - f)`, nearest to the logarithm of `1 + f` everywhere.
+    const CURVATURE: f64 = 0.344;
+    let bits = number.abs().to_bits();
+    // Both conversions are sums with numbers whose last bits are free, which any processor does side by side.
+    let whole = f64::from_bits((bits >> EXPONENT) | 2.0_f64.powi(52).to_bits()) - 2.0_f64.powi(52);
+    let fraction = f64::from_bits((bits & MANTISSA) | 1.0_f64.to_bits()) - 1.0;
+    let logarithm = whole - 1023.0 + fraction * (1.0 + CURVATURE * (1.0 - fraction));
+    if bits == 0 { f64::NEG_INFINITY } else { logarithm }
 }

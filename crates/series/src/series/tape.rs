@@ -257,7 +257,7 @@ impl Tape {
 
     /// The series at a place; coefficients without a value are not finite.
     pub fn series(&self, place: usize) -> &[f64] {
-        self.row(place).as_flattened()
+        self.lanes(place).as_flattened()
     }
 
     /// Writes the values of the first variables at `s`, by Horner's rule for all of them side by
@@ -289,7 +289,7 @@ impl Tape {
     pub fn take_sides(&mut self) -> bool {
         let mut changed = false;
         for (corner, argument) in self.program.corners.iter().enumerate() {
-            let series = self.row(*argument).as_flattened();
+            let series = self.lanes(*argument).as_flattened();
             let first = series.iter().find(|value| value.is_finite() && **value != 0.0);
             if let Some(first) = first.filter(|first| first.signum() != self.sides[corner][0]) {
                 self.sides[corner] = [first.signum()];
@@ -338,15 +338,21 @@ impl<const L: usize> Tape<L> {
         let length = self.program.length;
         for place in places.chain(self.program.corners.iter().copied()) {
             let own = &mut own.series[place * length..][..length];
-            for (own, coefficients) in own.iter_mut().zip(self.row(place)) {
+            for (own, coefficients) in own.iter_mut().zip(self.lanes(place)) {
                 *own = [coefficients[lane]];
             }
         }
     }
 
-    fn row(&self, place: usize) -> &[[f64; L]] {
+    /// The series at a place, lane by lane; coefficients without a value are not finite.
+    pub fn lanes(&self, place: usize) -> &[[f64; L]] {
         let length = self.program.length;
         &self.series[place * length..][..length]
+    }
+
+    /// The places of the arguments of the corners.
+    pub fn corner_places(&self) -> &[usize] {
+        &self.program.corners
     }
 
     /// Computes the coefficients of all series from the values of the variables; `rates` are the

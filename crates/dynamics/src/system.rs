@@ -25,11 +25,12 @@
 
 mod narrow;
 mod polynomial;
+mod roots;
 mod runge_kutta;
 mod steps;
 mod taylor;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::expr::{EvaluationError, Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::interrupt::Interrupt;
@@ -41,7 +42,7 @@ pub use taylor::LANES;
 
 use narrow::Argument;
 use steps::TaylorSteps;
-use taylor::{SystemSeries, TaylorRun};
+use taylor::{Expansions, TaylorRun};
 
 /// A system of first-order equations, ready for integration.
 ///
@@ -407,24 +408,33 @@ pub struct Solver {
     events: Vec<Event>,
     options: SystemOptions,
     /// The recurrences; `None` for Runge-Kutta.
-    expansion: Option<Result<SystemSeries, RecurrenceError>>,
+    expansions: Option<Result<Expansions, RecurrenceError>>,
+    /// The symbols in the arguments of corners, in roots and in their exponents.
+    fixed: BTreeSet<Symbol>,
 }
 
 impl Solver {
     /// Returns the solver with other values of the parameters. Returns `None` if the recurrences
-    /// must be derived anew: if there are corners, whose arguments may be proportional for some
-    /// values and not for others; if a parameter is one, a factor that may be left out; and for
-    /// Runge-Kutta.
+    /// must be derived anew: for other numbers in corners or roots, which determine what is one
+    /// corner, and for Runge-Kutta.
     #[must_use]
     pub fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
-        let Some(Ok(expansion)) = &self.expansion else {
+        let Some(Ok(expansions)) = &self.expansions else {
             return None;
         };
+        let is_same = |name: &Symbol| {
+            let [before, now] = [&self.system.numbers, numbers].map(|numbers| numbers.get(name));
+            before.map(|number| number.to_bits()) == now.map(|number| number.to_bits())
+        };
+        if !self.fixed.iter().all(is_same) {
+            return None;
+        }
         Some(Self {
-            expansion: Some(Ok(expansion.with_numbers(numbers)?)),
+            expansions: Some(Ok(expansions.clone())),
             system: System { numbers: numbers.clone(), ..self.system.clone() },
             events: self.events.clone(),
             options: self.options,
+            fixed: self.fixed.clone(),
         })
     }
 
@@ -441,11 +451,11 @@ impl Solver {
     pub fn solve(&self, start: f64, values: &[f64], end: f64) -> Result<Path, SystemError> {
         self.system.check(start, values, end, &self.options)?;
         let (system, events, options) = (&self.system, &self.events, &self.options);
-        match &self.expansion {
-            Some(expansion) => {
-                let expansion = expansion.clone()?;
-                let run = TaylorRun::new(system, [start, end], values, events, options, expansion);
-                taylor::follow(run)
+        match &self.expansions {
+            Some(expansions) => {
+                let (times, expansions) = ([start, end], expansions.clone()?);
+                let run = TaylorRun::new(system, times, values, events, options, expansions);
+                taylor::follow(run?)
             }
             None => runge_kutta::follow(system, [start, end], values, events, options),
         }
@@ -463,16 +473,15 @@ pub fn solve_together(
     let mut runs: Vec<TaylorRun> = Vec::new();
     let mut alone = Vec::new();
     for (solver, values) in motions {
-        let Solver { system, events, options, expansion } = *solver;
-        let is_like = |own: &SystemSeries| runs.first().is_none_or(|run| run.is_like(own));
-        match expansion {
-            Some(Ok(own)) if is_like(own) && system.check(start, values, end, options).is_ok() => {
-                let times = [start, end];
-                runs.push(TaylorRun::new(system, times, values, events, options, own.clone()));
-                alone.push(None);
+        let Solver { system, events, options, expansions, .. } = *solver;
+        let run = match expansions {
+            Some(Ok(own)) if system.check(start, values, end, options).is_ok() => {
+                TaylorRun::new(system, [start, end], values, events, options, own.clone()).ok()
             }
-            _ => alone.push(Some(solver.solve(start, values, end))),
-        }
+            _ => None,
+        };
+        alone.push(run.is_none().then(|| solver.solve(start, values, end)));
+        runs.extend(run);
     }
     let mut together = taylor::follow_together(runs).into_iter();
     alone.into_iter().filter_map(|alone| alone.or_else(|| together.next())).collect()
@@ -564,15 +573,9 @@ impl System {
         self.check(start, values, end, options)?;
         match options.integrator {
             Integrator::Taylor => {
-                let expansion = taylor::expansion(self, events, options.tolerance)?;
-                taylor::follow(TaylorRun::new(
-                    self,
-                    [start, end],
-                    values,
-                    events,
-                    options,
-                    expansion,
-                ))
+                let expansions = Expansions::new(self, events, options.tolerance)?;
+                let times = [start, end];
+                taylor::follow(TaylorRun::new(self, times, values, events, options, expansions)?)
             }
             Integrator::RungeKutta => {
                 runge_kutta::follow(self, [start, end], values, events, options)
@@ -584,13 +587,15 @@ impl System {
     pub fn solver(self, events: &[Event], options: &SystemOptions) -> Solver {
         // There is no order for a tolerance out of range, which every run refuses.
         let has_order = TOLERANCES.contains(&options.tolerance);
-        let expansion = match options.integrator {
+        let expansions = match options.integrator {
             Integrator::Taylor if has_order => {
-                Some(taylor::expansion(&self, events, options.tolerance))
+                Some(Expansions::new(&self, events, options.tolerance))
             }
             Integrator::Taylor | Integrator::RungeKutta => None,
         };
-        Solver { system: self, events: events.to_vec(), options: *options, expansion }
+        let expressions = self.right.iter().chain(events.iter().map(|event| &event.expression));
+        let fixed = expressions.flat_map(roots::fixed_symbols).collect();
+        Solver { system: self, events: events.to_vec(), options: *options, expansions, fixed }
     }
 
     /// Checks that the system can be integrated from these values between these times.

@@ -82,7 +82,10 @@ pub(super) fn arguments(
 }
 
 /// Returns `u` for an expression that is a number times `u^2`; `None` for any other.
-fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> Option<&'a Expr> {
+pub(super) fn root_of_square<'a>(
+    expression: &'a Expr,
+    values: &BTreeMap<Symbol, f64>,
+) -> Option<&'a Expr> {
     let is_number = |factor: &Expr| factor.symbols().iter().all(|name| values.contains_key(name));
     let (_, factors) = expression.factors();
     let mut others = factors.iter().filter(|factor| !is_number(factor));

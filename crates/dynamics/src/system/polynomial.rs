@@ -126,14 +126,14 @@ fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }
 
-/// Returns the sign with which the search for roots begins on a step of this length; 0 if all
-/// coefficients are zero.
-pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
-    let here = value(series, apart(0.0, length));
+/// Returns the sign with which the search for roots begins on an interval; 0 if all coefficients are
+/// zero.
+pub(super) fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
+    let here = value(series, from + apart(from, to));
     let leading = series.iter().find(|value| **value != 0.0);
     match (here, leading) {
         (0.0, None) => 0.0,
-        // The value underflows, or the step has the length zero.
+        // The value underflows, or the interval has the length zero.
         (0.0, Some(leading)) => leading.signum(),
         _ => here.signum(),
     }

@@ -14,16 +14,20 @@
 //! Time is measured from the start, so that a late start costs no digits.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use pulp::{Arch, Simd, WithSimd};
 
 use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{roots, sign_at_start, value};
+use super::roots::{Equations, Root, equations, roots as corner_roots};
 use super::steps::TaylorSteps;
 use super::{
     Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
     end_of_range, is_vanishing, within_range, without_value,
 };
+use crate::expr::Expr;
+use crate::numeric::ode::root::find_root;
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
 use crate::symbol::Symbol;
@@ -34,37 +38,67 @@ use crate::symbol::Symbol;
 /// [`RecurrenceError`] for a function without a recurrence.
 pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceError> {
     const ANY: f64 = 0.1;
-    expansion(system, events, ANY).map(drop)
+    let equations = Equations::as_written(system, &expressions(events));
+    SystemSeries::new(&equations, &system.numbers, ANY).map(drop)
 }
 
-/// Derives the recurrences for the right sides of a system and these events, to the order with
-/// which steps within this tolerance are cheapest.
-pub(super) fn expansion(
-    system: &System,
-    events: &[Event],
+fn expressions(events: &[Event]) -> Vec<&Expr> {
+    events.iter().map(|event| &event.expression).collect()
+}
+
+/// The recurrences for the right sides of a system and for events, to the order with which steps
+/// within the tolerance are cheapest; for each side of the roots their own, derived when a motion
+/// first comes there.
+#[derive(Clone, Debug)]
+pub(super) struct Expansions {
     tolerance: f64,
-) -> Result<SystemSeries, RecurrenceError> {
-    /// Tolerance of the arguments of narrow functions, which need not be known to rounding.
-    const CLOSELY: f64 = 1e-9;
-    let order = order(tolerance);
-    let states = system.state.iter().map(|state| (*state, None));
-    let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
-    let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
-    let narrow = system.narrow.iter().map(|argument| &argument.expression);
-    let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
-    let outputs =
-        outputs.chain(narrow).map(|output| recurrences.add(output)).collect::<Result<_, _>>()?;
-    Ok(SystemSeries {
-        tape: recurrences.into_tape(),
-        states: system.state.len(),
-        events: events.len(),
-        order,
-        outputs,
-        narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
-        longest_step: f64::NAN,
-        of_steps: Allowance::new(tolerance, order),
-        of_arguments: Allowance::new(CLOSELY, order),
-    })
+    roots: Arc<[Root]>,
+    known: Arc<Mutex<BTreeMap<Vec<bool>, SystemSeries>>>,
+}
+
+impl Expansions {
+    /// Prepares the recurrences of a system and these events.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub(super) fn new(
+        system: &System,
+        events: &[Event],
+        tolerance: f64,
+    ) -> Result<Self, RecurrenceError> {
+        let events = expressions(events);
+        let equations = Equations::as_written(system, &events);
+        let as_written = SystemSeries::new(&equations, &system.numbers, tolerance)?;
+        let roots: Arc<[Root]> = corner_roots(system, &events).into();
+        let known = match roots.is_empty() {
+            true => [(vec![], as_written)].into(),
+            false => BTreeMap::new(),
+        };
+        Ok(Self { tolerance, roots, known: Arc::new(Mutex::new(known)) })
+    }
+
+    /// Returns the recurrences where the arguments of the roots have these signs; `None` if they
+    /// cannot be written.
+    fn on_side(&self, system: &System, events: &[Event], signs: &[f64]) -> Option<SystemSeries> {
+        let side: Vec<bool> = signs.iter().map(|sign| *sign > 0.0).collect();
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(series) = known.get(&side).and_then(|own| own.with_numbers(&system.numbers)) {
+            return Some(series);
+        }
+        let events = expressions(events);
+        let equations = match self.roots.is_empty() {
+            true => Equations::as_written(system, &events),
+            false => equations(system, &events, &self.roots, signs).ok()?,
+        };
+        let series = SystemSeries::new(&equations, &system.numbers, self.tolerance).ok()?;
+        known.entry(side).or_insert_with(|| series.clone());
+        Some(series)
+    }
+
+    /// The order of the series.
+    fn order(&self) -> usize {
+        order(self.tolerance)
+    }
 }
 
 /// Returns the order that reaches the tolerance with the fewest operations (Jorba and Zou).
@@ -81,8 +115,8 @@ pub(super) fn first_step(
     events: &[Event],
 ) -> Option<(f64, Vec<f64>)> {
     const SAMPLES: u32 = 8;
-    let tolerance = f64::EPSILON;
-    let mut expansion = expansion(system, events, tolerance).ok()?;
+    let equations = Equations::as_written(system, &expressions(events));
+    let mut expansion = SystemSeries::new(&equations, &system.numbers, f64::EPSILON).ok()?;
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
     let reach = expansion.longest_step;
@@ -114,33 +148,34 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     }
 }
 
-/// Follows several runs of the same recurrences, [`LANES`] of them side by side, and returns their
-/// paths in order; each is bit for bit the same as alone.
+/// Follows several runs, up to [`LANES`] of those with the same recurrences side by side, and
+/// returns their paths in order; each is bit for bit the same as alone.
 pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
-    let Some(first) = runs.first() else { return vec![] };
-    let mut tape: Tape<LANES> = first.expansion.tape.side_by_side();
-    let rates = first.expansion.rates().to_vec();
+    let mut tapes: Vec<(SystemSeries, Tape<LANES>)> = vec![];
     let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
-    for (runs, ends) in runs.chunks_mut(LANES).zip(ends.chunks_mut(LANES)) {
-        loop {
-            for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
-                if end.is_none() {
-                    *end = run.before_step().map(Ok);
-                    tape.load(lane, &run.expansion.tape);
-                }
-            }
-            if ends.iter().all(Option::is_some) {
-                break;
-            }
-            tape.expand(&rates);
-            let longest_steps = runs.first().map(|run| run.expansion.longest_steps(&tape));
-            let lanes = runs.iter_mut().zip(&mut *ends).zip(longest_steps.iter().flatten());
-            for (lane, ((run, end), longest_step)) in lanes.enumerate() {
-                if end.is_none() {
-                    run.expansion.take_from(&tape, lane, *longest_step);
-                    *end = run.step().transpose();
-                }
-            }
+    while let Some(first) = ends.iter().position(Option::is_none) {
+        let alike = |index: &usize| {
+            ends[*index].is_none() && runs[*index].expansion.is_like(&runs[first].expansion)
+        };
+        let mut lanes: Vec<usize> = (first..runs.len()).filter(alike).take(LANES).collect();
+        lanes.retain(|index| {
+            ends[*index] = runs[*index].before_step().map(Ok);
+            ends[*index].is_none()
+        });
+        let Some(series) = lanes.first().map(|index| &runs[*index].expansion) else { continue };
+        let known = tapes.iter().position(|(own, _)| own.is_like(series)).unwrap_or_else(|| {
+            tapes.push((series.clone(), series.tape.side_by_side()));
+            tapes.len() - 1
+        });
+        let (series, tape) = &mut tapes[known];
+        for (lane, index) in lanes.iter().enumerate() {
+            tape.load(lane, &runs[*index].expansion.tape);
+        }
+        tape.expand(series.rates());
+        let longest_steps = series.longest_steps(tape);
+        for (lane, (index, longest_step)) in lanes.into_iter().zip(longest_steps).enumerate() {
+            runs[index].expansion.take_from(tape, lane, longest_step);
+            ends[index] = runs[index].step().transpose();
         }
     }
     let finished =
@@ -153,12 +188,17 @@ pub(super) struct TaylorRun<'a> {
     system: &'a System,
     events: &'a [Event],
     options: &'a SystemOptions,
+    expansions: Expansions,
+    /// The signs of the arguments of the roots.
+    root_signs: Vec<f64>,
+    /// The recurrences for these signs.
     expansion: SystemSeries,
     start: f64,
     end: f64,
     duration: f64,
     /// The time since the start.
     time: f64,
+    /// The states, then the variables of the roots that act.
     values: Vec<f64>,
     /// The signs of the event functions after the last step.
     signs: Vec<f64>,
@@ -178,56 +218,87 @@ pub(super) struct TaylorRun<'a> {
 /// Largest number of consecutive halvings of a step.
 const MOST_HALVINGS: i32 = 12;
 
+/// A step that is about to be taken.
+struct NextStep {
+    /// The value at its end of the variable of the series.
+    reach: f64,
+    /// The time since the start at which it ends.
+    until: f64,
+    /// The first corner on it, and the value of the variable there.
+    corner: Option<(usize, f64)>,
+}
+
 /// The values that are restored if a step is taken back.
 struct StepUndo {
     length: f64,
+    values: Vec<f64>,
     signs: Vec<f64>,
     sides: Vec<f64>,
     occurrences: usize,
 }
 
 impl<'a> TaylorRun<'a> {
-    /// Prepares a run between two times from these values, with the recurrences of these events.
+    /// Prepares a run between two times from these values.
+    ///
+    /// # Errors
+    /// [`SystemError`] if there is no series on any side of the roots.
     pub(super) fn new(
         system: &'a System,
         [start, end]: [f64; 2],
         values: &[f64],
         events: &'a [Event],
         options: &'a SystemOptions,
-        mut expansion: SystemSeries,
-    ) -> Self {
-        expansion.begin(start, values);
-        let order = expansion.order;
-        Self {
+        expansions: Expansions,
+    ) -> Result<Self, SystemError> {
+        let no_series = || SystemError::Start(system.state.first().copied().unwrap_or(system.time));
+        let sign = |root: &Root| match root_argument(system, root, start, values) < 0.0 {
+            true => -1.0,
+            false => 1.0,
+        };
+        let mut root_signs: Vec<f64> = expansions.roots.iter().map(sign).collect();
+        let mut expansion =
+            expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
+        let variables = |expansion: &SystemSeries| {
+            let acting = expansion.acting.iter().map(|root| &expansions.roots[*root]);
+            let own = acting.map(|root| root_variable(system, root, start, values));
+            values.iter().copied().chain(own).collect::<Vec<f64>>()
+        };
+        // A motion that begins where a root does may begin towards either side.
+        for attempt in 0..=root_signs.len() {
+            expansion.begin(start, &variables(&expansion));
+            let left = expansion.left_root(&root_signs).filter(|_| attempt < root_signs.len());
+            let Some(left) = left else { break };
+            root_signs[left] *= -1.0;
+            expansion = expansions.on_side(system, events, &root_signs).ok_or_else(no_series)?;
+        }
+        expansion.take_root_sides(&root_signs);
+        Ok(Self {
             system,
             events,
             options,
-            expansion,
             start,
             end,
             duration: end - start,
             time: 0.0,
-            values: values.to_vec(),
+            values: variables(&expansion),
             signs: vec![0.0; events.len()],
-            steps: TaylorSteps::new(values.len(), order),
+            steps: TaylorSteps::new(values.len(), expansions.order()),
             occurrences: vec![],
             stuck: 0,
             met: None,
             last: None,
             halvings: 0,
-        }
-    }
-
-    /// Whether the run has the recurrences of an expansion, so that both may be computed side by
-    /// side.
-    pub(super) fn is_like(&self, expansion: &SystemSeries) -> bool {
-        self.expansion.tape.is_like(&expansion.tape)
+            expansions,
+            root_signs,
+            expansion,
+        })
     }
 
     /// Returns the path of a run that has ended.
     fn finish(mut self, reason: PathEnd) -> Path {
         if self.steps.count() == 0 {
             // A run that ended at its start gets one step of length zero.
+            self.values.truncate(self.system.state.len());
             self.steps = TaylorSteps::at_rest(self.values);
         }
         Path {
@@ -279,16 +350,16 @@ impl<'a> TaylorRun<'a> {
         if over {
             return Ok(Some(PathEnd::Reached));
         }
-        let reach = self.step_length(now);
-        if reach.is_nan() || reach <= 0.0 || now + reach == now {
+        let Some(step) = self.next_step(now) else {
             return Ok(Some(PathEnd::Singular));
-        }
+        };
+        let reach = step.reach;
         let met = self.met.take();
         if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
         {
             return Ok(Some(PathEnd::Sticks));
         }
-        Ok(self.advance(reach))
+        Ok(self.advance(&step))
     }
 
     /// Checks that all states and events have a series here.
@@ -312,22 +383,43 @@ impl<'a> TaylorRun<'a> {
         without_value(self.values.iter().copied(), [before, self.time])
     }
 
-    /// Returns the length of the next step: the largest within the tolerance, shortened so that it
-    /// crosses no critical time and no narrow place.
-    fn step_length(&mut self, now: f64) -> f64 {
-        let reach = self.expansion.longest_step.min(self.duration - self.time);
+    /// Returns the next step: the longest within the tolerance, shortened so that it crosses neither
+    /// the end of the run, nor a critical time, nor a narrow place. `None` if it has no length.
+    fn next_step(&mut self, now: f64) -> Option<NextStep> {
+        let left = self.duration - self.time;
         let next = next_critical(&self.system.critical, now);
-        let reach = next.map_or(reach, |next| reach.min(next - now));
-        let reach = self.expansion.short_of_narrow(reach);
-        reach * 0.5_f64.powi(self.halvings)
+        let limit = next.map_or(left, |next| (next - now).min(left));
+        let longest = match self.expansion.acting.is_empty() {
+            true => self.expansion.longest_step.min(limit),
+            // At rest in contact the series are constant, and the time is proportional to s.
+            false => self.expansion.longest_step.min(2.0 * limit / self.expansion.time_rate()),
+        };
+        let corner = self.expansion.first_corner(longest);
+        // Beyond the end of contact the time would go back.
+        let forward = corner.map_or(longest, |(_, place)| place);
+        let within = self.expansion.step_within(limit, forward);
+        let longest = within.unwrap_or(longest);
+        let reach = self.expansion.short_of_narrow(longest) * 0.5_f64.powi(self.halvings);
+        let corner = corner.filter(|(_, place)| *place <= reach);
+        let until = match within.is_some() && reach == longest && limit == left {
+            true => self.duration,
+            false => self.time + self.expansion.elapsed(reach),
+        };
+        // Where a root acts, its variable moves on although the time may not.
+        let moves = match self.expansion.acting.is_empty() {
+            true => now + reach > now,
+            false => corner.is_some() || self.expansion.elapsed(reach) > 0.0,
+        };
+        (reach > 0.0 && moves).then_some(NextStep { reach, until, corner })
     }
 
-    /// Advances by this time, or to the first corner or stopping event. Returns the reason if the
+    /// Advances by a step, or to the first corner or stopping event on it. Returns the reason if the
     /// run ends there.
-    fn advance(&mut self, reach: f64) -> Option<PathEnd> {
+    fn advance(&mut self, &NextStep { reach, until, corner }: &NextStep) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
-        let mut corner = self.expansion.first_corner(reach);
+        let mut corner = corner;
         let mut length = corner.map_or(reach, |(_, place)| place);
+        let before = self.values.clone();
         let range = end_of_range(length, |place| {
             self.expansion.tape.values(place, &mut self.values);
             within_range(self.values.iter().copied())
@@ -337,6 +429,7 @@ impl<'a> TaylorRun<'a> {
         }
         let last = StepUndo {
             length,
+            values: before,
             signs: self.signs.clone(),
             sides: self.expansion.sides(),
             occurrences: self.occurrences.len(),
@@ -352,36 +445,69 @@ impl<'a> TaylorRun<'a> {
         let (start, time) = (self.start, self.time);
         self.occurrences.extend(met.into_iter().map(|(event, place, rising)| EventCrossing {
             event,
-            time: start + (time + place),
+            time: start + (time + self.expansion.elapsed(place)),
             rising,
         }));
-        let series = (0..self.values.len()).map(|state| self.expansion.state(state));
-        self.steps.push(time, series);
+        let series = (0..self.system.state.len()).map(|state| self.expansion.state(state));
+        self.steps.push([time, length], series, self.expansion.time());
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);
         }
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
-        let at_end = time + length >= self.duration && whole;
-        self.time = if at_end { self.duration } else { time + length };
+        self.time = if whole { until } else { time + self.expansion.elapsed(length) };
         if let Some(event) = stop {
             return Some(PathEnd::Event(event));
         }
         if range.is_some() {
-            return Some(match is_vanishing([time, time + length]) {
+            return Some(match is_vanishing([time, self.time]) {
                 true => PathEnd::Singular,
                 false => PathEnd::Overflow,
             });
         }
         let (corner, _) = corner?;
         self.halvings = 0;
-        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
-        self.expansion.cross(corner);
         // A motion that leaves a corner and returns at once, over and over, sticks to it.
         const OFTEN: usize = 20;
-        let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * self.time;
+        let [gone, whole] = [length, reach].map(|place| self.expansion.elapsed(place));
+        let at_once = gone <= 1e-12 * whole + 4.0 * f64::EPSILON * self.time;
         self.stuck = if at_once { self.stuck + 1 } else { 0 };
-        (self.stuck > OFTEN).then_some(PathEnd::Sticks)
+        if self.stuck > OFTEN {
+            return Some(PathEnd::Sticks);
+        }
+        if corner < self.root_signs.len() {
+            return self.pass_root(corner);
+        }
+        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
+        self.expansion.cross(corner);
+        None
+    }
+
+    /// Goes over to the other side of a root. Returns the reason if the run ends there.
+    fn pass_root(&mut self, passed: usize) -> Option<PathEnd> {
+        self.root_signs[passed] *= -1.0;
+        let Some(mut next) = self.expansions.on_side(self.system, self.events, &self.root_signs)
+        else {
+            return Some(PathEnd::Singular);
+        };
+        let (states, variables) = self.values.split_at(self.system.state.len());
+        let now = self.start + self.time;
+        let variable = |root: &usize| {
+            let before = self.expansion.acting.iter().position(|own| own == root);
+            match before {
+                _ if *root == passed => 0.0,
+                Some(place) => variables[place],
+                None => root_variable(self.system, &self.expansions.roots[*root], now, states),
+            }
+        };
+        let variables = next.acting.iter().map(variable);
+        let values: Vec<f64> = states.iter().copied().chain(variables).collect();
+        if next.tape.corners().count() > next.roots {
+            next.begin(now, &values);
+        }
+        next.take_root_sides(&self.root_signs);
+        (self.values, self.expansion) = (values, next);
+        None
     }
 
     /// Whether the rates at the end of a step differ from those of its series, for instance because
@@ -417,7 +543,7 @@ impl<'a> TaylorRun<'a> {
         let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
         let mut by_rounding = vec![0.0; missed.len()];
         let mut values = self.values.clone();
-        for state in 0..values.len() {
+        for state in 0..self.system.state.len() {
             values[state] += DIGITS * f64::EPSILON * self.values[state].abs();
             let expanded =
                 values[state] != self.values[state] && self.expansion.expand_once(now, &values);
@@ -435,8 +561,8 @@ impl<'a> TaylorRun<'a> {
 
     /// Returns to the start of the last step, from which half of it will be taken.
     fn take_back(&mut self, last: StepUndo) {
-        let Some((time, values)) = self.steps.pop() else { return };
-        (self.time, self.values) = (time, values);
+        let Some(time) = self.steps.pop() else { return };
+        (self.time, self.values) = (time, last.values);
         self.signs = last.signs;
         self.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
@@ -450,13 +576,31 @@ fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
     critical.get(critical.partition_point(|time| *time <= beyond)).copied()
 }
 
+/// The argument of a root in these states.
+fn root_argument(system: &System, root: &Root, time: f64, states: &[f64]) -> f64 {
+    let mut values = system.numbers.clone();
+    values.extend(system.state.iter().copied().zip(states.iter().copied()));
+    values.insert(system.time, time);
+    root.argument.evaluate(&values).unwrap_or(f64::NAN)
+}
+
+/// The variable of a root in these states.
+fn root_variable(system: &System, root: &Root, time: f64, states: &[f64]) -> f64 {
+    root_argument(system, root, time, states).abs().powf(1.0 / f64::from(root.degree))
+}
+
 /// The recurrences of right sides and events, with their series.
 #[derive(Clone, Debug)]
 pub(super) struct SystemSeries {
-    /// The tape, whose variables are the states, then time.
+    /// The tape, whose variables are the states, then that of the series. The states of the system
+    /// come first, then the variables of the roots that act, then, if there are any, the time.
     tape: Tape,
     states: usize,
     events: usize,
+    /// The roots that act.
+    acting: Vec<usize>,
+    /// The number of roots; their sides are the first corners.
+    roots: usize,
     order: usize,
     /// The places of the rates, then of the events, then of the arguments of narrow functions.
     outputs: Vec<usize>,
@@ -470,9 +614,103 @@ pub(super) struct SystemSeries {
 }
 
 impl SystemSeries {
+    /// Derives the recurrences of these equations, to the order for this tolerance.
+    fn new(
+        equations: &Equations,
+        numbers: &BTreeMap<Symbol, f64>,
+        tolerance: f64,
+    ) -> Result<Self, RecurrenceError> {
+        /// Tolerance of the arguments of narrow functions, which need not be known to rounding.
+        const CLOSELY: f64 = 1e-9;
+        let order = order(tolerance);
+        let states = equations.states.iter().map(|state| (*state, None));
+        let variables: Vec<_> = states.chain([(equations.variable, Some(1))]).collect();
+        let mut recurrences = Recurrences::new(&variables, numbers, order);
+        for end in &equations.ends {
+            recurrences.watch(end)?;
+        }
+        let narrow = equations.narrow.iter().map(|(argument, _)| argument);
+        let outputs = equations.right.iter().chain(&equations.events).chain(narrow);
+        let outputs = outputs.map(|output| recurrences.add(output)).collect::<Result<_, _>>()?;
+        Ok(Self {
+            tape: recurrences.into_tape(),
+            states: equations.states.len(),
+            events: equations.events.len(),
+            acting: equations.acting.clone(),
+            roots: equations.ends.len(),
+            order,
+            outputs,
+            narrow: equations.narrow.iter().map(|(_, kind)| *kind).collect(),
+            longest_step: f64::NAN,
+            of_steps: Allowance::new(tolerance, order),
+            of_arguments: Allowance::new(CLOSELY, order),
+        })
+    }
+
+    /// Whether another expansion has the same recurrences, so that both may be computed side by
+    /// side.
+    fn is_like(&self, other: &Self) -> bool {
+        self.tape.is_like(&other.tape)
+    }
+
+    /// The series of the time; `None` if it is the variable itself.
+    fn time(&self) -> Option<&[f64]> {
+        (!self.acting.is_empty()).then(|| self.state(self.states - 1))
+    }
+
+    /// The time that passes from the start of the step until a value of its variable.
+    fn elapsed(&self, place: f64) -> f64 {
+        match self.time() {
+            None => place,
+            Some([]) => 0.0,
+            Some([_, since_start @ ..]) => place * value(since_start, place),
+        }
+    }
+
+    /// The rate of the time in the variable of the series.
+    fn time_rate(&self) -> f64 {
+        self.time().and_then(|series| series.get(1)).copied().unwrap_or(1.0)
+    }
+
+    /// Returns the value of the variable at which this time has passed, on a step on which the time
+    /// does not go back; `None` if it does not pass on it.
+    fn step_within(&self, time: f64, reach: f64) -> Option<f64> {
+        if self.time().is_none() {
+            return (reach >= time).then_some(time);
+        }
+        let beyond = |place: f64| self.elapsed(place) - time;
+        match beyond(reach) {
+            0.0 => Some(reach),
+            passed if passed > 0.0 => find_root(beyond, 0.0, reach).ok(),
+            _ => None,
+        }
+    }
+
+    /// Returns the first root whose side the motion leaves at once, or on whose side it does not
+    /// move; `signs` are the signs of the arguments of all.
+    fn left_root(&self, signs: &[f64]) -> Option<usize> {
+        let mut sides = self.tape.corners().zip(signs).enumerate();
+        sides.find_map(|(root, ((series, side), sign))| {
+            let is_left = match self.acting.contains(&root) {
+                true => side < 0.0 || series.iter().all(|value| *value == 0.0),
+                false => side * sign < 0.0,
+            };
+            is_left.then_some(root)
+        })
+    }
+
+    /// Takes the sides of the roots on which their arguments have these signs.
+    fn take_root_sides(&mut self, signs: &[f64]) {
+        let mut sides = self.sides();
+        for (root, sign) in signs.iter().enumerate() {
+            sides[root] = if self.acting.contains(&root) { 1.0 } else { *sign };
+        }
+        self.set_sides(&sides);
+    }
+
     /// Returns this expansion with other values of the parameters; `None` if these may lead to
     /// other recurrences.
-    pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
+    fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
     }
@@ -554,9 +792,9 @@ impl SystemSeries {
     /// value but no series.
     fn switch_corners(&mut self) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
-            let left = self.tape.corners().position(|(series, side)| {
+            let left = self.tape.corners().enumerate().position(|(corner, (series, side))| {
                 let slope = series.get(1).copied().unwrap_or(0.0);
-                series[0] * side < 0.0 && slope * side < 0.0
+                corner >= self.roots && series[0] * side < 0.0 && slope * side < 0.0
             });
             let Some(corner) = left else { break };
             self.cross(corner);
@@ -628,7 +866,7 @@ impl SystemSeries {
         }
         for (event, before) in signs.iter_mut().enumerate() {
             let series = self.event(event);
-            let sign = sign_at_start(series, length);
+            let sign = sign_at_start(series, 0.0, length);
             if sign == 0.0 {
                 continue;
             }

@@ -99,6 +99,20 @@ impl Recurrences {
         Ok(place)
     }
 
+    /// Adds a corner at which no expression changes, so that a step ends where its argument passes
+    /// through zero. Returns its index among the corners.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn watch(&mut self, argument: &Expr) -> Result<usize, RecurrenceError> {
+        let place = self.add(argument)?;
+        let guard = self.guards.find_or_add(argument);
+        if guard.is_new {
+            self.program.corners.push(place);
+        }
+        Ok(guard.index)
+    }
+
     /// Returns the tape that computes the series of all outputs.
     pub fn into_tape(mut self) -> Tape {
         self.program.keep_only(&self.outputs);

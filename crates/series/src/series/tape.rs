@@ -236,8 +236,8 @@ impl Tape {
     }
 
     /// Sets new numbers for the symbols. Returns `false` if the operations may differ for these
-    /// numbers, or if one is missing. With corners the operations always depend on the numbers,
-    /// which determine the arguments that share a guard.
+    /// numbers, or if one is missing. The numbers in the arguments of corners, which determine the
+    /// arguments that share a guard, must be the same.
     #[must_use]
     pub fn set_numbers(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
         for index in 0..self.program.named.len() {
@@ -246,9 +246,7 @@ impl Tape {
             match numbers.get(&name) {
                 Some(number) if number.to_bits() == before.to_bits() => {}
                 // The operations for a factor of one may differ, since it is left out.
-                Some(number) if self.sides.is_empty() && *number != 1.0 && before != 1.0 => {
-                    self.set(place, 0, *number)
-                }
+                Some(number) if *number != 1.0 && before != 1.0 => self.set(place, 0, *number),
                 _ => return false,
             }
         }

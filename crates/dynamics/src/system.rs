@@ -6,7 +6,8 @@
 //! other symbols. Out: a [`Path`] with every state at any time between, the events it met, and the
 //! reason why it ended. At a corner (`abs`, `sgn`, `H`, `max`, `min`) a step ends where the
 //! argument changes its sign, and the next begins on the other side; a motion that sticks to a
-//! corner, as with dry friction, ends there with that reason. If a function changes faster than the
+//! corner, as with dry friction, ends there with that reason. Where a root acts, as in Hertz's contact,
+//! the steps are in a variable in which it is a power series. If a function changes faster than the
 //! motion, as in a narrow well, its argument shows this in advance, and steps end beside the place.
 //!
 //! ```

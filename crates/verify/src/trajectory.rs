@@ -7,9 +7,9 @@
 //! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is
 //! `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
 //! duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a
-//! mechanism has energies, and the same by the other integrator to judge it. Power series go first;
-//! where they end, as at a root or a touch that is not a power series in time, Runge-Kutta takes
-//! the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')`
+//! mechanism has energies, and the same by the other integrator to judge it. Power series go first,
+//! in time or, where a root acts as in Hertz's contact, in a variable that resolves it; where there
+//! are none, as at rest exactly at the touch, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')`
 //! between two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
@@ -496,7 +496,7 @@ impl Ready {
         for (name, value) in &mut values {
             *value = *course.values.get(name)?;
         }
-        // Without corners the roots are as they were typed, whatever the numbers.
+        // The solver refuses other numbers in roots, by which they are written across corners.
         let solver = self.solver.with_numbers(&values)?;
         let critical = pulse::critical_times(&self.right, &self.states, &values, course.duration);
         Some(Self {

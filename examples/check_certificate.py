@@ -73,6 +73,14 @@ def keys(value, needed, optional, what):
     demand(not missing and not more, f"the keys of {what}")
 
 
+# The letters of the theorem that some keys had in older certificates.
+LETTERS = {"A": "initial_displacement", "K": "highest_harmonic", "Abits": "inverse_bits", "A_block": "inverse", "Omega": "driving_frequency"}
+
+
+def with_names_in_words(value):
+    return unique([(LETTERS.get(key, key), entry) for key, entry in value.items()]) if isinstance(value, dict) else value
+
+
 def no_number(_):
     raise NotProved("a number that no certificate has")
 
@@ -793,17 +801,18 @@ def check(text):
     z = json.loads(text, object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number,
                    parse_int=lambda digits: int(digits) if len(digits) <= 20 else no_number(digits))
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1" and z.get("nu") == "1", "another schema")
+    z = with_names_in_words(z)
     kind = z.get("ode")
     demand(kind in (MOTION, CYCLE, DRIVEN), "another equation")
-    own = {MOTION: {"f", "A", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
-    keys(z, {"schema", "ode", "odd", "bits", "c", "K", "Abits", "A_block", "sigma_log2", "nu", "claim_r"} | own, {"formula"}, "the file")
-    N, odd = whole(z["K"], 1, 400, "K"), z["odd"]
-    bits, inverse_bits = whole(z["bits"], 0, 224, "bits"), whole(z["Abits"], 0, 224, "Abits")
+    own = {MOTION: {"f", "initial_displacement", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
+    keys(z, {"schema", "ode", "odd", "bits", "c", "highest_harmonic", "inverse_bits", "inverse", "sigma_log2", "nu", "claim_r"} | own, {"formula"}, "the file")
+    N, odd = whole(z["highest_harmonic"], 1, 400, "highest_harmonic"), z["odd"]
+    bits, inverse_bits = whole(z["bits"], 0, 224, "bits"), whole(z["inverse_bits"], 0, 224, "inverse_bits")
     exponent = whole(z["sigma_log2"], -64, 64, "sigma_log2")
     demand(type(odd) is bool and (not odd or N % 2 == 1), "odd harmonics, and a block that ends with an even one")
-    rows = z["A_block"]
+    rows = z["inverse"]
     demand(isinstance(rows, list) and len(rows) <= SIZES["block"], "the size of the inverse")
-    rows = [integers(row, "A_block") for row in rows]
+    rows = [integers(row, "inverse") for row in rows]
     step, sigma = 2 if odd else 1, Fraction(2) ** exponent
     c = [dyadic(a, bits) for a in integers(z["c"], "c")]
     demand(not odd or all(a == ZERO for a in c[::2]), "even harmonics")
@@ -811,7 +820,7 @@ def check(text):
     omega = amplitude = start = None
     if kind == MOTION:
         demand(len(rows) == len(harmonics) + 1 and all(len(row) == len(rows) for row in rows), "the size of the inverse")
-        f, start, X = read_force(z["f"], {"x"}, "f"), fraction(z["A"], "A"), (c, [], 0)
+        f, start, X = read_force(z["f"], {"x"}, "f"), fraction(z["initial_displacement"], "initial_displacement"), (c, [], 0)
         demand(not odd or parity(f, {"x"}) in (-1, None), "the force is not odd")
         mu, B = dyadic(integer(z["mu"], "mu"), bits), Block(rows, inverse_bits, sigma)
         r = prove_motion(z, f, start, B, harmonics, odd, mu, X)
@@ -834,8 +843,9 @@ def check(text):
             p, B = dyadic(integer(z["p"], "p"), bits), Block(rows, inverse_bits, sigma)
             demand(p[0] > 0, "1/omega is not positive")
         else:
-            keys(z["drive"], {"Omega", "n", "harmonic"}, set(), "drive")
-            frequency = fraction(z["drive"]["Omega"], "Omega")
+            z["drive"] = with_names_in_words(z["drive"])
+            keys(z["drive"], {"driving_frequency", "n", "harmonic"}, set(), "drive")
+            frequency = fraction(z["drive"]["driving_frequency"], "driving_frequency")
             periods = whole(z["drive"]["n"], 1, 20, "n")
             harmonic = whole(z["drive"]["harmonic"], 1, 400, "harmonic")
             demand(frequency > 0 and exponent == 0, "a drive whose frequency is positive, and no weight")

@@ -176,14 +176,14 @@ fn a_second_program_in_python_proves_the_same() {
     let of_all: [Tamper; 7] = [
         |document| document["claim_r"] = json!("1e-60"),
         |document| document["c"][1] = json!("1"),
-        |document| document["A_block"][1][0] = json!("0"),
+        |document| document["inverse"][1][0] = json!("0"),
         |document| document["odd"] = json!("yes"),
         |document| document["formula"]["phase_error"][0] = json!("1"),
         |document| document["formula"]["phase_error"][1] = json!("1e-12"),
         |document| document["more"] = json!("1"),
     ];
     let of_motions: [Tamper; 5] = [
-        |document| document["A"] = json!("1499999/1000000"),
+        |document| document["initial_displacement"] = json!("1499999/1000000"),
         |document| document["f"] = json!(["0", "2"]),
         |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
         |document| document["formula"]["drift"][0] = json!("1"),
@@ -201,7 +201,7 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["drift"][1] = json!("1e-12"),
     ];
     let of_driven: [Tamper; 5] = [
-        |document| document["drive"]["Omega"] = json!("1001/1000"),
+        |document| document["drive"]["driving_frequency"] = json!("1001/1000"),
         |document| document["drive"]["n"] = json!(7),
         |document| document["sigma_log2"] = json!(1),
         |document| document["h"] = json!("x + x^3/9 - c"),
@@ -271,6 +271,60 @@ fn a_second_program_in_python_proves_the_same() {
     });
 }
 
+/// The document with the letters of the theorem that its keys once were.
+fn with_letters(document: &Value) -> Value {
+    let letters = [
+        ("initial_displacement", "A"),
+        ("highest_harmonic", "K"),
+        ("inverse_bits", "Abits"),
+        ("inverse", "A_block"),
+        ("driving_frequency", "Omega"),
+    ];
+    let Value::Object(keys) = document else {
+        return document.clone();
+    };
+    let renamed = keys.iter().map(|(key, value)| {
+        let letter = letters.iter().find(|(name, _)| name == key);
+        (letter.map_or(key.as_str(), |(_, letter)| letter).to_owned(), with_letters(value))
+    });
+    Value::Object(renamed.collect())
+}
+
+/// Certificates of older programs have letters as keys; both readers still prove them.
+#[test]
+fn certificates_whose_keys_are_letters_are_still_proved() {
+    let fixture =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/certificate-with-letters.json");
+    let text = std::fs::read_to_string(&fixture).expect("a certificate");
+    let old: Value = serde_json::from_str(&text).expect("JSON");
+    assert!(["A", "K", "Abits", "A_block"].iter().all(|key| old.get(key).is_some()));
+    let folder = folder("letters");
+    let driven = format!("{}/examples/forced-duffing.toml", env!("CARGO_MANIFEST_DIR"));
+    let (file, document) = certified(&folder, &[&driven]);
+    let renamed = with_letters(&document);
+    assert!(renamed["drive"].get("Omega").is_some() && renamed.get("highest_harmonic").is_none());
+    std::fs::write(&file, renamed.to_string()).expect("a file");
+    for file in [&fixture, &file] {
+        let checked = run(&["check", file.to_str().expect("a path in text")]);
+        assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+        if let Some(python) = python() {
+            assert!(by_python(&python, file).is_some(), "{}", file.display());
+        }
+    }
+    // What is written anew has names in words, and a key has one name at a time.
+    let certificate = read(&old).expect("a document").read().expect("a certificate");
+    let anew = serde_json::to_value(json::certificate(&certificate)).expect("JSON");
+    assert_eq!(with_letters(&anew), old);
+    let twice = text.replacen('{', "{\"highest_harmonic\": 7,", 1);
+    std::fs::write(&file, twice).expect("a file");
+    let checked = run(&["check", file.to_str().expect("a path in text")]);
+    assert_eq!(checked.status.code(), Some(1));
+    if let Some(python) = python() {
+        assert_eq!(by_python(&python, &file), None);
+    }
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
 /// The cycle half a period later, with an inverse that belongs to it, and as far off the formula as
 /// that is.
 fn half_a_period_later(document: &mut Value) {
@@ -281,8 +335,8 @@ fn half_a_period_later(document: &mut Value) {
     for key in ["c", "s"] {
         document[key] = document[key].as_array().expect("a list").iter().map(turned).collect();
     }
-    document["A_block"][0] =
-        document["A_block"][0].as_array().expect("a row").iter().map(turned).collect();
+    document["inverse"][0] =
+        document["inverse"][0].as_array().expect("a row").iter().map(turned).collect();
     document["formula"]["phase_error"] = json!(["1", "10"]);
 }
 
@@ -387,7 +441,7 @@ fn what_certify_writes_of_a_cycle_check_proves() {
         |document| document["p"] = json!("1"),
         |document| document["c"][1] = json!("1"),
         |document| document["s"][1] = json!("1"),
-        |document| document["A_block"][1][0] = json!("0"),
+        |document| document["inverse"][1][0] = json!("0"),
         |document| document["formula"]["frequency_error"][1] = json!("1e-9"),
         |document| document["ode"] = json!("x''+f(x)=0"),
     ] {

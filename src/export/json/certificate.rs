@@ -1,5 +1,8 @@
 //! Kind `certificate`: numbers from which a motion, and the error of a formula, can be proved.
 //!
+//! The keys say what they hold in words; the letters of the theorem that some of them once had, `A`,
+//! `K`, `Abits` and `A_block`, are read as well.
+//!
 //! Every number is text, an integer or a fraction: a program with whole numbers of any length
 //! checks a certificate without a single rounded operation. A reader treats what it reads as
 //! hostile, and so does [`CertificateDocument::read`].
@@ -44,8 +47,8 @@ pub struct CertificateDocument {
     /// The force: the coefficients of a polynomial by rising power of x, or an expression in x.
     pub f: CertificateForce,
     /// x(0), a fraction, exact; x'(0) = 0.
-    #[serde(rename = "A")]
-    pub start: String,
+    #[serde(alias = "A")]
+    pub initial_displacement: String,
     /// Whether f is odd: then the motion has odd harmonics alone, and so has the block.
     pub odd: bool,
     /// `mu`, `c` and the numbers of the formula are integers times 2^-bits; at most 224.
@@ -55,14 +58,14 @@ pub struct CertificateDocument {
     /// The approximate cosine coefficients c_0, c_1, ... of the motion.
     pub c: Vec<String>,
     /// The last harmonic of the block; at most 400.
-    #[serde(rename = "K")]
-    pub highest: usize,
-    /// The entries of `A_block` are integers times 2^-Abits; at most 224.
-    #[serde(rename = "Abits")]
+    #[serde(alias = "K")]
+    pub highest_harmonic: usize,
+    /// The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+    #[serde(alias = "Abits")]
     pub inverse_bits: usize,
     /// The approximate inverse of the derivative on mu and the c_k of the block, row by row; the
-    /// first row is that of mu, the first column that of the condition x(0) = A.
-    #[serde(rename = "A_block")]
+    /// first row is that of mu, the first column that of the condition x(0) = initial_displacement.
+    #[serde(alias = "A_block")]
     pub inverse: Vec<Vec<String>>,
     /// The norm is sigma |mu| + sum |c_k|, sigma = 2^sigma_log2.
     pub sigma_log2: i32,
@@ -140,7 +143,7 @@ pub struct CertificateLetters {
 /// let solution = solve(&pendulum, &Options::default())?;
 /// let (certificate, _) = certify(&pendulum, &solution, &"A = 3/2".parse()?)?;
 /// let document = lindstedt::export::json::certificate(&certificate);
-/// assert_eq!((document.start.as_str(), document.nu.as_str()), ("3/2", "1"));
+/// assert_eq!((document.initial_displacement.as_str(), document.nu.as_str()), ("3/2", "1"));
 /// assert_eq!(document.read()?, certificate);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -149,12 +152,12 @@ pub fn certificate(certificate: &Certificate) -> CertificateDocument {
         schema: DocumentKind::Certificate.schema().to_owned(),
         ode: EQUATION.to_owned(),
         f: force(&certificate.force),
-        start: certificate.start.to_string(),
+        initial_displacement: certificate.start.to_string(),
         odd: certificate.odd,
         bits: certificate.bits,
         mu: certificate.mu.to_string(),
         c: texts(&certificate.coefficients),
-        highest: certificate.highest,
+        highest_harmonic: certificate.highest,
         inverse_bits: certificate.inverse_bits,
         inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
@@ -264,15 +267,20 @@ impl CertificateDocument {
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }
-        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
+        check_sizes(
+            &self.nu,
+            self.highest_harmonic,
+            &self.inverse,
+            [self.bits, self.inverse_bits],
+        )?;
         Ok(Certificate {
             force: self.f.read("f")?,
-            start: fraction(&self.start, "A")?,
+            start: fraction(&self.initial_displacement, "initial_displacement")?,
             odd: self.odd,
             bits: self.bits,
             mu: integer(&self.mu, "mu")?,
             coefficients: integers(&self.c, "c")?,
-            highest: self.highest,
+            highest: self.highest_harmonic,
             inverse_bits: self.inverse_bits,
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
@@ -294,17 +302,20 @@ pub(super) fn check_sizes(
     }
     let fits = highest <= HIGHEST_HARMONIC && inverse.len() <= HIGHEST_HARMONIC + 2;
     if !fits || inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
-        return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
+        return unexpected(
+            "highest_harmonic",
+            "at most 400, and `inverse` a square matrix of this size",
+        );
     }
     if bits.iter().any(|bits| *bits > MOST_BITS) {
-        return unexpected("bits", "at most 224, and so `Abits`");
+        return unexpected("bits", "at most 224, and so `inverse_bits`");
     }
     Ok(())
 }
 
 /// The entries of the inverse.
 pub(super) fn matrix(rows: &[Vec<String>]) -> Result<Vec<Vec<Integer>>, JsonError> {
-    rows.iter().map(|row| integers(row, "A_block")).collect()
+    rows.iter().map(|row| integers(row, "inverse")).collect()
 }
 
 impl CertificateFormula {

@@ -63,16 +63,16 @@ pub struct DampedCertificateDocument {
     /// cycle that of the first harmonic too.
     pub s: Vec<String>,
     /// The last harmonic of the block; at most 400, and the block has at most 401 unknowns.
-    #[serde(rename = "K")]
-    pub highest: usize,
-    /// The entries of `A_block` are integers times 2^-Abits; at most 224.
-    #[serde(rename = "Abits")]
+    #[serde(alias = "K")]
+    pub highest_harmonic: usize,
+    /// The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+    #[serde(alias = "Abits")]
     pub inverse_bits: usize,
     /// The approximate inverse of the derivative on the block, row by row. The columns are those of
     /// the equations: the sine of the first harmonic, then cosine and sine of each harmonic, the
     /// others; the rows those of the unknowns: p, then the same. With a drive both are cosine and
     /// sine of each harmonic.
-    #[serde(rename = "A_block")]
+    #[serde(alias = "A_block")]
     pub inverse: Vec<Vec<String>>,
     /// The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a drive, where
     /// there is no p.
@@ -93,9 +93,9 @@ pub struct DampedCertificateDocument {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CertificateDrive {
-    /// The driving frequency, a positive fraction, exact.
-    #[serde(rename = "Omega")]
-    pub frequency: String,
+    /// The driving frequency Omega, a positive fraction, exact.
+    #[serde(alias = "Omega")]
+    pub driving_frequency: String,
     /// How many periods of the drive the motion takes: x(t) = X(Omega t/n).
     #[serde(rename = "n")]
     pub periods: usize,
@@ -169,7 +169,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         g: force(&certificate.damping),
         h: force(&certificate.force),
         drive: certificate.drive.as_ref().map(|drive| CertificateDrive {
-            frequency: drive.frequency.to_string(),
+            driving_frequency: drive.frequency.to_string(),
             periods: drive.periods,
             harmonic: drive.harmonic,
         }),
@@ -178,7 +178,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         p: certificate.drive.is_none().then(|| certificate.reciprocal.to_string()),
         c: texts(&certificate.cosines),
         s: texts(&certificate.sines),
-        highest: certificate.highest,
+        highest_harmonic: certificate.highest,
         inverse_bits: certificate.inverse_bits,
         inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
@@ -237,7 +237,7 @@ impl CertificateFormulaOfCycle {
 impl CertificateDrive {
     fn read(&self) -> Result<Drive, JsonError> {
         Ok(Drive {
-            frequency: fraction(&self.frequency, "drive.Omega")?,
+            frequency: fraction(&self.driving_frequency, "drive.driving_frequency")?,
             periods: self.periods,
             harmonic: self.harmonic,
         })
@@ -259,7 +259,12 @@ impl DampedCertificateDocument {
                 "`x''+g(x)*x'+h(x)=0` with `p`, or `x''+g(x)*x'+h(x,c,s)=0` with `drive`",
             );
         }
-        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
+        check_sizes(
+            &self.nu,
+            self.highest_harmonic,
+            &self.inverse,
+            [self.bits, self.inverse_bits],
+        )?;
         Ok(DampedCertificate {
             damping: self.g.read("g")?,
             force: self.h.read("h")?,
@@ -269,7 +274,7 @@ impl DampedCertificateDocument {
             reciprocal: integer(self.p.as_deref().unwrap_or("0"), "p")?,
             cosines: integers(&self.c, "c")?,
             sines: integers(&self.s, "s")?,
-            highest: self.highest,
+            highest: self.highest_harmonic,
             inverse_bits: self.inverse_bits,
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,

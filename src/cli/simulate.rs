@@ -4,11 +4,11 @@ use std::path::Path;
 
 use clap::{Args, ValueEnum};
 use lindstedt::Interrupt;
+use lindstedt::export::json;
 use lindstedt::export::simulation::{
-    Report, SweepReport, csv, figure, latex, sweep_csv, sweep_text, text,
+    Report, SweepReport, csv, figure, html, latex, sweep_csv, sweep_html, sweep_text, text,
 };
 use lindstedt::export::text::fitted;
-use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
     BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline,
@@ -272,7 +272,7 @@ fn run_single(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcom
         Format::Json => json_text(&json::simulation(&report))?,
         Format::Text => fitted(&text(&report), width(arguments.common.output.as_deref())),
         Format::Latex => arguments.common.latex(latex(&report)),
-        Format::Html => page(draw, None, |page| html::lines(&text(&report), page)),
+        Format::Html => page(draw, None, |page| html(&report, page)),
         Format::Svg => drawn(draw)?,
         format => no_such(format)?,
     };
@@ -429,12 +429,7 @@ fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome
     };
     let made_whole = match arguments.common.format() {
         Format::Svg => Some(drawn(draw)?),
-        Format::Html => {
-            let mut lines = Vec::new();
-            write(&report, &mut lines)?;
-            let lines = String::from_utf8_lossy(&lines);
-            Some(page(draw, None, |page| html::lines(&lines, page)))
-        }
+        Format::Html => Some(page(draw, None, |page| sweep_html(&report, page))),
         _ => None,
     };
     let axes = arguments.sweep.clone();

@@ -289,6 +289,7 @@ impl Body<'_> {
             | Block::Table { .. }
             | Block::Fitted { .. }
             | Block::Phase { .. }
+            | Block::ClosedForms(_)
             | Block::ContactLaws { .. }
             | Block::ImpactMethods { .. }
             | Block::SiValue { .. }

@@ -52,7 +52,7 @@ pub(super) fn scientific(value: f64) -> String {
     scientific_text(&decimal(value))
 }
 
-fn scientific_text(text: &str) -> String {
+pub(super) fn scientific_text(text: &str) -> String {
     match text.split_once('e') {
         None => text.to_owned(),
         Some((mantissa, exponent)) => format!("{mantissa} \\cdot 10^{{{exponent}}}"),
@@ -263,6 +263,7 @@ fn unbroken(block: &Block) -> Setting {
             Setting::Equations(vec![impact::si_value(name, *formula, *value, unit)])
         }
         Block::Table { head, rows } => Setting::Table(table::table(head, rows)),
+        Block::ClosedForms(pieces) => Setting::Table(super::simulation::phases_as_table(pieces)),
         Block::Methods { rows, at, .. } => Setting::Table(comparison::methods(rows, at)),
         Block::Quantities { columns, rows, .. } => {
             Setting::Table(impact::quantities(columns, rows))

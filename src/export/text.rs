@@ -139,6 +139,7 @@ impl TextLayout {
                 impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness)
             }
             Block::Phase { phase, letters, release } => impact::phase(phase, *letters, release),
+            Block::ClosedForms(pieces) => super::simulation::phase_lines(pieces),
             Block::Quantities { columns, rows, deviations, shapes } => {
                 impact::quantities(columns, rows, deviations, shapes)
             }

@@ -54,7 +54,8 @@ use crate::derivation::DerivationLine;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
 use crate::impact::{
-    FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+    FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PathSegment, PhaseReading,
+    Rule,
 };
 use crate::solution::law::DisplayedLaw;
 use crate::solution::{Definition, Solution, Sum};
@@ -210,6 +211,8 @@ pub enum Block<'a> {
         /// The release, in words.
         release: String,
     },
+    /// The phases of a chain of closed forms.
+    ClosedForms(Vec<PathSegment>),
     /// The numbers of an impact compared with those of Runge-Kutta.
     Quantities {
         /// The columns.

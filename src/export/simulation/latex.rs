@@ -83,14 +83,37 @@ fn phase(piece: &PathSegment) -> String {
         significant(piece.start, 6),
         significant(piece.end, 6)
     );
+    match piece.closed_form() {
+        None => format!("{span}&\\text{{no closed form}}"),
+        // In one line the formulas of contacts would be wider than a page.
+        Some(form) => format!("{span}x &= {}", formula(form).join(" \\\\\n&&&\\quad")),
+    }
+}
+
+/// Phases as a table of two times and a formula each.
+pub(in crate::export) fn phases(pieces: &[PathSegment]) -> LatexTable {
+    let row = |piece: &PathSegment| {
+        let times = [piece.start, piece.end].map(|time| significant(time, 8));
+        let words = || chain::without_formula(piece.regime).to_owned();
+        let formula =
+            piece.closed_form().map_or_else(words, |form| format!("${}$", formula(form).concat()));
+        times.into_iter().chain([formula]).collect()
+    };
+    LatexTable {
+        places: "rrl".to_owned(),
+        head: ["from", "to", "$x(t)$"].map(str::to_owned).to_vec(),
+        rows: pieces.iter().map(row).collect(),
+        framed: false,
+    }
+}
+
+/// A closed form in the parts that each fit a line of a page.
+fn formula(form: ClosedForm) -> Vec<String> {
     let signed = |value: f64| match value < 0.0 {
         true => format!(" - {}", scientific(-value)),
         false => format!(" + {}", scientific(value)),
     };
-    let Some(form) = piece.closed_form() else {
-        return format!("{span}&\\text{{no closed form}}");
-    };
-    let formula = match form {
+    match form {
         ClosedForm::Swing { sign, modulus, rate, speed, phase, parameter } => {
             let minus = if sign < 0.0 { "-" } else { "" };
             let decay = match rate == 0.0 {
@@ -101,12 +124,12 @@ fn phase(piece: &PathSegment) -> String {
                 one if one == "1" => String::new(),
                 speed => format!("{speed} "),
             };
-            format!(
+            vec![format!(
                 "{minus}2 \\arcsin\\left({}{decay} \\operatorname{{sn}}\\left({speed}t{},\\, {}\\right)\\right)",
                 scientific(modulus),
                 signed(phase),
                 scientific(parameter)
-            )
+            )]
         }
         ClosedForm::Contact { barrier, duration, sines } => {
             let wave = std::f64::consts::PI / duration;
@@ -114,15 +137,10 @@ fn phase(piece: &PathSegment) -> String {
                 format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave))
             };
             let [first, second, third] = sines;
-            // In one line the formulas would be wider than a page.
-            format!(
-                "{}{} \\\\\n&&&\\quad{}{}",
-                scientific(barrier),
-                term((1, first)),
-                term((2, second)),
-                term((3, third))
-            )
+            vec![
+                format!("{}{}", scientific(barrier), term((1, first))),
+                format!("{}{}", term((2, second)), term((3, third))),
+            ]
         }
-    };
-    format!("{span}x &= {formula}")
+    }
 }

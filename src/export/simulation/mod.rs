@@ -7,18 +7,25 @@
 
 mod chain;
 mod columns;
+mod content;
 mod csv;
 pub mod figure;
 #[cfg(feature = "plot")]
 mod heat_map;
 mod latex;
+#[cfg(feature = "html")]
+mod page;
 mod text;
 
+pub(in crate::export) use chain::phase_lines;
 #[cfg(feature = "json")]
 pub(in crate::export) use chain::phases;
 pub use columns::{Column, columns};
 pub use csv::{simulation as csv, sweep as sweep_csv};
+pub(in crate::export) use latex::phases as phases_as_table;
 pub use latex::simulation as latex;
+#[cfg(feature = "html")]
+pub use page::{simulation as html, sweep as sweep_html};
 pub use text::{simulation as text, sweep as sweep_text};
 
 use crate::decimal::{decimal, significant};

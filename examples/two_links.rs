@@ -31,10 +31,10 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
     let links = System::parse(&EQUATIONS, &[])?;
     let start = [1.5, -0.5, 0.0, 0.0];
     let upright = Event::record(parse_expression("a")?);
-    let path = links.solve(0.0, &start, END, &[upright], &SystemOptions::default())?;
+    let path = links.solve([0.0, END], &start, &[upright], &SystemOptions::default())?;
     let by_runge_kutta =
         SystemOptions { integrator: Integrator::RungeKutta, ..SystemOptions::default() };
-    let check = links.solve(0.0, &start, END, &[], &by_runge_kutta)?;
+    let check = links.solve([0.0, END], &start, &[], &by_runge_kutta)?;
 
     let mut out = String::from("Two links, released at rest\n\n     t          a          b\n");
     let (mut drift, mut difference) = (0.0_f64, 0.0_f64);

@@ -78,16 +78,16 @@ fn systems_and_courses() {
         for (a, b) in pairs() {
             let options = limited(1e-9, 2000);
             for (from, start, to) in [(a, [1.0, b], 3.0), (0.0, [a, b], b)] {
-                if let Ok(path) = system.solve(from, &start, to, &events, &options) {
+                if let Ok(path) = system.solve([from, to], &start, &events, &options) {
                     let _ = HOSTILE.map(|t| path.states_at(t));
                 }
             }
-            let _ = system.solve(0.0, &[1.0, 0.0], b, &[], &limited(a, 2000));
+            let _ = system.solve([0.0, b], &[1.0, 0.0], &[], &limited(a, 2000));
         }
         for start in [&[][..], &[1.0], &[1.0, 2.0, 3.0]] {
-            assert!(system.solve(0.0, start, 1.0, &[], &limited(1e-9, 2000)).is_err());
+            assert!(system.solve([0.0, 1.0], start, &[], &limited(1e-9, 2000)).is_err());
         }
-        let _ = system.solve(0.0, &[1.0, 0.0], 1.0, &[], &limited(1e-9, 0));
+        let _ = system.solve([0.0, 1.0], &[1.0, 0.0], &[], &limited(1e-9, 0));
     }
     let _ = System::new(&[], "t".into(), &[], &numbers);
     let _ = System::new(&names, "t".into(), &right[..1], &numbers);

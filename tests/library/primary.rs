@@ -213,7 +213,7 @@ fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f
         ..SystemOptions::default()
     };
     let passages = [Event::record(read("x - c"))];
-    system.solve(0.0, &start, until, &passages, &options).expect("a path")
+    system.solve([0.0, until], &start, &passages, &options).expect("a path")
 }
 
 /// The accelerations solved by hand, the contact as |d|^(3/2) behind its step, followed by

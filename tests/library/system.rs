@@ -26,7 +26,7 @@ fn system(states: &[&str], right: &[&str], numbers: &[(&str, f64)]) -> Result<Sy
 }
 
 fn follow(system: &System, start: &[f64], end: f64, events: &[Event]) -> Path {
-    system.solve(0.0, start, end, events, &SystemOptions::default()).expect("a path")
+    system.solve([0.0, end], start, events, &SystemOptions::default()).expect("a path")
 }
 
 fn runge_kutta() -> SystemOptions {
@@ -36,7 +36,7 @@ fn runge_kutta() -> SystemOptions {
 /// By Taylor series and by Runge-Kutta.
 fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path; 2] {
     [SystemOptions::default(), runge_kutta()]
-        .map(|options| system.solve(0.0, start, end, events, &options).expect("a path"))
+        .map(|options| system.solve([0.0, end], start, events, &options).expect("a path"))
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn fast_events_and_corners_are_all_met() {
     let bilinear = system(&["x", "v"], &["v", "-x - 3*x*H(x)"], &[]).unwrap();
     for options in [SystemOptions::default(), runge_kutta()] {
         let path = bilinear
-            .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
+            .solve([1e6, 1e6 + 1.5 * PI * 20.0], &[-1.0, 0.0], &[], &options)
             .expect("a path");
         let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
@@ -358,9 +358,8 @@ fn an_event_may_count_in_one_direction() {
     let onset = system(&["x"], &["t - e"], &[("e", 1e-17)]).unwrap();
     let path = onset
         .solve(
-            0.0,
+            [0.0, 1.0],
             &[0.0],
-            1.0,
             &[Event::stop(expression("x")).falling()],
             &SystemOptions::default(),
         )
@@ -384,18 +383,18 @@ fn what_cannot_be_followed_is_said() {
     let unsigned = system(&["x"], &["1 + H(log(x))"], &[]).unwrap();
     let root = system(&["x"], &["sqrt(x)"], &[]).unwrap();
     for options in [SystemOptions::default(), runge_kutta()] {
-        let refused = unsigned.solve(0.0, &[-1.0], 1.0, &[], &options);
+        let refused = unsigned.solve([0.0, 1.0], &[-1.0], &[], &options);
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Start("x".into()));
-        let refused = root.solve(0.0, &[-1.0], 1.0, &[], &options);
+        let refused = root.solve([0.0, 1.0], &[-1.0], &[], &options);
         assert_eq!(refused.expect_err("no root"), SystemError::Start("x".into()));
-        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("y"))], &options);
+        let refused = root.solve([0.0, 1.0], &[1.0], &[Event::record(expression("y"))], &options);
         let unknown = SystemError::Expression(RecurrenceError::Unknown("y".into()));
         assert_eq!(refused.expect_err("an unknown name"), unknown);
         let refused =
-            root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("log(x - 9)"))], &options);
+            root.solve([0.0, 1.0], &[1.0], &[Event::record(expression("log(x - 9)"))], &options);
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Event(0));
         // Without a way to go the start is all there is.
-        let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
+        let path = root.solve([2.0, 2.0], &[1.0], &[], &options).expect("a start");
         assert_eq!(
             (path.end(), path.reason(), path.states_at(2.0)),
             (2.0, PathEnd::Reached, Some(vec![1.0]))
@@ -403,7 +402,7 @@ fn what_cannot_be_followed_is_said() {
         assert!(path.states_at(2.1).is_none() && path.states_at(1.9).is_none());
     }
     assert!(matches!(
-        root.solve(0.0, &[f64::NAN], 1.0, &[], &SystemOptions::default()),
+        root.solve([0.0, 1.0], &[f64::NAN], &[], &SystemOptions::default()),
         Err(SystemError::Bounds)
     ));
     // x' = x^2 ends in a pole at t = 1.
@@ -413,7 +412,7 @@ fn what_cannot_be_followed_is_said() {
         assert!((path.end() - 1.0).abs() < 1e-6, "{}", path.end());
     }
     let short = SystemOptions { step_limit: 3, ..SystemOptions::default() };
-    let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
+    let path = pole.solve([0.0, 900.0], &[1e-3], &[], &short).expect("a part");
     assert_eq!((path.reason(), path.step_count()), (PathEnd::StepLimit, 3));
 }
 
@@ -453,7 +452,7 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     for start in [1.1e300, -1e308] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let options = SystemOptions { integrator, ..SystemOptions::default() };
-            let refused = growing.solve(0.0, &[start, 0.0], 1.0, &[], &options).unwrap_err();
+            let refused = growing.solve([0.0, 1.0], &[start, 0.0], &[], &options).unwrap_err();
             assert_eq!(refused, SystemError::Large("x".into(), start));
         }
     }
@@ -498,7 +497,7 @@ fn a_loose_tolerance_is_followed_to_the_end() {
         let system = system(&["x", "v"], right, &[]).unwrap();
         for tolerance in [0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
             let options = SystemOptions { tolerance, ..SystemOptions::default() };
-            let path = system.solve(0.0, &start, 20.0, &[], &options).expect("a path");
+            let path = system.solve([0.0, 20.0], &start, &[], &options).expect("a path");
             assert_eq!(
                 (path.end(), path.reason()),
                 (20.0, PathEnd::Reached),
@@ -529,10 +528,10 @@ fn motions_side_by_side_are_what_each_is_alone() {
     let same = |motions: &[(&Solver, Vec<f64>)], what: &str| {
         let starts: Vec<(&Solver, &[f64])> =
             motions.iter().map(|(solver, start)| (*solver, start.as_slice())).collect();
-        let together = solve_together(&starts, 0.0, 20.0);
+        let together = solve_together(&starts, [0.0, 20.0]);
         assert_eq!(together.len(), motions.len(), "{what}");
         for ((solver, start), together) in motions.iter().zip(together) {
-            match (solver.solve(0.0, start, 20.0), together) {
+            match (solver.solve([0.0, 20.0], start), together) {
                 (Err(alone), Err(together)) => assert_eq!(alone, together, "{what}"),
                 (Ok(alone), Ok(together)) => {
                     assert_eq!(alone.reason(), together.reason(), "{what}");
@@ -580,5 +579,5 @@ fn motions_side_by_side_are_what_each_is_alone() {
     motions.insert(7, (&root, vec![-1.0, 0.0]));
     motions.insert(9, (&corners, vec![f64::NAN, 0.0]));
     same(&motions, "corners");
-    assert!(solve_together(&[], 0.0, 1.0).is_empty());
+    assert!(solve_together(&[], [0.0, 1.0]).is_empty());
 }

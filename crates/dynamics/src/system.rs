@@ -18,7 +18,7 @@
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = System::parse(&[("x", "v"), ("v", "-sin(x)")], &[])?;
 //! let vertical = Event::stop(parse_expression("x")?);
-//! let path = pendulum.solve(0.0, &[1.5, 0.0], 10.0, &[vertical], &SystemOptions::default())?;
+//! let path = pendulum.solve([0.0, 10.0], &[1.5, 0.0], &[vertical], &SystemOptions::default())?;
 //! let quarter_period = std::f64::consts::FRAC_PI_2 / 0.860_608_346_679_613;
 //! assert!((path.end() - quarter_period).abs() < 1e-13);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -59,7 +59,7 @@ use taylor::{Expansions, TaylorRun};
 ///     ("p", "(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/(2 - cos(a - b)^2)"),
 ///     ("q", "(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/(2 - cos(a - b)^2)"),
 /// ], &[])?;
-/// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &SystemOptions::default())?;
+/// let path = links.solve([0.0, 20.0], &[1.5, -0.5, 0.0, 0.0], &[], &SystemOptions::default())?;
 /// let [a, b, p, q] = path.states_at(20.0).expect("a state")[..] else { unreachable!() };
 /// let energy = p * p + q * q / 2.0 + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos();
 /// assert!((energy + 2.0 * 1.5_f64.cos() + 0.5_f64.cos()).abs() < 1e-12);
@@ -187,7 +187,7 @@ impl Event {
     ///
     /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
     /// let upwards = Event::stop(parse_expression("x")?).rising();
-    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &SystemOptions::default())?;
+    /// let path = wave.solve([0.0, 10.0], &[1.0, 0.0], &[upwards], &SystemOptions::default())?;
     /// assert!((path.end() - 1.5 * std::f64::consts::PI).abs() < 1e-13); // cos t falls through zero at pi/2
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -350,7 +350,7 @@ impl Path {
     /// use lindstedt::system::{SystemOptions, System};
     ///
     /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
-    /// let path = wave.solve(0.0, &[0.0, 1.0], 10.0, &[], &SystemOptions::default())?;
+    /// let path = wave.solve([0.0, 10.0], &[0.0, 1.0], &[], &SystemOptions::default())?;
     /// let zeros = path.zeros(0, 1.0).expect("a path of series");
     /// assert_eq!(zeros.len(), 3);
     /// assert!((zeros[2] - 3.0 * std::f64::consts::PI).abs() < 1e-13);
@@ -399,7 +399,7 @@ impl Path {
 /// let stiffness = |k: f64| [("k".into(), k)].into();
 /// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &SystemOptions::default());
 /// let slower = solver.with_numbers(&stiffness(0.25)).expect("equations of the same form");
-/// let path = slower.solve(0.0, &[1.0, 0.0], 2.0)?;
+/// let path = slower.solve([0.0, 2.0], &[1.0, 0.0])?;
 /// assert!((path.states_at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
 /// # Ok::<(), lindstedt::system::SystemError>(())
 /// ```
@@ -449,16 +449,16 @@ impl Solver {
     ///
     /// # Errors
     /// As for [`System::solve`].
-    pub fn solve(&self, start: f64, values: &[f64], end: f64) -> Result<Path, SystemError> {
-        self.system.check(start, values, end, &self.options)?;
+    pub fn solve(&self, times: [f64; 2], values: &[f64]) -> Result<Path, SystemError> {
+        self.system.check(times, values, &self.options)?;
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansions {
             Some(expansions) => {
-                let (times, expansions) = ([start, end], expansions.clone()?);
+                let expansions = expansions.clone()?;
                 let run = TaylorRun::new(system, times, values, events, options, expansions);
                 taylor::follow(run?)
             }
-            None => runge_kutta::follow(system, [start, end], values, events, options),
+            None => runge_kutta::follow(system, times, values, events, options),
         }
     }
 }
@@ -468,20 +468,19 @@ impl Solver {
 /// time; each result is bit for bit the same as alone.
 pub fn solve_together(
     motions: &[(&Solver, &[f64])],
-    start: f64,
-    end: f64,
+    times: [f64; 2],
 ) -> Vec<Result<Path, SystemError>> {
     let mut runs: Vec<TaylorRun> = Vec::new();
     let mut alone = Vec::new();
     for (solver, values) in motions {
         let Solver { system, events, options, expansions, .. } = *solver;
         let run = match expansions {
-            Some(Ok(own)) if system.check(start, values, end, options).is_ok() => {
-                TaylorRun::new(system, [start, end], values, events, options, own.clone()).ok()
+            Some(Ok(own)) if system.check(times, values, options).is_ok() => {
+                TaylorRun::new(system, times, values, events, options, own.clone()).ok()
             }
             _ => None,
         };
-        alone.push(run.is_none().then(|| solver.solve(start, values, end)));
+        alone.push(run.is_none().then(|| solver.solve(times, values)));
         runs.extend(run);
     }
     let mut together = taylor::follow_together(runs).into_iter();
@@ -541,9 +540,10 @@ impl System {
         Self { critical, ..self }
     }
 
-    /// Integrates from `start` to `end`, or to the first event that stops. By Taylor series a step
-    /// of order p costs p^2 operations for each product or function of the right sides; by
-    /// Runge-Kutta, which needs three to five times as many steps, it costs 22 evaluations of them.
+    /// Integrates from the first of the `times` to the second, or to the first event that stops.
+    /// The `values` are those of the states at the first. By Taylor series a step of order p costs
+    /// p^2 operations for each product or function of the right sides; by Runge-Kutta, which needs
+    /// three to five times as many steps, it costs 22 evaluations of them.
     ///
     /// # Errors
     /// [`SystemError`] if the run cannot begin. A run that ends early is no error: see
@@ -557,7 +557,7 @@ impl System {
     /// let system = System::parse(&[("x", "x*(1 - y)"), ("y", "y*(x - 1)")], &[])?;
     /// let [taylor, runge_kutta] = [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
     ///     let options = SystemOptions { integrator, ..SystemOptions::default() };
-    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.states_at(10.0))
+    ///     system.solve([0.0, 10.0], &[2.0, 1.0], &[], &options).map(|path| path.states_at(10.0))
     /// });
     /// let difference = taylor?.expect("a state")[0] - runge_kutta?.expect("a state")[0];
     /// assert!(difference.abs() < 1e-9);
@@ -565,22 +565,19 @@ impl System {
     /// ```
     pub fn solve(
         &self,
-        start: f64,
+        times: [f64; 2],
         values: &[f64],
-        end: f64,
         events: &[Event],
         options: &SystemOptions,
     ) -> Result<Path, SystemError> {
-        self.check(start, values, end, options)?;
+        self.check(times, values, options)?;
         match options.integrator {
             Integrator::Taylor => {
                 let expansions = Expansions::new(self, events, options.tolerance)?;
-                let times = [start, end];
                 taylor::follow(TaylorRun::new(self, times, values, events, options, expansions)?)
             }
-            Integrator::RungeKutta => {
-                runge_kutta::follow(self, [start, end], values, events, options)
             }
+            Integrator::RungeKutta => runge_kutta::follow(self, times, values, events, options),
         }
     }
 
@@ -602,9 +599,8 @@ impl System {
     /// Checks that the system can be integrated from these values between these times.
     fn check(
         &self,
-        start: f64,
+        [start, end]: [f64; 2],
         values: &[f64],
-        end: f64,
         options: &SystemOptions,
     ) -> Result<(), SystemError> {
         let size = self.state.len();

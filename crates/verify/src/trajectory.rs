@@ -328,7 +328,7 @@ impl TrajectoryRequest {
     /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         let ready = self.ready(integrator)?;
-        let first = ready.solver.solve(0.0, &ready.start(&self), self.duration)?;
+        let first = ready.solver.solve([0.0, self.duration], &ready.start(&self))?;
         self.finish(&ready, first, integrator)
     }
 
@@ -350,7 +350,7 @@ impl TrajectoryRequest {
         let all: Vec<_> = courses.iter().map(made_ready).collect();
         let motions = all.iter().flatten().map(|(ready, start)| (&ready.solver, start.as_slice()));
         let duration = courses.first().map_or(0.0, |course| course.duration);
-        let paths = solve_together(&motions.collect::<Vec<_>>(), 0.0, duration);
+        let paths = solve_together(&motions.collect::<Vec<_>>(), [0.0, duration]);
         let mut paths = paths.into_iter();
         let mut first = |course: &Self, ready: &Ready| match paths.next() {
             Some(path) => course.clone().finish(ready, path?, Integrator::Taylor),

@@ -81,7 +81,7 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
             [Side::Right, Side::Left].map(|side| model.barrier(side).expect("a barrier"));
         let barriers = [right, left].map(|barrier| stop(format!("x - ({barrier:?})")));
         let flight = equations(model, None);
-        let path = flight.solve(t, &[x, v], duration, &barriers, &options).expect("a flight");
+        let path = flight.solve([t, duration], &[x, v], &barriers, &options).expect("a flight");
         let (reason, to) = (path.reason(), path.end());
         v = path.states_at(to).expect("an end")[1];
         pieces.push(Piece { from: t, to, path, contact: None });
@@ -102,7 +102,7 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         ];
         let (speed, sign) = (v.abs(), side.sign());
         let contact = equations(model, Some(side));
-        let path = contact.solve(0.0, &[0.0, speed, t], 1e9, &ends, &options).expect("a contact");
+        let path = contact.solve([0.0, 1e9], &[0.0, speed, t], &ends, &options).expect("a contact");
         let end = path.states_at(path.end()).expect("an end");
         let (from, to, reason) = (t, end[2], path.reason());
         let deepest = path.occurrences().iter().find(|met| met.event == 2);

@@ -28,7 +28,7 @@ impl EquationsOfMotion {
     /// let rates = pendulum.equations()?.rates()?;
     /// let numbers = [("g".into(), 9.81), ("L".into(), 0.5), ("m".into(), 2.0)].into();
     /// let system = System::new(&rates.states, "t".into(), &rates.right, &numbers)?;
-    /// let path = system.solve(0.0, &[0.1, 0.0], 1.0, &[], &SystemOptions::default())?;
+    /// let path = system.solve([0.0, 1.0], &[0.1, 0.0], &[], &SystemOptions::default())?;
     /// assert!(path.states_at(1.0).is_some_and(|state| (state[0] + 0.0282).abs() < 1e-3));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -335,7 +335,7 @@ mod tests {
 
     fn path(equations: &[(&str, &str)], numbers: &[(&str, f64)], start: &[f64], end: f64) -> Path {
         let system = System::parse(equations, numbers).expect("a system");
-        let path = system.solve(0.0, start, end, &[], &SystemOptions::default()).expect("a path");
+        let path = system.solve([0.0, end], start, &[], &SystemOptions::default()).expect("a path");
         assert_eq!(path.reason(), PathEnd::Reached);
         path
     }
@@ -393,7 +393,7 @@ mod tests {
             let options = [Integrator::Taylor, Integrator::RungeKutta]
                 .map(|integrator| SystemOptions { integrator, ..SystemOptions::default() });
             let [by_series, by_evaluation] = options.map(|options| {
-                let path = system.solve(0.0, &start, 20.0, &[], &options).expect(equation);
+                let path = system.solve([0.0, 20.0], &start, &[], &options).expect(equation);
                 assert_eq!(path.reason(), PathEnd::Reached, "{equation}");
                 path.states_at(20.0).expect("a state")
             });
@@ -411,9 +411,9 @@ mod tests {
             .map(|k| solver.with_numbers(&[("k".into(), f64::from(k))].into()).expect("the same"))
             .collect();
         let motions: Vec<_> = solvers.iter().map(|solver| (solver, &[-1.0, 1.0][..])).collect();
-        let together = solve_together(&motions, 0.0, 5.0);
+        let together = solve_together(&motions, [0.0, 5.0]);
         for ((solver, start), together) in motions.iter().zip(together) {
-            let alone = solver.solve(0.0, start, 5.0).expect("a path");
+            let alone = solver.solve([0.0, 5.0], start).expect("a path");
             assert_eq!(alone.states_at(5.0), together.expect("a path").states_at(5.0));
         }
     }

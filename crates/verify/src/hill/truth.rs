@@ -426,7 +426,7 @@ impl SampledCoefficients {
         let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
-            let path = system.solve(0.0, &start, period, &[], &SystemOptions::default()).ok()?;
+            let path = system.solve([0.0, period], &start, &[], &SystemOptions::default()).ok()?;
             path.states_at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);

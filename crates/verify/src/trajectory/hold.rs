@@ -130,7 +130,7 @@ impl TrajectoryRequest {
                     from,
                     path: match first.take() {
                         Some(first) => first,
-                        None => solver.solve(from, &state, self.duration)?,
+                        None => solver.solve([from, self.duration], &state)?,
                     },
                 },
                 false => match self.stretch(equations, &regimes, from, &mut state, options)? {
@@ -223,7 +223,7 @@ impl TrajectoryRequest {
             return Ok(None);
         };
         let system = system.with_critical_times(equations.critical);
-        let path = system.solve(from, &start, self.duration, &events, options);
+        let path = system.solve([from, self.duration], &start, &events, options);
         Ok(path.ok().map(|path| TrajectorySegment {
             recorded,
             layout: sliding.held.then_some(layout),

@@ -291,9 +291,8 @@ impl<'a> PrimaryRun<'a> {
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
         let path = followed.system.solve(
-            self.t,
+            [self.t, self.settings.duration],
             &start,
-            self.settings.duration,
             events,
             &self.options(),
         )?;
@@ -375,7 +374,8 @@ impl<'a> PrimaryRun<'a> {
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
-        let path = followed.system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
+        let path =
+            followed.system.solve([0.0, LONGEST_CONTACT], &start, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
         let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.states_at(met.time)).collect();
@@ -456,9 +456,8 @@ impl<'a> PrimaryRun<'a> {
         }
         let start = self.with_accounts(&[y, speed], &followed);
         let path = followed.system.solve(
-            self.t,
+            [self.t, self.settings.duration],
             &start,
-            self.settings.duration,
             &events,
             &self.options(),
         )?;

@@ -292,7 +292,8 @@ fn unbroken(block: &Block) -> Setting {
 
 impl LatexPage {
     fn add(&mut self, block: &Block) {
-        match (setting(block), block) {
+        // Rows are broken where all of them are known, because they are aligned.
+        match (unbroken(block), block) {
             (Setting::Table(table), _) => {
                 self.flush();
                 self.text.push_str(&table.written());
@@ -356,7 +357,7 @@ impl LatexPage {
         rows.append(&mut self.laws);
         rows.append(&mut self.rows);
         if !rows.is_empty() {
-            let rows = rows.join(" \\\\\n");
+            let rows = rows::aligned(&rows).join(" \\\\\n");
             self.text.push_str(&format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}\n"));
         }
     }

@@ -225,7 +225,7 @@ pub(super) fn rows(solution: &Solution) -> Vec<String> {
     for step in &solution.steps {
         lines.extend(order_as_latex(step, solution));
     }
-    lines.iter().flat_map(|line| latex::rows::rows(line)).collect()
+    latex::rows::aligned(&lines)
 }
 
 fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {

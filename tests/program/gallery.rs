@@ -633,7 +633,7 @@ fn latex_documents() -> Vec<(String, String)> {
 
 #[test]
 fn latex_is_balanced_and_uses_known_commands_only() {
-    const COMMANDS: [&str; 67] = [
+    const COMMANDS: [&str; 69] = [
         "int",
         "Rightarrow",
         "hbar",
@@ -685,10 +685,12 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "bigl",
         "bigr",
         "footnotesize",
+        "scriptsize",
         "setlength",
         "tabcolsep",
         "noindent",
         "raggedright",
+        "raggedleft",
         "tabularnewline",
         "linewidth",
         "dots",
@@ -734,7 +736,8 @@ fn latex_compiles_where_latex_is() {
     let folder = std::env::temp_dir().join(format!("lindstedt-latex-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let bodies: Vec<String> = latex_documents().into_iter().map(|(_, document)| document).collect();
-    let head = "\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n";
+    let packages = lindstedt::export::latex::packages(&bodies.join("\n"));
+    let head = format!("\\documentclass{{article}}\n{packages}\n\\begin{{document}}\n");
     std::fs::write(
         folder.join("all.tex"),
         format!("{head}{}\n\\end{{document}}\n", bodies.join("\n")),

@@ -39,7 +39,7 @@ pub(super) fn fitted(
         false => line,
     };
     format!(
-        "&\\text{{elastic force }} {force} \\text{{, {rule} over the depth }} {}",
+        "&\\text{{elastic force }} {force} \\text{{,}} \\qquad \\text{{{rule} over the depth }} {}",
         scientific(fitted.depth)
     )
 }

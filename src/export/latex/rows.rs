@@ -6,35 +6,101 @@
 /// The width of a line of an article, in characters of a formula.
 const WIDTH: f64 = 57.0;
 
+/// The widest left side that leaves room for the right sides of other rows.
+const WIDEST_LEFT: f64 = 22.0;
+
 /// The rows of a formula, `left &= right`, a single one if it fits a line.
 pub(in crate::export) fn rows(formula: &str) -> Vec<String> {
-    /// The widest left side that leaves room for the right sides of other rows.
-    const WIDEST_LEFT: f64 = 22.0;
+    let formula = with_left_at_most(WIDEST_LEFT, formula);
+    rows_beside(width_of_left(&formula), &formula)
+}
+
+/// The rows of the formulas of one `align*`: the widest left side leaves less room for the right
+/// sides of all others.
+pub(in crate::export) fn aligned(formulas: &[String]) -> Vec<String> {
+    /// The widest left side beside right sides that are long.
+    const WIDEST_BESIDE_LONG: f64 = 12.0;
+    let with_lefts = |most: f64| -> (Vec<String>, f64) {
+        let formulas: Vec<String> =
+            formulas.iter().map(|formula| with_left_at_most(most, formula)).collect();
+        let widest = formulas.iter().map(|formula| width_of_left(formula)).fold(0.0, f64::max);
+        (formulas, widest)
+    };
+    let (mut formulas, mut widest) = with_lefts(WIDEST_LEFT);
+    let right = |formula: &String| width(formula) - width_of_left(formula);
+    if formulas.iter().any(|formula| widest + right(formula) > WIDTH) {
+        (formulas, widest) = with_lefts(WIDEST_BESIDE_LONG);
+    }
+    formulas.iter().flat_map(|formula| rows_beside(widest, formula)).collect()
+}
+
+/// The formula, with a left side that is wider than this moved into the row.
+fn with_left_at_most(most: f64, formula: &str) -> String {
     match formula.split_once(" &= ") {
-        Some((left, right)) if width(left) > WIDEST_LEFT => rows(&format!("&{left} = {right}")),
-        _ if width(formula) <= WIDTH => vec![formula.to_owned()],
-        _ => broken(formula),
+        Some((left, right)) if width(left) > most => format!("&{left} = {right}"),
+        _ => formula.to_owned(),
     }
 }
 
-fn broken(formula: &str) -> Vec<String> {
+/// The width of what stands before the sign at which rows are aligned.
+fn width_of_left(formula: &str) -> f64 {
+    formula.split_once('&').map_or(0.0, |(left, _)| width(left))
+}
+
+/// The rows of a formula beside left sides of this width.
+fn rows_beside(left: f64, formula: &str) -> Vec<String> {
+    let room = WIDTH - left;
+    match formula.strip_prefix("&\\text{").and_then(|rest| rest.strip_suffix('}')) {
+        Some(words) if !words.replace("\\^{}", "").contains(['{', '}', '$']) => {
+            lines_of_words(room, words)
+        }
+        _ if width(formula) - width_of_left(formula) <= room => vec![formula.to_owned()],
+        _ => broken(room, formula),
+    }
+}
+
+/// Words in rows of this width.
+fn lines_of_words(room: f64, words: &str) -> Vec<String> {
+    /// The width of a letter in words, beside one of a formula.
+    const LETTER: f64 = 0.75;
+    let mut lines: Vec<String> = Vec::new();
+    let mut length = f64::INFINITY;
+    for word in words.split(' ') {
+        let more = LETTER * (word.chars().count() + 1) as f64;
+        match lines.last_mut() {
+            Some(line) if length + more <= room => {
+                line.push(' ');
+                line.push_str(word);
+                length += more;
+            }
+            _ => {
+                lines.push(word.to_owned());
+                length = more;
+            }
+        }
+    }
+    lines.iter().map(|line| format!("&\\text{{{line}}}")).collect()
+}
+
+fn broken(room: f64, formula: &str) -> Vec<String> {
     let begins = ["&=", "&\\quad"].map(|mark| formula.find(mark).map(|place| place + mark.len()));
     let begin = begins.into_iter().flatten().next().unwrap_or(0);
     let outside = breaks(formula, begin, 0);
-    let longest = pieces(formula, &outside).into_iter().map(width).fold(0.0, f64::max);
+    let right = |piece: &str| width(piece) - width_of_left(piece);
+    let longest = pieces(formula, &outside).into_iter().map(right).fold(0.0, f64::max);
     // Brackets in formulas with words are short.
-    match longest <= WIDTH || formula.contains("\\text{") {
-        true => joined(&pieces(formula, &outside)),
+    match longest <= room || formula.contains("\\text{") {
+        true => joined(room, &pieces(formula, &outside)),
         false => {
             let open = in_open_brackets(formula);
             let inside = breaks(&open, begin, 1);
-            joined(&pieces(&open, &inside))
+            joined(room, &pieces(&open, &inside))
         }
     }
 }
 
-/// The pieces joined to rows that fit a line.
-fn joined(pieces: &[&str]) -> Vec<String> {
+/// The pieces joined to rows whose right sides have this width.
+fn joined(room: f64, pieces: &[&str]) -> Vec<String> {
     /// The indentation of a continuation row.
     const QUAD: f64 = 3.0;
     let mut rows: Vec<String> = Vec::new();
@@ -42,13 +108,13 @@ fn joined(pieces: &[&str]) -> Vec<String> {
     for piece in pieces {
         let more = width(piece);
         match rows.last_mut() {
-            Some(row) if length + more <= WIDTH => {
+            Some(row) if length + more <= room => {
                 row.push_str(piece);
                 length += more;
             }
             None => {
                 rows.push((*piece).to_owned());
-                length = more;
+                length = more - width_of_left(piece);
             }
             Some(_) => {
                 rows.push(format!("&\\quad {}", piece.trim_start()));
@@ -66,6 +132,9 @@ fn pieces<'a>(formula: &'a str, places: &[usize]) -> Vec<&'a str> {
     begins.zip(ends).map(|(begin, end)| &formula[begin..end]).collect()
 }
 
+/// The signs before which a row may break: of a term, of a consequence, and before another equation.
+const SIGNS: [&str; 4] = [" + ", " - ", " \\quad\\Rightarrow", " \\qquad "];
+
 /// The places of the signs between terms, behind `begin`, in brackets to this depth and in no
 /// braces.
 fn breaks(formula: &str, begin: usize, deepest: usize) -> Vec<usize> {
@@ -82,7 +151,7 @@ fn breaks(formula: &str, begin: usize, deepest: usize) -> Vec<usize> {
                 && brackets <= deepest
                 && place > begin
                 && has_term
-                && (formula[place..].starts_with(" + ") || formula[place..].starts_with(" - ")) =>
+                && SIGNS.iter().any(|sign| formula[place..].starts_with(sign)) =>
             {
                 places.push(place)
             }
@@ -93,8 +162,63 @@ fn breaks(formula: &str, begin: usize, deepest: usize) -> Vec<usize> {
     places
 }
 
+/// The width of the longest part of a formula that a line of words does not break.
+pub(super) fn longest_term(formula: &str) -> f64 {
+    let open = in_open_brackets(formula);
+    let places = breaks(&open, 0, 1);
+    pieces(&open, &places).into_iter().map(width).fold(0.0, f64::max)
+}
+
+/// The formula with `(a)/b` for each outermost fraction that is wider than this.
+pub(super) fn with_solidus(formula: &str, widest: f64) -> String {
+    const FRACTION: &str = "\\frac{";
+    let (mut text, mut rest, mut braces) = (String::with_capacity(formula.len()), formula, 0_usize);
+    while let Some(letter) = rest.chars().next() {
+        let fraction = rest.strip_prefix(FRACTION).filter(|_| braces == 0);
+        let parts = fraction.and_then(|inside| {
+            let (numerator, after) = split_at_brace(inside)?;
+            let (denominator, after) = split_at_brace(after.strip_prefix('{')?)?;
+            Some((numerator, denominator, after))
+        });
+        match parts {
+            Some((numerator, denominator, after))
+                if width(&rest[..rest.len() - after.len()]) > widest =>
+            {
+                let is_number = denominator.chars().all(|letter| letter.is_ascii_digit());
+                let [open, close] = if is_number { ["", ""] } else { ["\\left(", "\\right)"] };
+                text.push_str(&format!("\\bigl({numerator}\\bigr)/{open}{denominator}{close}"));
+                rest = after;
+            }
+            _ => {
+                match letter {
+                    '{' => braces += 1,
+                    '}' => braces = braces.saturating_sub(1),
+                    _ => {}
+                }
+                text.push(letter);
+                rest = &rest[letter.len_utf8()..];
+            }
+        }
+    }
+    text
+}
+
+/// The content of braces that are open, and what follows them.
+fn split_at_brace(text: &str) -> Option<(&str, &str)> {
+    let mut depth = 0_usize;
+    for (place, letter) in text.char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' if depth == 0 => return Some((&text[..place], &text[place + 1..])),
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    None
+}
+
 /// The formula with outermost brackets inside which it may break: `\bigl(` for `\left(`.
-fn in_open_brackets(formula: &str) -> String {
+pub(super) fn in_open_brackets(formula: &str) -> String {
     let mut open = String::with_capacity(formula.len());
     let (mut depth, mut rest) = (0_usize, formula);
     while let Some(letter) = rest.chars().next() {
@@ -117,14 +241,25 @@ fn in_open_brackets(formula: &str) -> String {
     open
 }
 
+/// What braces hold.
+enum Braces {
+    /// Anything but a part of a fraction.
+    Plain,
+    /// The numerator of a fraction.
+    Numerator,
+    /// The denominator of a fraction whose numerator has this width.
+    Denominator(f64),
+}
+
 /// The approximate width of a formula in characters: a fraction as wide as its wider part, an
 /// exponent or an index at two thirds.
 pub(super) fn width(formula: &str) -> f64 {
+    /// The gaps on both sides of a fraction.
+    const GAPS: f64 = 0.4;
     let mut letters = formula.chars().peekable();
     let mut widths: Vec<f64> = vec![0.0];
-    // For each open brace: the factor of its content, and whether it is the numerator of a fraction.
-    let mut braces: Vec<(f64, Option<f64>)> = Vec::new();
-    let mut numerator: Option<f64> = None;
+    // For each open brace: the factor of its content, and its part in a fraction.
+    let mut braces: Vec<(f64, Braces)> = Vec::new();
     let (mut factor, mut is_fraction) = (1.0, false);
     while let Some(letter) = letters.next() {
         let add = match letter {
@@ -152,32 +287,29 @@ pub(super) fn width(formula: &str) -> f64 {
                 0.0
             }
             '{' => {
-                braces.push((factor, is_fraction.then_some(0.0)));
+                braces.push((factor, if is_fraction { Braces::Numerator } else { Braces::Plain }));
                 widths.push(0.0);
-                if is_fraction {
-                    numerator = Some(0.0);
-                }
                 (factor, is_fraction) = (1.0, false);
                 0.0
             }
             '}' => {
                 let inner = widths.pop().unwrap_or(0.0);
-                let (scale, fraction) = braces.pop().unwrap_or((1.0, None));
-                match (fraction, letters.peek()) {
-                    // The denominator follows.
-                    (Some(_), Some('{')) => {
+                let (scale, part) = braces.pop().unwrap_or((1.0, Braces::Plain));
+                match (part, letters.peek()) {
+                    (Braces::Numerator, Some('{')) => {
                         letters.next();
-                        braces.push((scale, None));
+                        braces.push((scale, Braces::Denominator(inner)));
                         widths.push(0.0);
-                        numerator = Some(inner);
                         0.0
                     }
-                    _ => scale * inner.max(numerator.take().unwrap_or(0.0)),
+                    (Braces::Denominator(numerator), _) => scale * (inner.max(numerator) + GAPS),
+                    _ => scale * inner,
                 }
             }
             '&' | ' ' => 0.0,
             '+' | '-' | '=' | '<' | '>' => 2.0,
             '(' | ')' | ',' | '.' => 0.8,
+            'A'..='Z' => 1.25,
             _ => 1.0,
         };
         if !matches!(letter, '^' | '_' | '{' | '\\') {
@@ -219,6 +351,21 @@ mod tests {
     }
 
     #[test]
+    fn a_wide_left_side_leaves_less_room_to_all_rows() {
+        let sum = ["\\frac{17 A^{5}}{61440}"; 9].join(" + ");
+        let formulas = ["\\ddot{x} + x + y &= 0".to_owned(), format!("x &= {sum}")];
+        let room = |rows: &[String]| rows.iter().map(|row| width(row)).fold(0.0, f64::max);
+        let together = aligned(&formulas);
+        assert!(room(&together[1..]) <= WIDTH - width("\\ddot{x} + x + y") + 3.0, "{together:?}");
+        // A very wide one becomes a part of its row.
+        let wide = format!("{} &= 0", ["\\ddot{x} x"; 6].join(" + "));
+        assert!(aligned(&[wide, formulas[1].clone()])[0].starts_with("&\\ddot"));
+        let words = ["long words of a derivation"; 5].join(" ");
+        let lines = aligned(&[format!("&\\text{{{words}}}")]);
+        assert!(lines.len() > 1 && lines.iter().all(|line| line.starts_with("&\\text{")));
+    }
+
+    #[test]
     fn a_long_bracket_breaks_inside_and_is_set_open() {
         let sum = ["\\frac{17 A^{5}}{61440}"; 12].join(" + ");
         let broken = rows(&format!("x &= \\left({sum}\\right) \\cos \\theta"));
@@ -226,6 +373,11 @@ mod tests {
         assert!(
             broken[0].contains("\\bigl(")
                 && broken.last().is_some_and(|row| row.contains("\\bigr)"))
+        );
+        let fraction = "x + \\frac{a + \\sqrt{b}}{3 c} - \\frac{1}{2}";
+        assert_eq!(
+            with_solidus(fraction, 5.0),
+            "x + \\bigl(a + \\sqrt{b}\\bigr)/\\left(3 c\\right) - \\frac{1}{2}"
         );
         let long = "\\frac{a_{1} a_{2} a_{3} a_{4} a_{5} a_{6}}{2}";
         assert!((width(long) - width(&long.replace('2', "9"))).abs() < 1e-9);

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 
 use super::{Report, chain};
 use crate::decimal::significant;
-use crate::export::latex::{LatexTable, scientific};
+use crate::export::latex::{LatexTable, scientific, words};
 use crate::impact::{ClosedForm, ContactRecord, PathSegment};
 
-/// Largest number of lines of a block of formulas, which must fit a page because a block does not
+/// Largest number of phases of a block of formulas, which must fit a page because a block does not
 /// break.
-const LINES: usize = 24;
+const PHASES: usize = 12;
 
 /// The contacts and the phases of a chain.
 ///
@@ -32,17 +32,15 @@ pub fn simulation(report: &Report) -> String {
         text.push('\n');
     }
     text.push_str("% In each line t counts from the beginning of the phase; the second argument of sn is m = k^2.\n");
-    for pieces in chain::phases(motion).chunks(LINES) {
+    for pieces in chain::phases(motion).chunks(PHASES) {
         let lines: Vec<String> = pieces.iter().map(phase).collect();
         let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
     }
     let _ = match motion.rest().time {
         Ok(time) => writeln!(text, "\\[ t_{{\\text{{rest}}}} = {} \\]", scientific(time)),
-        Err(reason) => writeln!(
-            text,
-            "\\[ \\text{{no rest time: {reason}}} \\]",
-            reason = reason.to_string().replace('%', "\\%")
-        ),
+        Err(reason) => {
+            writeln!(text, "\\noindent no rest time: {}", words(&reason.to_string()))
+        }
     };
     text
 }
@@ -77,17 +75,15 @@ fn impacts(report: &Report) -> String {
     table.written()
 }
 
+/// The rows of a phase: its time, and its formula below.
 fn phase(piece: &PathSegment) -> String {
-    let span = format!(
-        "&{} \\le t_0 + t \\le {}: & ",
-        significant(piece.start, 6),
-        significant(piece.end, 6)
-    );
-    match piece.closed_form() {
-        None => format!("{span}&\\text{{no closed form}}"),
+    let [start, end] = [piece.start, piece.end].map(|time| significant(time, 6));
+    let formula = match piece.closed_form() {
+        None => "\\text{no closed form}".to_owned(),
         // In one line the formulas of contacts would be wider than a page.
-        Some(form) => format!("{span}x &= {}", formula(form).join(" \\\\\n&&&\\quad")),
-    }
+        Some(form) => format!("x = {}", formula(form).join(" \\\\\n&\\qquad\\quad")),
+    };
+    format!("&{start} \\le t_0 + t \\le {end}: \\\\\n&\\quad {formula}")
 }
 
 /// Phases as a table of two times and a formula each.

@@ -576,7 +576,6 @@ impl System {
                 let expansions = Expansions::new(self, events, options.tolerance)?;
                 taylor::follow(TaylorRun::new(self, times, values, events, options, expansions)?)
             }
-            }
             Integrator::RungeKutta => runge_kutta::follow(self, times, values, events, options),
         }
     }

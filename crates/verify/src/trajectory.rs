@@ -39,7 +39,7 @@ pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
 use hold::{Layout, StateEquations};
-use root::roots_across_corners;
+pub(crate) use root::roots_across_corners;
 use section::OnSection;
 
 /// An initial value problem: equations, initial state and duration.

@@ -19,6 +19,8 @@ use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh, fresh_stem};
+use crate::system::{Path, PathEnd, Solver, System, SystemOptions};
+use crate::trajectory::roots_across_corners;
 
 /// A driven equation of which one parameter varies.
 #[derive(Clone, Debug)]
@@ -39,6 +41,9 @@ pub struct Driven {
     slopes: [CompiledFunction; 3],
     /// f(x, x', t; p), as it was given.
     in_time: CompiledFunction,
+    /// The motion, and the motion with its variations, as Taylor series; `None` if there is a jump
+    /// or no series.
+    series: [Option<Solver>; 2],
     /// omega(p) and its derivative.
     base: [CompiledFunction; 2],
     /// Whether the force is even in the velocity.
@@ -277,6 +282,7 @@ impl Driven {
         let stem = fresh_stem("side", &names);
         let side = |index: usize| Symbol::new(&format!("{stem}{index}"));
         let (force, lines) = with_sides(oscillator, parameter, side)?;
+        let lines_are_empty = lines.is_empty();
         let base = Expr::divide(&frequency, &Expr::from(i64::try_from(periods).unwrap_or(1)))?;
         let moment = Expr::divide(&Expr::from(phase), &base)?;
         let force = in_phase(&force, time, &moment)?;
@@ -304,6 +310,10 @@ impl Driven {
                     })
                 })
                 .collect::<Result<_, _>>()?,
+            series: match lines_are_empty {
+                true => [false, true].map(|varied| solver(oscillator, parameter, varied)),
+                false => [None, None],
+            },
             in_time: CompiledFunction::new(
                 &oscillator.force,
                 &[position, velocity, time, parameter],
@@ -412,10 +422,71 @@ impl Driven {
         (0..self.jumps.len()).map(|index| side(self.height(index, [at[0], at[1]], at[3]))).collect()
     }
 
+    /// Follows the motion from a position and a velocity at phase zero by its Taylor series; `None`
+    /// if it has none all the way.
+    pub fn by_series(&self, start: [f64; 2], parameter: f64, duration: f64) -> Option<Path> {
+        self.path(&self.series[0], &start, parameter, duration)
+    }
+
+    /// Follows the motion with its variations, whose states are position, velocity and the two
+    /// columns of M(t).
+    pub fn varied_by_series(&self, start: [f64; 2], parameter: f64, duration: f64) -> Option<Path> {
+        let [x, v] = start;
+        self.path(&self.series[1], &[x, v, 1.0, 0.0, 0.0, 1.0], parameter, duration)
+    }
+
+    fn path(
+        &self,
+        solver: &Option<Solver>,
+        start: &[f64],
+        parameter: f64,
+        duration: f64,
+    ) -> Option<Path> {
+        let solver = solver.as_ref()?.with_numbers(&[(self.parameter, parameter)].into())?;
+        let path = solver.solve([0.0, duration], start).ok()?;
+        (path.reason() == PathEnd::Reached).then_some(path)
+    }
+
     /// f as it was given, in time.
     pub fn force_in_time(&self, at: &[f64; 4]) -> f64 {
         self.in_time.call(at)
     }
+}
+
+/// Prepares the Taylor series of a motion, or of the motion with its variations.
+fn solver(oscillator: &Oscillator, parameter: Symbol, varied: bool) -> Option<Solver> {
+    /// Relative error of a step, below any that a judge asks for.
+    const TOLERANCE: f64 = 1e-13;
+    const STEPS: usize = 4_000;
+    /// A value of the parameter with which nothing cancels; every motion has its own.
+    const ANY: f64 = 0.618_034;
+    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
+    let mut states = vec![position, velocity];
+    let mut right = vec![Expr::from(velocity), -&oscillator.force];
+    let mut taken: Vec<Symbol> = oscillator.names().into_iter().collect();
+    taken.extend([velocity, parameter]);
+    let slopes = [position, velocity].map(|by| oscillator.force.differentiate(by));
+    let [by_position, by_velocity] = slopes;
+    let (by_position, by_velocity) = (by_position.ok()?, by_velocity.ok()?);
+    for _ in 0..if varied { 2 } else { 0 } {
+        let place = fresh("a", &taken);
+        taken.push(place);
+        let rate = fresh("b", &taken);
+        taken.push(rate);
+        states.extend([place, rate]);
+        let change = &by_position * &Expr::from(place) + &by_velocity * &Expr::from(rate);
+        right.extend([Expr::from(rate), -change]);
+    }
+    let numbers = [(parameter, ANY)].into();
+    let right: Vec<Expr> = right
+        .iter()
+        .map(|rate| roots_across_corners(rate, &numbers))
+        .collect::<Result<_, _>>()
+        .ok()?;
+    let system = System::new(&states, Symbol::new("t"), &right, &numbers).ok()?;
+    let options =
+        SystemOptions { tolerance: TOLERANCE, step_limit: STEPS, ..SystemOptions::default() };
+    Some(system.solver(&[], &options))
 }
 
 /// Calls a function with the arguments of the force and the sides of a number of jumps behind them.

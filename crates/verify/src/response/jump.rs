@@ -12,12 +12,14 @@
 //! Non-Smooth Mechanical Systems*, Springer 2004, chapter 7; M. di Bernardo, C. J. Budd, A. R.
 //! Champneys and P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter 2). In:
 //! a start. Out: the motion leg by leg, each between the jumps or sticking on one, the ends of the
-//! legs located as events, and M(t). Without jumps the motion is a single leg.
+//! legs located as events, and M(t). Without jumps the motion is followed in one piece by its Taylor
+//! series, where it has one.
 
 use super::driven::Driven;
 use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, Trajectory, integrate_first_order,
 };
+use crate::system::Path;
 
 /// Position, velocity and the two columns of M at a time.
 type VariationalState = [f64; 6];
@@ -25,13 +27,22 @@ type VariationalState = [f64; 6];
 /// A motion with its variations.
 #[derive(Clone, Debug)]
 pub struct VariationalMotion {
-    legs: Vec<Trajectory<Point<VariationalState>>>,
+    course: Course,
     /// Duration of all sticking phases, in the unit of time.
     stuck: f64,
     /// Whether it has ended where it turns back.
     turned: bool,
     /// Position, velocity and the two columns of M where it ends.
     pub end: [f64; 6],
+}
+
+/// The states of a motion between its start and its end.
+#[derive(Clone, Debug)]
+enum Course {
+    /// One after the other between the jumps.
+    Legs(Vec<Trajectory<Point<VariationalState>>>),
+    /// In one piece, by Taylor series, where there are no jumps.
+    Series(Path),
 }
 
 /// The condition at which the integration stops.
@@ -56,20 +67,29 @@ impl VariationalMotion {
     pub fn positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = self.span();
         let time = |index: usize| from + index as f64 / count as f64 * (to - from);
-        let mut leg = 0;
-        let at = |index: usize| {
-            while leg + 1 < self.legs.len() && time(index) >= self.legs[leg].end().t {
-                leg += 1;
+        match &self.course {
+            Course::Legs(legs) => {
+                let mut leg = 0;
+                let at = |index: usize| {
+                    while leg + 1 < legs.len() && time(index) >= legs[leg].end().t {
+                        leg += 1;
+                    }
+                    legs.get(leg)?.state_at(time(index))
+                };
+                (0..count).filter_map(at).map(|point| point.y[0]).collect()
             }
-            self.legs.get(leg)?.state_at(time(index))
-        };
-        (0..count).filter_map(at).map(|point| point.y[0]).collect()
+            Course::Series(path) => positions_on(path, count),
+        }
     }
 
     fn span(&self) -> (f64, f64) {
-        let from = self.legs.first().map_or(0.0, |leg| leg.start().t);
-        let to = self.legs.last().map_or(0.0, |leg| leg.end().t);
-        (from, to)
+        match &self.course {
+            Course::Legs(legs) => {
+                let from = legs.first().map_or(0.0, |leg| leg.start().t);
+                (from, legs.last().map_or(0.0, |leg| leg.end().t))
+            }
+            Course::Series(path) => (0.0, path.end()),
+        }
     }
 
     /// Duration, in the unit of time.
@@ -100,8 +120,27 @@ impl VariationalMotion {
 
     /// Evaluations of the force.
     pub fn evaluations(&self) -> usize {
-        self.legs.iter().map(Trajectory::evaluations).sum()
+        match &self.course {
+            Course::Legs(legs) => legs.iter().map(Trajectory::evaluations).sum(),
+            Course::Series(path) => evaluations_of(path),
+        }
     }
+}
+
+/// Positions at equal steps of a path from time zero, its end left out.
+pub(super) fn positions_on(path: &Path, count: usize) -> Vec<f64> {
+    let times: Vec<f64> =
+        (0..count).map(|index| index as f64 / count as f64 * path.end()).collect();
+    let mut columns = [Vec::with_capacity(count)];
+    path.sample(&times, &mut Vec::with_capacity(count), &mut columns);
+    let [positions] = columns;
+    positions
+}
+
+/// The work of a path by series in evaluations of the force: about its order for each step.
+pub(super) fn evaluations_of(path: &Path) -> usize {
+    const ORDER: usize = 16;
+    ORDER * path.step_count()
 }
 
 /// The motion from a start at phase zero; `None` if it cannot be followed.
@@ -114,6 +153,17 @@ pub fn follow(
 ) -> Option<VariationalMotion> {
     /// Largest number of legs of a period, beyond which the motion is given up.
     const MOST: usize = 400;
+    if let StopCondition::Time(time) = until
+        && let Some(path) = driven.varied_by_series(start, parameter, time)
+    {
+        let end = path.states_at(path.end())?.try_into().ok()?;
+        return Some(VariationalMotion {
+            course: Course::Series(path),
+            stuck: 0.0,
+            turned: false,
+            end,
+        });
+    }
     let mut run = NonsmoothRun::new(driven, start, parameter);
     let mut legs = Vec::new();
     let mut stuck = 0.0;
@@ -134,7 +184,8 @@ pub fn follow(
             _ => false,
         };
         if turned || run.t >= until.time() {
-            return Some(VariationalMotion { legs, stuck, turned, end: run.y });
+            let course = Course::Legs(legs);
+            return Some(VariationalMotion { course, stuck, turned, end: run.y });
         }
     }
     None

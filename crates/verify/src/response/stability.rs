@@ -7,17 +7,19 @@
 //! In: a start near a motion of period T. Out: the motion itself, found by shooting (Newton's
 //! method for the start that comes back after a period), its first harmonic and its peaks, and its
 //! multipliers; it is stable if both lie inside the unit circle (A. H. Nayfeh and B. Balachandran,
-//! *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by
-//! Runge-Kutta on the equation as it was given; only the start is taken from the balance.
+//! *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated on the
+//! equation as it was given, by Taylor series, or by Runge-Kutta where it has none; only the start is
+//! taken from the balance.
 
 use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
 
 use super::driven::Driven;
-use super::jump::{StopCondition, VariationalMotion, follow};
+use super::jump::{StopCondition, VariationalMotion, evaluations_of, follow, positions_on};
 use crate::interrupt::Interrupt;
 use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
+use crate::system::Path;
 
 /// Number of samples of a period for its harmonics and peaks.
 pub(super) const SAMPLES: usize = 256;
@@ -240,6 +242,7 @@ pub struct Settled {
 
 /// A period of a simulation, in one piece or in legs between the jumps of the force.
 enum Period {
+    Series(Path),
     One(Trajectory<Point<[f64; 2]>>),
     Legs(VariationalMotion),
 }
@@ -248,6 +251,7 @@ impl Period {
     /// Position and velocity at the end; `None` if it was not reached.
     fn end(&self) -> Option<[f64; 2]> {
         match self {
+            Self::Series(path) => path.states_at(path.end())?.try_into().ok(),
             Self::One(path) => path.is_complete().then(|| path.end().y),
             Self::Legs(course) => Some([course.end[0], course.end[1]]),
         }
@@ -255,6 +259,7 @@ impl Period {
 
     fn positions(&self, count: usize) -> Vec<f64> {
         match self {
+            Self::Series(path) => positions_on(path, count),
             Self::One(path) => {
                 path.samples(count + 1).take(count).map(|point| point.y[0]).collect()
             }
@@ -264,6 +269,7 @@ impl Period {
 
     fn evaluations(&self) -> usize {
         match self {
+            Self::Series(path) => evaluations_of(path),
             Self::One(path) => path.evaluations(),
             Self::Legs(course) => course.evaluations(),
         }
@@ -299,18 +305,14 @@ pub fn settle(
     for _ in 0..most {
         let begin = states.last().copied()?;
         let size = begin[0].abs().max(begin[1].abs() / omega);
-        let path = match driven.jumps() > 0 {
-            true => Period::Legs(follow(
-                driven,
-                begin,
-                parameter,
-                StopCondition::Time(period),
-                &settings(size),
-            )?),
-            false => {
-                let begin = Point { t: 0.0, y: begin };
-                Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
-            }
+        let path = if driven.jumps() > 0 {
+            let until = StopCondition::Time(period);
+            Period::Legs(follow(driven, begin, parameter, until, &settings(size))?)
+        } else if let Some(path) = driven.by_series(begin, parameter, period) {
+            Period::Series(path)
+        } else {
+            let begin = Point { t: 0.0, y: begin };
+            Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
         };
         let end = path.end()?;
         if !budget.spend(path.evaluations()) || size > BOUND {

@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 
 /// The expression with its roots extended across corners, so that they have a value on both sides.
 /// An argument of a corner must not jump, so that no steps are introduced inside of one.
-pub(super) fn roots_across_corners(
+pub(crate) fn roots_across_corners(
     expression: &Expr,
     values: &BTreeMap<Symbol, f64>,
 ) -> Result<Expr, ExprError> {

@@ -142,17 +142,21 @@ pub struct SystemOptions {
     pub tolerance: f64,
     /// Largest number of steps of a run; rejected steps of Runge-Kutta count.
     pub step_limit: usize,
+    /// The time before which the states need not be kept; a run then takes no more memory for being
+    /// longer before it. Only Taylor series make use of it.
+    pub keep_from: f64,
     /// The request to stop the run.
     pub interrupt: Interrupt,
 }
 
 impl Default for SystemOptions {
-    /// Taylor series to rounding accuracy, 100 000 steps.
+    /// Taylor series to rounding accuracy, 100 000 steps, all of which are kept.
     fn default() -> Self {
         Self {
             integrator: Integrator::default(),
             tolerance: 1e-16,
             step_limit: 100_000,
+            keep_from: f64::NEG_INFINITY,
             interrupt: Interrupt::default(),
         }
     }
@@ -368,7 +372,7 @@ impl Path {
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
             PathRepresentation::Taylor { steps, start } => {
-                let before = times.partition_point(|time| *time - start < 0.0);
+                let before = times.partition_point(|time| *time - start < steps.first_start());
                 let own = &times[before..];
                 let own = &own[..own.partition_point(|time| *time <= self.end)];
                 kept.extend_from_slice(own);

@@ -63,6 +63,8 @@ pub struct TrajectoryRequest {
     pub section: Option<PoincareSection>,
     /// Start of the recording: the motion before it has not settled.
     pub after: f64,
+    /// The time before which no states are asked for, so that they need not be kept.
+    pub keep_from: f64,
     /// Relative error of a step.
     pub tolerance: f64,
     /// Steps after which it ends.
@@ -225,6 +227,7 @@ impl TrajectoryRequest {
             duration: 50.0,
             section: None,
             after: 0.0,
+            keep_from: f64::NEG_INFINITY,
             tolerance: SystemOptions::default().tolerance,
             step_limit: SystemOptions::default().step_limit,
             interrupt: Interrupt::default(),
@@ -400,6 +403,7 @@ impl TrajectoryRequest {
             integrator,
             tolerance: self.tolerance,
             step_limit: self.step_limit,
+            keep_from: self.keep_from,
             interrupt: self.interrupt,
         }
     }

@@ -14,6 +14,8 @@ use super::polynomial::{roots, sign_at_start, value, values};
 pub(super) struct TaylorSteps {
     states: usize,
     order: usize,
+    /// The number of steps that are no longer kept.
+    forgotten: usize,
     steps: Vec<TaylorStep>,
     /// The coefficients of `s^0, s^1, ...`, step by step and state by state.
     coefficients: Vec<f64>,
@@ -33,18 +35,39 @@ struct TaylorStep {
 impl TaylorSteps {
     /// An empty list of steps for this many states, to this order.
     pub(super) fn new(states: usize, order: usize) -> Self {
-        Self { states, order, steps: vec![], coefficients: vec![] }
+        Self { states, order, forgotten: 0, steps: vec![], coefficients: vec![] }
     }
 
     /// A single step of length zero in these states.
     pub(super) fn at_rest(values: Vec<f64>) -> Self {
         let step = TaylorStep { start: 0.0, length: 0.0, first: 0 };
-        Self { states: values.len(), order: 0, steps: vec![step], coefficients: values }
+        let states = values.len();
+        Self { steps: vec![step], coefficients: values, ..Self::new(states, 0) }
     }
 
-    /// The number of steps.
+    /// The number of steps, including those that are no longer kept.
     pub(super) fn count(&self) -> usize {
-        self.steps.len()
+        self.forgotten + self.steps.len()
+    }
+
+    /// Keeps only the last two steps, one of which may still be taken back, when many have ended
+    /// before this time since the start of the path.
+    pub(super) fn forget_before(&mut self, time: f64) {
+        const MANY: usize = 64;
+        let [.., before, last] = self.steps.as_slice() else { return };
+        if self.steps.len() < MANY || before.start > time || last.start > time {
+            return;
+        }
+        let (first, unneeded) = (before.first, self.steps.len() - 2);
+        self.forgotten += unneeded;
+        self.steps.drain(..unneeded);
+        self.coefficients.drain(..first);
+        self.steps.iter_mut().for_each(|step| step.first -= first);
+    }
+
+    /// The start of the first step that is kept; infinity before the first.
+    pub(super) fn first_start(&self) -> f64 {
+        self.steps.first().map_or(f64::INFINITY, |step| step.start)
     }
 
     /// The start of the last step.
@@ -99,7 +122,7 @@ impl TaylorSteps {
     pub(super) fn zeros(&self, [from, end]: [f64; 2], state: usize) -> Vec<f64> {
         let first = self.step_at(from).unwrap_or(0);
         let (mut zeros, mut before) = (Vec::new(), 0.0);
-        let steps = if state < self.states { first..self.count() } else { 0..0 };
+        let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
         for step in steps {
             let (start, series) = (self.steps[step].start, self.series(step, state));
             let end = self.steps.get(step + 1).map_or(end, |next| next.start);
@@ -125,7 +148,7 @@ impl TaylorSteps {
     pub(super) fn sample(&self, mut times: &[f64], columns: &mut [Vec<f64>]) {
         let mut places = Vec::new();
         let mut step = 0;
-        while let (Some(first), true) = (times.first(), step < self.count()) {
+        while let (Some(first), true) = (times.first(), step < self.steps.len()) {
             let next = |step: usize| self.steps.get(step + 1).map(|step| step.start);
             while next(step).is_some_and(|start| start <= *first) {
                 step += 1;
@@ -171,5 +194,31 @@ impl TaylorSteps {
         let next = self.steps.get(step + 1).map_or(self.coefficients.len(), |next| next.first);
         let has_time = next - self.steps[step].first > self.states * (self.order + 1);
         has_time.then(|| self.series(step, self.states))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::system::{System, SystemOptions};
+
+    #[test]
+    fn a_path_that_forgets_its_beginning_is_the_same_from_then_on() {
+        let wave = System::parse(&[("x", "v"), ("v", "-x*(1 + x^2)")], &[]).expect("a system");
+        let whole = SystemOptions::default();
+        let late = SystemOptions { keep_from: 900.0, ..whole };
+        let [whole, late] =
+            [whole, late].map(|options| wave.solve([0.0, 1000.0], &[1.0, 0.0], &[], &options));
+        let (whole, late) = (whole.expect("a path"), late.expect("a path"));
+        assert_eq!(whole.step_count(), late.step_count());
+        assert_eq!(late.states_at(10.0), None);
+        assert_eq!(whole.zeros(0, 900.0), late.zeros(0, 900.0));
+        let times: Vec<f64> = (0..=1000).map(f64::from).collect();
+        let [one, other] = [&whole, &late].map(|path| {
+            let (mut kept, mut columns) = (vec![], vec![vec![]; 2]);
+            path.sample(&times, &mut kept, &mut columns);
+            kept.into_iter().zip(columns.swap_remove(0)).collect::<Vec<_>>()
+        });
+        assert!(one.len() == 1001 && (101..200).contains(&other.len()), "{}", other.len());
+        assert_eq!(one[1001 - other.len()..], other);
     }
 }

@@ -450,6 +450,7 @@ impl<'a> TaylorRun<'a> {
         }));
         let series = (0..self.system.state.len()).map(|state| self.expansion.state(state));
         self.steps.push([time, length], series, self.expansion.time());
+        self.steps.forget_before(self.options.keep_from - start);
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);
         }

@@ -6,7 +6,7 @@
 //! were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation
 //! diagram.
 
-use super::{Crossing, TrajectoryError, TrajectoryRequest};
+use super::{Crossing, PoincareSection, TrajectoryError, TrajectoryRequest};
 use crate::parallel::{par_map, threads};
 use crate::symbol::Symbol;
 use crate::system::{Integrator, LANES, PathEnd};
@@ -57,8 +57,13 @@ pub fn sweep(
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
     let at = |values: &[f64]| {
-        // The energies of a sweep are not used.
-        let mut course = TrajectoryRequest { energy: None, ..course.clone() };
+        // The energies of a sweep are not used, and nothing before the time `after` but by a section
+        // on which a motion may turn back, which looks at all of its turns.
+        let keep_from = match course.section {
+            Some(PoincareSection::Rising(_)) => f64::NEG_INFINITY,
+            Some(PoincareSection::Every(_)) | None => course.after,
+        };
+        let mut course = TrajectoryRequest { energy: None, keep_from, ..course.clone() };
         for (name, value) in names.iter().zip(values) {
             match course.rates.states.iter().position(|state| state == name) {
                 Some(place) => course.start[place] = *value,

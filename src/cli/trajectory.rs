@@ -117,8 +117,8 @@ fn by_both(course: &TrajectoryRequest) -> Result<[Trajectory; 2], Failure> {
                 None => "",
             };
             Err(Failure::Refused(format!(
-                "no second integrator: the power series end at t = {}, where the rates have none in time, as where a contact in d^(3/2) \
-                 is touched, and Runge-Kutta goes on alone\n  help: leave out --integrator: the motion is followed by Runge-Kutta{judged}",
+                "no second integrator: the power series end at t = {}, where the rates have none, as at rest exactly at the touch of a \
+                 contact in d^(3/2), and Runge-Kutta goes on alone\n  help: leave out --integrator: the motion is followed by Runge-Kutta{judged}",
                 decimal(end)
             )))
         }
@@ -130,6 +130,10 @@ fn refused(error: TrajectoryError) -> Failure {
         TrajectoryError::Missing(names) => {
             Some(format!("{}, or [values] in the file", values_of(names)))
         }
+        TrajectoryError::Unknown(_) => Some(
+            "its start is given by --from x=1, say, and the values of parameters by --at"
+                .to_owned(),
+        ),
         _ => None,
     };
     Failure::refused(&error, help)

@@ -132,6 +132,7 @@ pub(super) fn roots(system: &System, events: &[&Expr]) -> Vec<Root> {
         if !moves {
             continue;
         }
+        let argument = inside_corner(&argument, &system.numbers).unwrap_or(argument);
         let guard = Guard::new(&argument, &system.numbers);
         if let Some(known) = found.iter_mut().find(|root| guard.ratio_to(&root.guard).is_some()) {
             known.degree = known.degree.lcm(&exponent[1]);
@@ -145,6 +146,23 @@ pub(super) fn roots(system: &System, events: &[&Expr]) -> Vec<Root> {
         found.push(Root { argument, guard, degree: exponent[1], rate, variable });
     }
     found
+}
+
+/// Returns u for a number times `abs(u)`, `max(u, 0)` or `min(u, 0)`; `None` for any other
+/// expression.
+fn inside_corner(expression: &Expr, numbers: &BTreeMap<Symbol, f64>) -> Option<Expr> {
+    let is_number = |factor: &&Expr| factor.symbols().iter().all(|name| numbers.contains_key(name));
+    let (_, factors) = expression.factors();
+    let mut others = factors.iter().filter(|factor| !is_number(factor));
+    let (Some(only), None) = (others.next(), others.next()) else { return None };
+    match only.node() {
+        Node::Function(Function::Absolute, arguments) => arguments.first().cloned(),
+        Node::Function(Function::Maximum | Function::Minimum, arguments) => {
+            arguments.iter().find(|argument| argument.is_zero())?;
+            arguments.iter().find(|argument| !argument.is_zero()).cloned()
+        }
+        _ => None,
+    }
 }
 
 /// Whether an expression has neither corners nor roots.
@@ -387,6 +405,10 @@ mod tests {
             ("-x^3 - 40*((x - d)^2)^(n/2)*H(x - d)*(1 + v/3) - v/20", [-1.0, 0.0]),
             ("-x - 7*((x - d)^2)^(3/4)*H(x - d) + 5*((-x - d)^2)^(5/8)*H(-x - d)", [0.1, 0.5]),
             ("-((2*x)^2)^(3/4)*sgn(x) + cos(3*t)/7", [0.7, 0.1]),
+            (
+                "-x - 3*abs(x - d)^(4/3)*sgn(x - d) - 2*max(-x, 0)^(6/5) - abs(v)^(7/5)/9",
+                [1.0, 0.0],
+            ),
             ("-x - 3*max(0, x - d) - ((x - d)^2)^(5/4)*H(2*x - 2*d)", [0.0, 1.0]),
         ] {
             let system = System::parse(&[("x", "v"), ("v", equation)], &numbers).expect(equation);

@@ -13,6 +13,10 @@ use super::waves::Wave;
 /// rounding errors in the estimates of the sizes.
 const BOUND: f64 = (1_u128 << 126) as f64;
 
+/// Bound of the numbers that fit one word, whose product is a single instruction; with the same
+/// room.
+const WORD: f64 = (1_u64 << 62) as f64;
+
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
 #[derive(Clone, Debug)]
 pub struct ShortSeries {
@@ -65,7 +69,7 @@ impl ShortSeries {
         numerators: Vec<i128>,
     ) -> Option<Self> {
         let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
-        let largest = largest.unwrap_or(0) as f64;
+        let largest = size(largest.unwrap_or(0));
         (largest < BOUND && denominator > 0).then_some(Self {
             wave,
             harmonics,
@@ -147,7 +151,7 @@ impl ShortSeries {
                 *numerator = exact_quotient(*numerator, common);
             }
             self.denominator = exact_quotient(self.denominator, common);
-            self.largest /= common as f64;
+            self.largest /= size(common.unsigned_abs());
         }
         self
     }
@@ -200,7 +204,7 @@ impl ShortSeries {
             left.push(rest);
             common = least_common_multiple(common, rest)?;
         }
-        if self.largest * common as f64 >= BOUND {
+        if self.largest * size(common.unsigned_abs()) >= BOUND {
             return None;
         }
         for (numerator, left) in numerators.iter_mut().zip(left) {
@@ -208,6 +212,14 @@ impl ShortSeries {
         }
         let denominator = self.denominator.checked_mul(common)?;
         Self::new(self.wave, self.harmonics, denominator, numerators)
+    }
+}
+
+/// The nearest double; most numbers fit one word, whose conversion is a single instruction.
+fn size(number: u128) -> f64 {
+    match u64::try_from(number) {
+        Ok(word) => word as f64,
+        Err(_) => number as f64,
     }
 }
 
@@ -252,6 +264,13 @@ fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     if left == 1 || (is_power_of_two(left) && is_power_of_two(right)) {
         return Some(left.max(right));
     }
+    // Mostly one is a multiple of the other, and a single division of words tells it.
+    if let (Ok(left), Ok(right)) = (u64::try_from(left), u64::try_from(right)) {
+        let (larger, smaller) = (left.max(right), left.min(right));
+        if larger.is_multiple_of(smaller) {
+            return Some(larger.into());
+        }
+    }
     exact_quotient(left, greatest_common_divisor(left, right)).checked_mul(right)
 }
 
@@ -269,12 +288,15 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
     for (numerator, denominator, series) in terms {
         let factor =
             numerator.checked_mul(exact_quotient(common, denominator * series.denominator))?;
-        bound += (factor as f64).abs() * series.largest;
+        let factor_size = size(factor.unsigned_abs());
+        bound += factor_size * series.largest;
         if bound >= BOUND {
             return None;
         }
-        for (sum, own) in sums.iter_mut().zip(&series.numerators) {
-            *sum = sum.wrapping_add(factor.wrapping_mul(*own));
+        let pairs = sums.iter_mut().zip(&series.numerators);
+        match factor_size.max(series.largest) < WORD {
+            true => pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(of_words(factor, *own))),
+            false => pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(factor.wrapping_mul(*own))),
         }
     }
     ShortSeries::new(first.wave, first.harmonics, common, sums)
@@ -315,27 +337,20 @@ fn sum_of_products<'a>(
         let factor =
             weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
         let shorter = left.numerators.len().min(right.numerators.len());
-        let scaled = (factor as f64).abs() * left.largest;
-        // Every harmonic of the result gets at most one term from sums of harmonics and two from
-        // differences per coefficient of the shorter factor.
+        let scaled = size(factor.unsigned_abs()) * left.largest;
         bound += scaled * right.largest * (3 * shorter) as f64;
         if bound >= BOUND {
             return None;
         }
-        // The factor with odd harmonics comes first.
-        let (first, second) = match (left.harmonics, right.harmonics) {
-            (HarmonicParity::Even, HarmonicParity::Odd) => (right, left),
-            _ => (left, right),
+        let pair = match left.numerators.len() <= right.numerators.len() {
+            true => (left, right),
+            false => (right, left),
         };
         // If both factors fit one word, their product is a single instruction.
-        let largest = (factor as f64).abs() * first.largest;
-        let words = largest.max(second.largest) < (1_u64 << 62) as f64;
-        let sums = &mut sums[..];
-        match words {
-            true => add_doubled_product(sums, factor, (first, second), |one, other| {
-                i128::from(one as i64).wrapping_mul(i128::from(other as i64))
-            }),
-            false => add_doubled_product(sums, factor, (first, second), i128::wrapping_mul),
+        let largest = size(factor.unsigned_abs()) * pair.0.largest;
+        match largest.max(pair.1.largest) < WORD {
+            true => add_doubled_product(&mut sums, factor, pair, of_words),
+            false => add_doubled_product(&mut sums, factor, pair, i128::wrapping_mul),
         }
     }
     if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
@@ -347,42 +362,52 @@ fn sum_of_products<'a>(
     ShortSeries::new(kind.0, kind.1, common.checked_mul(2)?, sums)
 }
 
+/// The product of two numbers that fit one word.
+fn of_words(left: i128, right: i128) -> i128 {
+    i128::from(left as i64).wrapping_mul(i128::from(right as i64))
+}
+
 /// Adds twice a product by `2 cos i cos j = cos(i+j) + cos(i-j)` and the similar formulas with
-/// sines.
+/// sines; fast if the longer factor is the second.
 fn add_doubled_product(
     sums: &mut [i128],
     factor: i128,
-    (left, right): (&ShortSeries, &ShortSeries),
-    multiply: impl Fn(i128, i128) -> i128,
+    (short, long): (&ShortSeries, &ShortSeries),
+    multiply: impl Fn(i128, i128) -> i128 + Copy,
 ) {
-    let both_odd = left.harmonics == HarmonicParity::Odd && right.harmonics == HarmonicParity::Odd;
-    let apart = usize::from(left.harmonics != right.harmonics);
-    let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
-    // The sine of a difference takes the sign of that difference.
-    let (mixed, sine_is_left) = (left.wave != right.wave, left.wave == Wave::Sine);
-    let signed = |negative: bool, product: i128| {
-        if negative { product.wrapping_neg() } else { product }
-    };
-    for (a, own) in left.numerators.iter().enumerate() {
+    use HarmonicParity::{Even, Odd};
+    let both_odd = short.harmonics == Odd && long.harmonics == Odd;
+    let apart = short.harmonics != long.harmonics;
+    let [short_is_sine, long_is_sine] = [short, long].map(|series| series.wave == Wave::Sine);
+    let signed = |negative: bool, number: i128| if negative { -number } else { number };
+    for (place, own) in short.numerators.iter().enumerate() {
         let own = own.wrapping_mul(factor);
         if own == 0 {
             continue;
         }
-        let (below, above) = right.numerators.split_at((a + 1).min(right.numerators.len()));
-        for (b, other) in below.iter().enumerate() {
-            let product = multiply(own, *other);
-            let upper = &mut sums[a + b + usize::from(both_odd)];
-            *upper = upper.wrapping_add(signed(upper_is_negative, product));
-            let lower = &mut sums[a - b];
-            *lower = lower.wrapping_add(signed(mixed && !sine_is_left, product));
-        }
-        for (b, other) in above.iter().enumerate() {
-            let product = multiply(own, *other);
-            let upper = &mut sums[a + a + 1 + b + usize::from(both_odd)];
-            *upper = upper.wrapping_add(signed(upper_is_negative, product));
-            let lower = &mut sums[b + 1 - apart];
-            *lower = lower.wrapping_add(signed(mixed && sine_is_left, product));
-        }
+        let upper = &mut sums[place + usize::from(both_odd)..];
+        let others = long.numerators.iter();
+        add_multiples(upper, signed(short_is_sine && long_is_sine, own), others, multiply);
+        // The sine of a difference takes the sign of that difference.
+        let split = place + usize::from(apart && long.harmonics == Even);
+        let (below, above) = long.numerators.split_at(split.min(long.numerators.len()));
+        add_multiples(sums, signed(short_is_sine && !long_is_sine, own), above.iter(), multiply);
+        let lower = &mut sums[usize::from(!apart)..];
+        let others = below.iter().rev();
+        add_multiples(lower, signed(long_is_sine && !short_is_sine, own), others, multiply);
+    }
+}
+
+/// `sums += factor others`, one by one.
+#[inline(always)]
+fn add_multiples<'a>(
+    sums: &mut [i128],
+    factor: i128,
+    others: impl Iterator<Item = &'a i128>,
+    multiply: impl Fn(i128, i128) -> i128,
+) {
+    for (sum, other) in sums.iter_mut().zip(others) {
+        *sum = sum.wrapping_add(multiply(factor, *other));
     }
 }
 

@@ -258,13 +258,43 @@ fn is_prime(number: u64) -> bool {
     })
 }
 
-/// The primes below `2^bits` that are one more than a multiple of `step`, from the largest down to
-/// half of `2^bits`; `bits` is at most 50.
+/// A multiple of the steps between the primes of most expansions: powers of two up to `2^11`, times
+/// small odd numbers.
+const COMMON_STEP: u64 = 685_341_296_640;
+
+/// The largest primes below `2^50` that are one more than a multiple of [`COMMON_STEP`], as these
+/// multiples, and for each a number that is no power of a prime factor of the step: every power of
+/// it that could be a root of unity is a primitive one. To find them again would take a short
+/// expansion a quarter of its time.
+const COMMON_PRIMES: [(u64, u64); 32] = [
+    (1638, 58), (1634, 47), (1623, 47), (1616, 87), (1615, 29), (1598, 59), (1594, 89), (1583, 53),
+    (1582, 29), (1577, 93), (1574, 79), (1569, 29), (1565, 31), (1561, 82), (1560, 29), (1550, 43),
+    (1542, 31), (1540, 37), (1537, 31), (1535, 29), (1529, 31), (1525, 86), (1509, 47), (1506, 29),
+    (1497, 29), (1494, 41), (1493, 29), (1477, 53), (1476, 73), (1465, 37), (1462, 82), (1454, 41),
+];
+
+/// A base whose power is a primitive root of unity modulo this prime, if one is known.
+fn known_base(prime: u64) -> Option<u64> {
+    let multiple = prime / COMMON_STEP;
+    let mut known = COMMON_PRIMES.iter().filter(|_| prime % COMMON_STEP == 1);
+    known.find(|(own, _)| *own == multiple).map(|(_, base)| *base)
+}
+
+/// The primes below `2^bits` that are one more than a multiple of `step`, down to half of `2^bits`;
+/// `bits` is at most 50. They begin with a few that are known beforehand, where these have the
+/// step; the others follow from the largest on.
 pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
     let (highest, lowest) = ((1 << bits) - 1, 1_u64 << (bits - 1));
+    let known: &[(u64, u64)] = match bits == 50 && COMMON_STEP.is_multiple_of(step) {
+        true => &COMMON_PRIMES,
+        false => &[],
+    };
     let first = (highest - 1) / step;
     let numbers = (1..=first).rev().map(move |multiple| multiple * step + 1);
-    numbers.take_while(move |&number| number > lowest).filter(|&number| is_prime(number))
+    let sought = numbers
+        .take_while(move |&number| number > lowest)
+        .filter(move |&number| is_prime(number) && (known.is_empty() || known_base(number).is_none()));
+    known.iter().map(|(multiple, _)| multiple * COMMON_STEP + 1).chain(sought)
 }
 
 #[cfg(test)]
@@ -288,6 +318,33 @@ mod tests {
         let found: Vec<u64> = primes_below(30, 24).take(3).collect();
         assert!(found.iter().all(|p| p % 24 == 1 && is_prime_by_division(*p)), "{found:?}");
         assert_eq!(primes_up_to(30), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);
+    }
+
+    #[test]
+    fn primes_known_beforehand_are_the_largest_and_come_once() {
+        let multiples = (1..=((1 << 50) - 2) / COMMON_STEP).rev();
+        let primes = multiples.filter(|multiple| is_prime(multiple * COMMON_STEP + 1));
+        let largest: Vec<u64> = primes.take(COMMON_PRIMES.len()).collect();
+        assert_eq!(largest, COMMON_PRIMES.map(|(multiple, _)| multiple));
+        for (multiple, base) in COMMON_PRIMES {
+            let prime = multiple * COMMON_STEP + 1;
+            let modulus = Modulus::new(prime, 52);
+            assert_eq!(known_base(prime), Some(base));
+            for factor in prime_factors(COMMON_STEP) {
+                let power = modulus.power(modulus.residue(base), (prime - 1) / factor);
+                assert_ne!(power, modulus.one, "{base} modulo {prime}");
+            }
+        }
+        for step in [48, 8 * 17 * 4, COMMON_STEP, 2 * COMMON_STEP, 29] {
+            let found: Vec<u64> = primes_below(50, step).take(100).collect();
+            assert!(found.iter().all(|prime| prime % step == 1 && is_prime(*prime)));
+            assert!(found.iter().all(|prime| prime >> 49 == 1));
+            let mut sorted = found.clone();
+            sorted.sort_unstable();
+            sorted.dedup();
+            assert_eq!(sorted.len(), found.len());
+            assert_eq!(found[0] == COMMON_PRIMES[0].0 * COMMON_STEP + 1, COMMON_STEP % step == 0);
+        }
     }
 
     #[test]

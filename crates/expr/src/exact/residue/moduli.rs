@@ -5,7 +5,7 @@
 //! inlined into functions that are compiled for the processor; closures would not be, hence the
 //! loops.
 
-use super::{Arithmetic, Lanes, Modulus, WIDTH, prime_factors};
+use super::{Arithmetic, Lanes, Modulus, WIDTH, known_base, prime_factors};
 
 /// Eight primes, and the constants that a [`Modulus`] keeps for each.
 #[derive(Clone, Copy, Debug)]
@@ -199,7 +199,7 @@ impl<A: Arithmetic> Residues<A> {
     #[inline(always)]
     pub fn root_of_unity(&self, order: u64) -> Option<Lanes> {
         /// The largest base that is tried; one of the first few numbers leads to a primitive root.
-        const LARGEST_BASE: usize = 1000;
+        const LARGEST_BASE: u64 = 1000;
         let mut exponents = self.moduli.prime;
         for exponent in &mut exponents.0 {
             if (*exponent - 1) % order != 0 {
@@ -209,8 +209,14 @@ impl<A: Arithmetic> Residues<A> {
         }
         let factors = prime_factors(order);
         let mut found = Lanes::default();
-        for base in 2..LARGEST_BASE {
-            let root = self.power(self.small(base), exponents);
+        for base in 1..LARGEST_BASE {
+            let mut bases = Lanes::all(base);
+            if base == 1 {
+                for (own, prime) in bases.0.iter_mut().zip(self.moduli.prime.0) {
+                    *own = known_base(prime).unwrap_or(2);
+                }
+            }
+            let root = self.power(self.product(bases, self.moduli.square), exponents);
             let mut is_primitive = [true; WIDTH];
             for factor in &factors {
                 let power = self.power(root, Lanes::all(order / factor));

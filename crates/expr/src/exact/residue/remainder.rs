@@ -10,7 +10,7 @@ use num_traits::{One, Signed, Zero};
 use pulp::NullaryFnOnce;
 
 use super::sums::multiples;
-use super::{Arithmetic, Lanes, Moduli, Modulus, WIDTH};
+use super::{Arithmetic, Lanes, Moduli, Modulus, Residues, WIDTH};
 use crate::exact::Integer;
 
 /// Primes, and the constants that reconstruct a number from its residues modulo all of them.
@@ -43,12 +43,18 @@ impl<A: Arithmetic> Remainders<A> {
             }
         }
         let mut inverses: Vec<u64> = Vec::with_capacity(moduli.len());
-        for (i, modulus) in moduli.iter().enumerate() {
-            let others = moduli.iter().enumerate().filter(|(j, _)| *j != i);
-            let cofactor = others.fold(modulus.one, |product, (_, other)| {
-                modulus.product(product, modulus.residue(other.prime))
-            });
-            inverses.push(modulus.inverse(cofactor));
+        for (block, eight) in moduli.chunks(WIDTH).enumerate() {
+            let mut cofactors = Lanes::default();
+            for (lane, modulus) in eight.iter().enumerate() {
+                let own = block * WIDTH + lane;
+                let others = moduli.iter().enumerate().filter(|(j, _)| *j != own);
+                cofactors.0[lane] = others.fold(modulus.one, |product, (_, other)| {
+                    modulus.product(product, modulus.residue(other.prime))
+                });
+            }
+            let residues = Residues { arithmetic, moduli: Moduli::from_primes(eight) };
+            let inverse = arithmetic.vectorize(Invert(&residues, cofactors));
+            inverses.extend_from_slice(&inverse.0[..eight.len()]);
         }
         Self {
             arithmetic,
@@ -88,6 +94,18 @@ impl<A: Arithmetic> Remainders<A> {
         let mut numbers = ReconstructedIntegers::default();
         self.lift(&mut residues, weights, &mut numbers);
         numbers.integer::<A>(0)
+    }
+}
+
+/// The inverses of eight residues.
+struct Invert<'a, A>(&'a Residues<A>, Lanes);
+
+impl<A: Arithmetic> NullaryFnOnce for Invert<'_, A> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn call(self) -> Lanes {
+        self.0.inverse(self.1)
     }
 }
 

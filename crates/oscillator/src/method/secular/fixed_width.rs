@@ -36,16 +36,20 @@ pub(super) struct FirstOrders {
 /// Order beyond which two words are too short.
 const LONG: usize = 28;
 
-/// The orders up to the highest of the plan, or as many as fit; of a long expansion only as many as
-/// show how its denominators grow.
+/// The orders up to the highest of the plan, or as many as fit; of a long expansion, and of one that
+/// will not fit, only as many as show how its denominators grow.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
+    /// Number of orders that show whether the last one will fit.
+    const FEW: usize = 10;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
     let mut beginning = FirstOrders::default();
     if let Some(mut recursion) = Recursion::new(plan) {
         while recursion.complete <= last && !interrupt.is_requested() {
-            if recursion.next_order().is_none() {
+            if recursion.next_order().is_none()
+                || (recursion.complete == FEW + 1 && !recursion.may_fit(last))
+            {
                 break;
             }
         }
@@ -125,6 +129,16 @@ impl<'a> Recursion<'a> {
             AmplitudeKind::Determined => recursion.variation = Some(recursion.variation()?),
         }
         Some(recursion)
+    }
+
+    /// Whether the denominators of an order will fit if they go on growing as they did.
+    fn may_fit(&self, order: usize) -> bool {
+        /// Number of binary digits that fit.
+        const DIGITS: f64 = 126.0;
+        let digits = |order: usize| (self.tables[0][order].denominator() as f64).log2();
+        let (last, middle) = (self.complete - 1, (self.complete - 1) / 2);
+        let rate = (digits(last) - digits(middle)) / (last - middle).max(1) as f64;
+        digits(last) + rate * order.saturating_sub(last) as f64 <= DIGITS
     }
 
     fn harmonics(&self) -> HarmonicParity {

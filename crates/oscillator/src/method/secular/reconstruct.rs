@@ -395,11 +395,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             counts.push(self.primes_for(*bits)?);
         }
         // Orders share the primes of the longest among their neighbours: the constants of a set of
-        // primes are computed once.
+        // primes are computed once, and the first primes run side by side anyway.
         let longest = counts.iter().copied().max()?;
         let mut least = 1;
         for count in &mut counts {
-            let step = (*count / 8).next_power_of_two();
+            let step = (*count / 8).next_power_of_two().max(WIDTH - 1);
             least = count.next_multiple_of(step).min(longest).max(least);
             *count = least;
         }

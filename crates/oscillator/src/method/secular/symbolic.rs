@@ -410,7 +410,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
         let residues =
             (0..=plan.highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
         let most = MOST_RESIDUES / residues.sum::<usize>().max(1);
-        let mut count = 2;
+        let mut count = 1;
         let mut stopped = false;
         while orders.len() <= plan.highest && !stopped {
             if count >= most {

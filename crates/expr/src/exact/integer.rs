@@ -64,10 +64,11 @@ impl Integer {
         bytes.chunks(8).map(word).collect()
     }
 
-    /// The number, not negative, with these words, the lowest first.
-    pub(crate) fn from_words(words: &[u64]) -> Self {
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        Self(dashu_int::UBig::from_le_bytes(&bytes).into())
+    /// The number, not negative, with these words, the lowest first; the words are not of use any
+    /// more.
+    pub(crate) fn from_words(words: &mut [u64]) -> Self {
+        words.iter_mut().for_each(|word| *word = word.to_le());
+        Self(dashu_int::UBig::from_le_bytes(bytemuck::cast_slice(words)).into())
     }
 
     /// The `degree`-th root, rounded towards zero.

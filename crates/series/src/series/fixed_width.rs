@@ -17,6 +17,74 @@ const BOUND: f64 = (1_u128 << 126) as f64;
 /// room.
 const WORD: f64 = (1_u64 << 62) as f64;
 
+/// A fraction in lowest terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShortFraction {
+    numerator: i128,
+    denominator: i128,
+}
+
+impl ShortFraction {
+    /// The number zero.
+    pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
+    /// The number one.
+    pub const ONE: Self = Self { numerator: 1, denominator: 1 };
+
+    /// The fraction with this numerator and this positive denominator, which need not be in lowest
+    /// terms; `None` if they are too long.
+    pub fn new(numerator: i128, denominator: i128) -> Option<Self> {
+        if denominator <= 0 || size(numerator.unsigned_abs()) >= BOUND {
+            return None;
+        }
+        let common = greatest_common_divisor(denominator, numerator);
+        let [numerator, denominator] =
+            [numerator, denominator].map(|number| exact_quotient(number, common));
+        Some(Self { numerator, denominator })
+    }
+
+    /// The numerator.
+    pub fn numerator(self) -> i128 {
+        self.numerator
+    }
+
+    /// The denominator, positive.
+    pub fn denominator(self) -> i128 {
+        self.denominator
+    }
+
+    /// Whether it is zero.
+    pub fn is_zero(self) -> bool {
+        self.numerator == 0
+    }
+
+    /// The negative number.
+    pub fn negative(self) -> Self {
+        Self { numerator: -self.numerator, ..self }
+    }
+
+    /// The product; `None` if it is too long.
+    pub fn product(self, other: Self) -> Option<Self> {
+        let numerator = self.numerator.checked_mul(other.numerator)?;
+        Self::new(numerator, self.denominator.checked_mul(other.denominator)?)
+    }
+
+    /// The quotient; `None` if it is too long, or the divisor is zero.
+    pub fn quotient(self, divisor: Self) -> Option<Self> {
+        let numerator = self.numerator.checked_mul(divisor.denominator)?;
+        let denominator = self.denominator.checked_mul(divisor.numerator.abs())?;
+        Self::new(numerator.checked_mul(divisor.numerator.signum())?, denominator)
+    }
+
+    /// The sum; `None` if it is too long.
+    pub fn sum(self, other: Self) -> Option<Self> {
+        let common = least_common_multiple(self.denominator, other.denominator)?;
+        let [own, other] = [self, other].map(|fraction| {
+            fraction.numerator.checked_mul(exact_quotient(common, fraction.denominator))
+        });
+        Self::new(own?.checked_add(other?)?, common)
+    }
+}
+
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
 #[derive(Clone, Debug)]
 pub struct ShortSeries {
@@ -109,19 +177,9 @@ impl ShortSeries {
         self.largest == 0.0
     }
 
-    /// The coefficient at a place as a constant series.
-    pub fn coefficient(&self, index: usize) -> Option<Self> {
-        let harmonics = match self.harmonics {
-            HarmonicParity::All => HarmonicParity::All,
-            HarmonicParity::Even | HarmonicParity::Odd => HarmonicParity::Even,
-        };
-        Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
-    }
-
-    /// Returns the negative series.
-    pub fn negative(mut self) -> Self {
-        self.numerators.iter_mut().for_each(|numerator| *numerator = -*numerator);
-        self
+    /// The coefficient at a place.
+    pub fn coefficient(&self, index: usize) -> Option<ShortFraction> {
+        ShortFraction::new(self.numerator(index), self.denominator)
     }
 
     /// Returns the series with another numerator at a place; `None` if it is too long.
@@ -348,9 +406,11 @@ fn sum_of_products<'a>(
         };
         // If both factors fit one word, their product is a single instruction.
         let largest = size(factor.unsigned_abs()) * pair.0.largest;
-        match largest.max(pair.1.largest) < WORD {
-            true => add_doubled_product(&mut sums, factor, pair, of_words),
-            false => add_doubled_product(&mut sums, factor, pair, i128::wrapping_mul),
+        match (largest < WORD, pair.1.largest < WORD) {
+            (true, true) => add_doubled_product(&mut sums, factor, pair, of_words),
+            (true, false) => add_doubled_product(&mut sums, factor, pair, word_times),
+            (false, true) => add_doubled_product(&mut sums, factor, pair, times_word),
+            _ => add_doubled_product(&mut sums, factor, pair, i128::wrapping_mul),
         }
     }
     if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
@@ -365,6 +425,16 @@ fn sum_of_products<'a>(
 /// The product of two numbers that fit one word.
 fn of_words(left: i128, right: i128) -> i128 {
     i128::from(left as i64).wrapping_mul(i128::from(right as i64))
+}
+
+/// The product of a number that fits one word and any other.
+fn word_times(left: i128, right: i128) -> i128 {
+    i128::from(left as i64).wrapping_mul(right)
+}
+
+/// The product of any number and one that fits one word.
+fn times_word(left: i128, right: i128) -> i128 {
+    left.wrapping_mul(i128::from(right as i64))
 }
 
 /// Adds twice a product by `2 cos i cos j = cos(i+j) + cos(i-j)` and the similar formulas with
@@ -460,7 +530,6 @@ mod tests {
             assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
             let second = left.second_derivative().expect("short");
             assert_eq!(long(&second), long(&left).derivative().derivative());
-            assert_eq!(long(&left.clone().negative()), long(&left).times(-1));
             let solution = left.without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {

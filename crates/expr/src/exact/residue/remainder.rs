@@ -259,7 +259,7 @@ impl ReconstructedIntegers {
             }
         }
         words.push(pending as u64);
-        let number = Integer::from_words(&words);
+        let number = Integer::from_words(&mut words);
         if negative { -number } else { number }
     }
 }

@@ -58,22 +58,22 @@ impl Factored {
         (rest == 1).then_some(self)
     }
 
-    /// The factors of a positive word, by division.
-    fn of_word(number: u64) -> Self {
-        let mut rest = number;
-        let mut factored = Self::default();
-        let mut divisor = 2;
+    /// Multiplies by a positive word, whose factors are found by division.
+    fn multiply_by_word(&mut self, number: u64) {
+        let halvings = number.trailing_zeros();
+        self.raise(2, halvings.into());
+        let mut rest = number >> halvings;
+        let mut divisor = 3;
         while rest > 1 {
             if divisor * divisor > rest {
                 divisor = rest;
             }
             while rest.is_multiple_of(divisor) {
                 rest /= divisor;
-                factored.set(divisor, factored.exponent(divisor) + 1);
+                self.raise(divisor, 1);
             }
-            divisor += 1;
+            divisor += 2;
         }
-        factored
     }
 
     fn exponent(&self, prime: u64) -> u64 {
@@ -92,6 +92,15 @@ impl Factored {
         }
     }
 
+    /// Multiplies by a power of a prime.
+    fn raise(&mut self, prime: u64, exponent: u64) {
+        match self.0.binary_search_by_key(&prime, |factor| factor.0) {
+            Ok(place) => self.0[place].1 += exponent,
+            Err(_) if exponent == 0 => {}
+            Err(place) => self.0.insert(place, (prime, exponent)),
+        }
+    }
+
     /// Whether it is one.
     pub fn is_one(&self) -> bool {
         self.0.is_empty()
@@ -100,29 +109,40 @@ impl Factored {
     /// The product.
     pub fn product(&self, other: &Self) -> Self {
         let mut product = self.clone();
-        for &(prime, exponent) in &other.0 {
-            product.set(prime, product.exponent(prime) + exponent);
-        }
+        other.0.iter().for_each(|(prime, exponent)| product.raise(*prime, *exponent));
         product
     }
 
     /// The quotient; factors that the divisor has in excess are ignored.
     pub fn quotient(&self, divisor: &Self) -> Self {
-        let left = self
-            .0
-            .iter()
-            .map(|&(prime, exponent)| (prime, exponent.saturating_sub(divisor.exponent(prime))));
-        Self(left.filter(|factor| factor.1 > 0).collect())
+        Self(self.left_by(divisor).collect())
+    }
+
+    /// The factors that a divisor leaves.
+    fn left_by(&self, divisor: &Self) -> impl Iterator<Item = (u64, u64)> {
+        let left = self.0.iter();
+        left.map(|&(prime, exponent)| (prime, exponent.saturating_sub(divisor.exponent(prime))))
+            .filter(|factor| factor.1 > 0)
     }
 
     /// The number.
     pub fn value(&self) -> Integer {
-        let powers = self.0.iter();
-        powers
-            .map(|(prime, exponent)| {
-                Integer::from(*prime).pow(u32::try_from(*exponent).unwrap_or(u32::MAX))
-            })
-            .product()
+        let mut value = Integer::one();
+        // As many factors as fit are multiplied in one word.
+        let mut word = 1_u64;
+        for &(prime, exponent) in self.0.iter().filter(|factor| factor.0 != 2) {
+            let (power, count) = largest_power(prime);
+            for exponent in std::iter::repeat_n(count, (exponent / count) as usize)
+                .chain(std::iter::once(exponent % count))
+            {
+                let own = if exponent == count { power } else { prime.pow(exponent as u32) };
+                word = word.checked_mul(own).unwrap_or_else(|| {
+                    value *= Integer::from(word);
+                    own
+                });
+            }
+        }
+        (value * Integer::from(word)) << self.exponent(2) as usize
     }
 
     /// The number in the form from which residues are computed.
@@ -144,17 +164,23 @@ impl Factored {
     }
 
     /// The numerator and denominator in lowest terms of a number over this one.
-    pub fn lowest_terms(&self, numerator: Integer) -> (Integer, Integer) {
+    pub fn lowest_terms(&self, mut numerator: Integer) -> (Integer, Integer) {
         if numerator.is_zero() {
             return (numerator, Integer::one());
         }
-        let mut numerator = numerator;
-        let mut denominator = self.clone();
-        for &(prime, exponent) in &self.0 {
-            let common = remove(&mut numerator, prime, exponent);
-            denominator.set(prime, exponent - common);
+        let mut left = self.clone();
+        loop {
+            let common = left.common(std::slice::from_ref(&numerator));
+            if !common.is_one() {
+                left = left.quotient(&common);
+                numerator /= common.value();
+            }
+            // Each step removes at most one word of each odd prime.
+            let mut odd = common.0.iter().filter(|factor| factor.0 != 2);
+            if !odd.any(|(prime, exponent)| *exponent >= largest_power(*prime).1) {
+                return (numerator, left.value());
+            }
         }
-        (numerator, denominator.value())
     }
 
     /// The fraction with this number, whose `value` is known, as its denominator.
@@ -355,16 +381,14 @@ impl Growth {
             let mut number = numbers[order - 1].clone();
             if matches!(self, Self::Factorial | Self::FactorialMultiples) {
                 let twice = 2 * order as u64;
-                number = number
-                    .product(&Factored::of_word(twice))
-                    .product(&Factored::of_word(twice + 1));
+                number.multiply_by_word(twice);
+                number.multiply_by_word(twice + 1);
             }
             if matches!(self, Self::Multiples | Self::FactorialMultiples) {
                 let last = largest_factor(order);
                 for &prime in primes.iter().take_while(|prime| **prime <= last) {
                     // The exponent of a prime in lcm(1 .. last).
-                    let more = u64::from(last.checked_ilog(prime).unwrap_or(0));
-                    number.set(prime, number.exponent(prime) + more);
+                    number.raise(prime, u64::from(last.checked_ilog(prime).unwrap_or(0)));
                 }
             }
             numbers.push(number);
@@ -384,8 +408,7 @@ impl Growth {
         let fitted = |count: usize| {
             let mut base = Factored::default();
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
-                let rest = own.quotient(&numbers[order]);
-                for (prime, exponent) in rest.0 {
+                for (prime, exponent) in own.left_by(&numbers[order]) {
                     base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
                 }
             }

@@ -11,7 +11,9 @@ use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, Detuning};
 use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;
-use crate::series::fixed_width::{HarmonicParity, ShortSeries, combination, convolution, square};
+use crate::series::fixed_width::{
+    HarmonicParity, ShortFraction, ShortSeries, combination, convolution, square,
+};
 use crate::series::waves::Wave;
 use crate::solution::AmplitudeConvention;
 use num_traits::ToPrimitive;
@@ -19,9 +21,9 @@ use num_traits::ToPrimitive;
 /// One order.
 pub(super) struct FixedWidthOrder {
     pub displacement: ShortSeries,
-    /// `W_n` and `omega_n`, constants.
-    pub frequency_squared: ShortSeries,
-    pub frequency: ShortSeries,
+    /// `W_n` and `omega_n`.
+    pub frequency_squared: ShortFraction,
+    pub frequency: ShortFraction,
 }
 
 /// The first orders of an expansion in integers of fixed width.
@@ -30,7 +32,7 @@ pub(super) struct FirstOrders {
     /// The orders from zero on; fewer than asked for if a number does not fit.
     pub orders: Vec<FixedWidthOrder>,
     /// The derivative of the secular sine in the amplitude, where that is determined.
-    pub slope: Option<ShortSeries>,
+    pub slope: Option<ShortFraction>,
 }
 
 /// Order beyond which two words are too short.
@@ -42,7 +44,7 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
     /// Number of orders that show whether the last one will fit.
-    const FEW: usize = 10;
+    const FEW: usize = 8;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
     let mut beginning = FirstOrders::default();
     if let Some(mut recursion) = Recursion::new(plan) {
@@ -53,7 +55,7 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
                 break;
             }
         }
-        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope.clone());
+        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope);
         beginning.orders = recursion.orders();
     }
     beginning
@@ -70,8 +72,8 @@ struct Recursion<'a> {
     derived: Vec<ShortSeries>,
     /// The derivative of all terms with one velocity at each order, where there are any.
     damped: Vec<Option<ShortSeries>>,
-    frequency_squared: Vec<ShortSeries>,
-    frequency: Vec<ShortSeries>,
+    frequency_squared: Vec<ShortFraction>,
+    frequency: Vec<ShortFraction>,
     /// A sine in addition to the terms.
     sine: Option<Sine>,
     variation: Option<Variation>,
@@ -84,7 +86,7 @@ struct Variation {
     tables: Vec<ShortSeries>,
     right_side: ShortSeries,
     damped: Option<ShortSeries>,
-    slope: ShortSeries,
+    slope: ShortFraction,
 }
 
 impl<'a> Recursion<'a> {
@@ -112,14 +114,13 @@ impl<'a> Recursion<'a> {
             detuned: list(),
             derived: vec![],
             damped: vec![None],
-            frequency_squared: list(),
-            frequency: list(),
+            frequency_squared: Vec::with_capacity(orders),
+            frequency: Vec::with_capacity(orders),
             variation: None,
             complete: 0,
         };
-        let one = recursion.constant(1)?;
-        recursion.frequency_squared.push(one.clone());
-        recursion.frequency.push(one);
+        recursion.frequency_squared.push(ShortFraction::ONE);
+        recursion.frequency.push(ShortFraction::ONE);
         let mut start = vec![0; plan.resonant() + 1];
         start[plan.resonant()] = 1;
         let start = ShortSeries::new(Wave::Cosine, recursion.harmonics(), 1, start)?;
@@ -146,14 +147,6 @@ impl<'a> Recursion<'a> {
             true => HarmonicParity::Odd,
             false => HarmonicParity::All,
         }
-    }
-
-    fn constant(&self, value: i128) -> Option<ShortSeries> {
-        let harmonics = match self.plan.half_wave {
-            true => HarmonicParity::Even,
-            false => HarmonicParity::All,
-        };
-        ShortSeries::constant(harmonics, value, 1)
     }
 
     /// Returns the orders that are complete.
@@ -187,10 +180,10 @@ impl<'a> Recursion<'a> {
         let resonance = right_side.coefficient(plan.resonant())?;
         let square = match right_side.wave {
             Wave::Sine if !resonance.is_zero() => return None,
-            Wave::Sine => self.constant(0)?,
+            Wave::Sine => ShortFraction::ZERO,
             Wave::Cosine => resonance.negative(),
         };
-        let frequency = self.frequency(order, &square)?;
+        let frequency = self.frequency(order, square)?;
         self.frequency_squared.push(square);
         self.frequency.push(frequency);
         let particular = right_side.without_resonance_over_divisors()?.reduced();
@@ -203,16 +196,16 @@ impl<'a> Recursion<'a> {
     }
 
     /// `omega_n` from `W_n`.
-    fn frequency(&self, order: usize, square: &ShortSeries) -> Option<ShortSeries> {
-        let mut parts = Vec::with_capacity(order / 2 + 1);
-        parts.push((1, 2, square));
+    fn frequency(&self, order: usize, square: ShortFraction) -> Option<ShortFraction> {
+        let half = ShortFraction::new(1, 2)?;
+        let mut frequency = square.product(half)?;
         // The sum over all pairs is twice that over one of each pair, plus the middle term.
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
-            let (own, other) = (&self.frequency[i], &self.frequency[order - i]);
-            let times = if 2 * i == order { 2 } else { 1 };
-            parts.push((-own.numerator(0), own.denominator().checked_mul(times)?, other));
+            let product = self.frequency[i].product(self.frequency[order - i])?;
+            let product = if 2 * i == order { product.product(half)? } else { product };
+            frequency = frequency.sum(product.negative())?;
         }
-        combination(&parts).map(ShortSeries::reduced)
+        Some(frequency)
     }
 
     /// `r_n` as in the head of the module.
@@ -229,24 +222,23 @@ impl<'a> Recursion<'a> {
             self.tables[table].get(order.checked_sub(term.order)?)
         };
         let mut parts = self.parts(false, at)?;
-        parts.reserve(2 * order);
         let of_sine = self.sine.as_ref().and_then(|sine| sine.rest.as_ref());
         parts.extend(of_sine.map(|rest| (1, 1, rest)));
         for (numerator, _, _) in &mut parts {
             *numerator = numerator.checked_neg()?;
         }
-        let mut subtract = |factor: &ShortSeries, series| {
+        let mut subtract = |factor: ShortFraction, series| {
             if !factor.is_zero() {
-                parts.push((-factor.numerator(0), factor.denominator(), series));
+                parts.push((-factor.numerator(), factor.denominator(), series));
             }
         };
         for i in 1..=order {
             let present = self.plan.scheme.detuning == Detuning::Acceleration || i == order;
             if let Some(damped) = self.damped[i].as_ref().filter(|_| present) {
-                subtract(&self.frequency[order - i], damped);
+                subtract(self.frequency[order - i], damped);
             }
             if i < order {
-                subtract(&self.frequency_squared[order - i], &self.detuned[i]);
+                subtract(self.frequency_squared[order - i], &self.detuned[i]);
             }
         }
         parts.retain(|(_, _, series)| !series.is_zero());
@@ -263,7 +255,9 @@ impl<'a> Recursion<'a> {
         derivative: bool,
         at: impl Fn(&PlannedTerm, usize) -> Option<&'b ShortSeries>,
     ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
-        let mut parts = Vec::new();
+        // Room for the contributions of the frequency of all orders, too.
+        let room = if derivative { 0 } else { 2 * self.tables[0].len() };
+        let mut parts = Vec::with_capacity(room + self.terms.len() + 1);
         for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
             if let Some(series) = at(term, *table).filter(|_| *own == derivative) {
                 let (numerator, denominator) = (*coefficient)?;
@@ -281,16 +275,9 @@ impl<'a> Recursion<'a> {
         if right_side.wave == Wave::Cosine || sine.is_zero() {
             return Some(right_side);
         }
-        let slope = &variation.slope;
         // The change of the amplitude is minus the sine over its slope.
-        let sign = -slope.numerator(0).signum();
-        let amplitude = ShortSeries::constant(
-            sine.harmonics(),
-            sine.numerator(0).checked_mul(slope.denominator())?.checked_mul(sign)?,
-            sine.denominator().checked_mul(slope.numerator(0).abs())?,
-        )?;
-        let amplitude = amplitude.reduced();
-        let change = (amplitude.numerator(0), amplitude.denominator());
+        let amplitude = sine.quotient(variation.slope)?.negative();
+        let change = (amplitude.numerator(), amplitude.denominator());
         let changed = |series: &ShortSeries, by: &ShortSeries| {
             combination(&[(1, 1, series), (change.0, change.1, by)]).map(ShortSeries::reduced)
         };
@@ -340,7 +327,7 @@ impl<'a> Recursion<'a> {
                     let factors = self.frequency.iter().zip(self.derived.iter().rev());
                     let factors = factors.filter(|(factor, _)| !factor.is_zero());
                     let parts = factors
-                        .map(|(factor, own)| (factor.numerator(0), factor.denominator(), own));
+                        .map(|(factor, own)| (factor.numerator(), factor.denominator(), own));
                     combination(&parts.collect::<Vec<_>>())?.reduced()
                 }
             };

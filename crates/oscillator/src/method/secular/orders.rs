@@ -8,7 +8,7 @@ use super::reconstruct::ExpansionScope;
 use super::{SecularExpansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};
 use crate::series::FourierSeries;
-use crate::series::fixed_width::ShortSeries;
+use crate::series::fixed_width::ShortFraction;
 use crate::series::waves::Wave;
 
 /// One order of the result.
@@ -25,8 +25,8 @@ pub(super) struct ExpansionOrder {
 impl ExpansionOrder {
     /// Converts an order from numbers of fixed width.
     pub fn of_short(plan: &Plan, order: &fixed_width::FixedWidthOrder) -> Self {
-        let constant = |series: &ShortSeries| {
-            Rational::new_raw(series.numerator(0).into(), series.denominator().into())
+        let constant = |own: ShortFraction| {
+            Rational::new_raw(own.numerator().into(), own.denominator().into())
         };
         let motion = &order.displacement;
         let first = match motion.wave {
@@ -36,9 +36,9 @@ impl ExpansionOrder {
         Self {
             denominator: motion.denominator().into(),
             displacement: motion.numerators().iter().copied().map(Integer::from).collect(),
-            first_harmonic: first.as_ref().map_or_else(Rational::zero, constant),
-            frequency_squared: constant(&order.frequency_squared),
-            frequency: constant(&order.frequency),
+            first_harmonic: first.map_or_else(Rational::zero, constant),
+            frequency_squared: constant(order.frequency_squared),
+            frequency: constant(order.frequency),
         }
     }
 }

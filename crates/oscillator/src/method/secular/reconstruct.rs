@@ -83,7 +83,7 @@ fn slope(
     beginning: &fixed_width::FirstOrders,
 ) -> Option<Rational> {
     if let Some(slope) = &beginning.slope {
-        return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
+        return Some(Rational::new_raw(slope.numerator().into(), slope.denominator().into()));
     }
     let first = super::expand(&Integers, force, 1, scheme).ok()?;
     let (numerator, denominator) = first.amplitudes.first()?.slope.mean();

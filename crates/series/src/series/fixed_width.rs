@@ -205,11 +205,15 @@ impl ShortSeries {
         }
         let common = odd << halvings.min(all.trailing_zeros());
         if common > 1 {
-            for numerator in &mut self.numerators {
-                *numerator = exact_quotient(*numerator, common);
-            }
+            let shift = common.trailing_zeros();
             self.denominator = exact_quotient(self.denominator, common);
             self.largest /= size(common.unsigned_abs());
+            for numerator in &mut self.numerators {
+                *numerator >>= shift;
+                if odd > 1 {
+                    *numerator = quotient(*numerator, odd);
+                }
+            }
         }
         self
     }
@@ -273,12 +277,13 @@ impl ShortSeries {
     }
 }
 
-/// The nearest double; most numbers fit one word, whose conversion is a single instruction.
+/// The number as a double, or a little more; most numbers fit one word, whose conversion is a single
+/// instruction.
 fn size(number: u128) -> f64 {
-    match u64::try_from(number) {
-        Ok(word) => word as f64,
-        Err(_) => number as f64,
-    }
+    const WORD: f64 = (1_u128 << 64) as f64;
+    let high = (number >> 64) as u64;
+    let above = if high > 0 { high as f64 + 1.0 } else { return number as u64 as f64 };
+    above * WORD
 }
 
 /// Whether a positive number is a power of two.
@@ -286,12 +291,16 @@ fn is_power_of_two(number: i128) -> bool {
     number & (number - 1) == 0
 }
 
-/// Returns a quotient without remainder by a positive divisor. Most divisors are powers of two, and
-/// most of the others fit one word.
+/// Returns a quotient without remainder by a positive divisor. Most divisors are powers of two.
 fn exact_quotient(number: i128, divisor: i128) -> i128 {
-    if is_power_of_two(divisor) {
-        return number >> divisor.trailing_zeros();
+    match is_power_of_two(divisor) {
+        true => number >> divisor.trailing_zeros(),
+        false => quotient(number, divisor),
     }
+}
+
+/// Returns a quotient; most numbers fit one word.
+fn quotient(number: i128, divisor: i128) -> i128 {
     match (i64::try_from(number), i64::try_from(divisor)) {
         (Ok(number), Ok(divisor)) => i128::from(number / divisor),
         _ => number / divisor,
@@ -303,14 +312,20 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     if is_power_of_two(left) {
         return 1 << left.trailing_zeros().min(right.trailing_zeros());
     }
-    match (i64::try_from(left), i64::try_from(right)) {
-        (Ok(left), Ok(right)) if right != i64::MIN => left.gcd(&right).into(),
-        // If the positive number fits one word, a single division leaves two words.
-        (Ok(left), _) => match i64::try_from(right % i128::from(left)) {
-            Ok(rest) => left.gcd(&rest).into(),
-            Err(_) => i128::from(left).gcd(&right),
+    // Often one number divides the other, and a single division tells it.
+    match (u64::try_from(left), u64::try_from(right.unsigned_abs())) {
+        (Ok(left), Ok(right)) => match right % left {
+            0 => left.into(),
+            rest => left.gcd(&rest).into(),
         },
-        _ => left.gcd(&right),
+        (Ok(left), _) => match (right % i128::from(left)).unsigned_abs() as u64 {
+            0 => left.into(),
+            rest => left.gcd(&rest).into(),
+        },
+        _ => match right % left {
+            0 => left,
+            rest => left.gcd(&rest),
+        },
     }
 }
 
@@ -390,29 +405,36 @@ fn sum_of_products<'a>(
         kind = (wave, left.harmonics.times(right.harmonics));
     }
     let mut bound = 0.0;
-    let mut sums = vec![0_i128; length];
+    // The sums of the harmonics' sums and, behind them, of their differences.
+    let mut sums = vec![0_i128; 2 * length];
+    let (upper, lower) = sums.split_at_mut(length);
     for (weight, left, right) in terms {
         let factor =
             weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
-        let shorter = left.numerators.len().min(right.numerators.len());
-        let scaled = size(factor.unsigned_abs()) * left.largest;
-        bound += scaled * right.largest * (3 * shorter) as f64;
-        if bound >= BOUND {
-            return None;
-        }
-        let pair = match left.numerators.len() <= right.numerators.len() {
+        let (short, long) = match left.numerators.len() <= right.numerators.len() {
             true => (left, right),
             false => (right, left),
         };
-        // If both factors fit one word, their product is a single instruction.
-        let largest = size(factor.unsigned_abs()) * pair.0.largest;
-        match (largest < WORD, pair.1.largest < WORD) {
-            (true, true) => add_doubled_product(&mut sums, factor, pair, of_words),
-            (true, false) => add_doubled_product(&mut sums, factor, pair, word_times),
-            (false, true) => add_doubled_product(&mut sums, factor, pair, times_word),
-            _ => add_doubled_product(&mut sums, factor, pair, i128::wrapping_mul),
+        let largest = size(factor.unsigned_abs()) * short.largest;
+        // Every harmonic of the result gets at most one term from sums of harmonics and two from
+        // differences per coefficient of the shorter factor.
+        bound += largest * long.largest * (3 * short.numerators.len()) as f64;
+        if bound >= BOUND {
+            return None;
+        }
+        let (sums, pair) = ((&mut *upper, &mut *lower), (short, long));
+        // If a factor fits one word, its products take a third of the instructions, or one.
+        match (largest < WORD, long.largest < WORD) {
+            (true, true) => add_doubled_product(sums, factor, pair, of_words),
+            (true, false) => add_doubled_product(sums, factor, pair, word_times),
+            (false, true) => add_doubled_product(sums, factor, pair, times_word),
+            _ => add_doubled_product(sums, factor, pair, i128::wrapping_mul),
         }
     }
+    for (upper, lower) in upper.iter_mut().zip(lower) {
+        *upper = upper.wrapping_add(*lower);
+    }
+    sums.truncate(length);
     if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
         sums[0] = 0;
     }
@@ -438,9 +460,10 @@ fn times_word(left: i128, right: i128) -> i128 {
 }
 
 /// Adds twice a product by `2 cos i cos j = cos(i+j) + cos(i-j)` and the similar formulas with
-/// sines; fast if the longer factor is the second.
+/// sines, the sums of harmonics and their differences apart; fast if the longer factor is the
+/// second.
 fn add_doubled_product(
-    sums: &mut [i128],
+    (upper, lower): (&mut [i128], &mut [i128]),
     factor: i128,
     (short, long): (&ShortSeries, &ShortSeries),
     multiply: impl Fn(i128, i128) -> i128 + Copy,
@@ -449,35 +472,35 @@ fn add_doubled_product(
     let both_odd = short.harmonics == Odd && long.harmonics == Odd;
     let apart = short.harmonics != long.harmonics;
     let [short_is_sine, long_is_sine] = [short, long].map(|series| series.wave == Wave::Sine);
-    let signed = |negative: bool, number: i128| if negative { -number } else { number };
+    let signed = |negative: bool, number: i128| {
+        if negative { number.wrapping_neg() } else { number }
+    };
+    // The sine of a difference takes the sign of that difference.
+    let upper_is_negative = short_is_sine && long_is_sine;
+    let above_is_opposite = upper_is_negative != (short_is_sine && !long_is_sine);
+    let below_is_opposite = upper_is_negative != (long_is_sine && !short_is_sine);
     for (place, own) in short.numerators.iter().enumerate() {
-        let own = own.wrapping_mul(factor);
+        let own = signed(upper_is_negative, own.wrapping_mul(factor));
         if own == 0 {
             continue;
         }
-        let upper = &mut sums[place + usize::from(both_odd)..];
-        let others = long.numerators.iter();
-        add_multiples(upper, signed(short_is_sine && long_is_sine, own), others, multiply);
-        // The sine of a difference takes the sign of that difference.
         let split = place + usize::from(apart && long.harmonics == Even);
         let (below, above) = long.numerators.split_at(split.min(long.numerators.len()));
-        add_multiples(sums, signed(short_is_sine && !long_is_sine, own), above.iter(), multiply);
-        let lower = &mut sums[usize::from(!apart)..];
-        let others = below.iter().rev();
-        add_multiples(lower, signed(long_is_sine && !short_is_sine, own), others, multiply);
-    }
-}
-
-/// `sums += factor others`, one by one.
-#[inline(always)]
-fn add_multiples<'a>(
-    sums: &mut [i128],
-    factor: i128,
-    others: impl Iterator<Item = &'a i128>,
-    multiply: impl Fn(i128, i128) -> i128,
-) {
-    for (sum, other) in sums.iter_mut().zip(others) {
-        *sum = sum.wrapping_add(multiply(factor, *other));
+        let (near, far) = upper[place + usize::from(both_odd)..].split_at_mut(below.len());
+        let differences = lower.iter_mut();
+        for ((upper, lower), other) in far.iter_mut().zip(differences).zip(above) {
+            let product = multiply(own, *other);
+            *upper = upper.wrapping_add(product);
+            *lower = lower.wrapping_add(signed(above_is_opposite, product));
+        }
+        // The last of those below is nearest to this place.
+        let differences = lower.iter_mut().skip(usize::from(!apart) + split - below.len());
+        let pairs = near.iter_mut().rev().zip(differences);
+        for ((upper, lower), other) in pairs.zip(below.iter().rev()) {
+            let product = multiply(own, *other);
+            *upper = upper.wrapping_add(product);
+            *lower = lower.wrapping_add(signed(below_is_opposite, product));
+        }
     }
 }
 

@@ -96,10 +96,9 @@ pub struct Waves {
     grid: Grid,
     /// The cosines of the multiples of the angle `2 pi/(4 leaf)`.
     cosines: Vec<Lanes>,
-    /// The factors `1/(2 cos phi)` of each halving, the largest first.
-    halving: Vec<Vec<Lanes>>,
-    over_cosine: Vec<Lanes>,
-    over_sine: Vec<Lanes>,
+    /// The inverse divisors of cosines and of sines at the points, and then the factors
+    /// `1/(2 cos phi)` of each halving, the largest first.
+    inverses: Vec<Lanes>,
     over_size: Lanes,
     half: Lanes,
     scratch: Vec<Lanes>,
@@ -143,19 +142,11 @@ impl Waves {
                 residues.sum(powers[place * step], powers[(circle - place * step) % circle]);
             *cosine = residues.product(twice, half);
         }
-        let mut rest = &inverses[..];
-        let mut take = |count: usize| {
-            let (taken, others) = rest.split_at(count);
-            rest = others;
-            taken.to_vec()
-        };
         Some(Self {
             grid,
             cosines,
-            over_cosine: take(size),
-            over_sine: take(size),
-            halving: levels.iter().map(|level| take(level / 2)).collect(),
             over_size: inverses[angles.len() + 1],
+            inverses,
             half,
             scratch: vec![Lanes::default(); 2 * size],
         })
@@ -196,11 +187,20 @@ impl Waves {
     /// Returns the inverse divisors, point by point, that reduce the waves to cosines of multiples
     /// of `phi`; `None` if there are none.
     fn divisors(&self, wave: Wave) -> Option<&[Lanes]> {
+        let size = self.grid.size();
         match (self.grid.half_wave, wave) {
-            (_, Wave::Sine) => Some(&self.over_sine),
-            (true, Wave::Cosine) => Some(&self.over_cosine),
+            (_, Wave::Sine) => Some(&self.inverses[size..2 * size]),
+            (true, Wave::Cosine) => Some(&self.inverses[..size]),
             (false, Wave::Cosine) => None,
         }
+    }
+
+    /// Returns the factors of a halving.
+    #[inline(always)]
+    fn halving(&self, halving: usize) -> &[Lanes] {
+        let size = self.grid.size();
+        // Those of the halvings before are `size/2 + size/4 + ...`.
+        &self.inverses[3 * size - (size >> halving)..][..size >> (halving + 1)]
     }
 }
 
@@ -311,7 +311,7 @@ impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
             let level = size >> halving;
             for part in values.chunks_exact_mut(level) {
                 let (even, odd) = part.split_at_mut(level / 2);
-                for ((even, odd), over) in even.iter_mut().zip(odd).zip(&waves.halving[halving]) {
+                for ((even, odd), over) in even.iter_mut().zip(odd).zip(waves.halving(halving)) {
                     let value = residues.product(*odd, *over);
                     (*even, *odd) = (residues.sum(*even, value), residues.difference(*even, value));
                 }
@@ -348,7 +348,7 @@ impl<A: Arithmetic> NullaryFnOnce for RecoverCoefficients<'_, A> {
             let level = size >> halving;
             for part in values.chunks_exact_mut(level) {
                 let (sums, odd) = part.split_at_mut(level / 2);
-                for ((sum, odd), over) in sums.iter_mut().zip(odd).zip(&waves.halving[halving]) {
+                for ((sum, odd), over) in sums.iter_mut().zip(odd).zip(waves.halving(halving)) {
                     let difference = residues.difference(*sum, *odd);
                     (*sum, *odd) = (residues.sum(*sum, *odd), residues.product(difference, *over));
                 }

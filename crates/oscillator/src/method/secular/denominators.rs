@@ -404,6 +404,18 @@ impl Growth {
         highest: usize,
         largest_factor: &dyn Fn(usize) -> u64,
     ) -> Option<Vec<Factored>> {
+        // Factorials have primes that no divisor of the elimination has, and hide how fast the
+        // exponents of small ones grow.
+        let beyond = |(order, own): (usize, &Factored)| {
+            own.0.last().is_some_and(|factor| factor.0 > largest_factor(order))
+        };
+        // The last resort is not tested here, because every result is tested modulo another prime.
+        let last_resort = matches!(self, Self::Multiples | Self::FactorialMultiples);
+        let untested = last_resort || known.len() > highest;
+        let foreign = self == Self::Factorial && !known.iter().enumerate().any(beyond);
+        if !untested && foreign {
+            return None;
+        }
         let numbers = self.of_orders(highest.max(known.len()), largest_factor);
         let fitted = |count: usize| {
             let mut base = Factored::default();
@@ -415,16 +427,7 @@ impl Growth {
             base
         };
         let base = fitted(known.len());
-        // The last resort is not tested here, because every result is tested modulo another prime.
-        let last_resort = matches!(self, Self::Multiples | Self::FactorialMultiples);
-        let untested = last_resort || known.len() > highest;
-        // Factorials have primes that no divisor of the elimination has, and hide how fast the
-        // exponents of small ones grow.
-        let beyond = |(order, own): (usize, &Factored)| {
-            own.0.last().is_some_and(|factor| factor.0 > largest_factor(order))
-        };
-        let foreign = self == Self::Factorial && !known.iter().enumerate().any(beyond);
-        if !untested && (foreign || fitted(known.len().div_ceil(2)) != base) {
+        if !untested && fitted(known.len().div_ceil(2)) != base {
             return None;
         }
         let denominator = |order: usize| match known.get(order) {

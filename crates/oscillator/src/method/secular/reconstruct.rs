@@ -16,7 +16,7 @@
 //! Memory: the residues of all coefficients, 8 bytes for each 50 binary digits of the result.
 
 use num_integer::Integer as _;
-use num_traits::One;
+use num_traits::{One, Zero};
 
 use super::denominators::{Factored, Growth};
 use super::modular::{PrimeImage, Recursion};
@@ -246,8 +246,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 }
             }
         }
-        // The sizes may decrease more slowly later on, so the second try does not assume it.
-        beginning.shrinks().then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
+        // The sizes may not go on as they did, so the second try assumes the largest growth.
+        beginning.has_slopes().then(|| self.orders_from(first, Some(beginning.without_slopes())))?
     }
 
     /// The number of primes whose product has more than so many binary digits; `None` if there are
@@ -495,12 +495,12 @@ impl FirstGuesses {
             .collect()
     }
 
-    fn shrinks(&self) -> bool {
-        self.motion.decay < 0.0 || self.frequency.decay < 0.0
+    fn has_slopes(&self) -> bool {
+        self.motion.slope.is_some() || self.frequency.slope.is_some()
     }
 
-    fn without_shrinking(mut self) -> Self {
-        (self.motion.decay, self.frequency.decay) = (0.0, 0.0);
+    fn without_slopes(mut self) -> Self {
+        (self.motion.slope, self.frequency.slope) = (None, None);
         self
     }
 
@@ -542,8 +542,9 @@ struct Guess {
     sizes: Vec<f64>,
     /// Largest growth of that number with each order.
     growth: f64,
-    /// Decrease of that number with each order, if it clearly decreases.
-    decay: f64,
+    /// Change of that number with each order in the second half of the known orders, if they are
+    /// enough.
+    slope: Option<f64>,
 }
 
 impl Guess {
@@ -557,25 +558,26 @@ impl Guess {
         self.growth = self.growth.max(size / order.max(1) as f64);
         self.known.push(denominator);
         self.sizes.push(size);
-        // The growth is that of the second half of the known orders; a growth like a power of the
-        // order is not counted.
         let middle = order / 2;
         let slope = (size - self.sizes[middle]) / (order - middle).max(1) as f64;
-        self.decay = if order >= Self::ENOUGH { (slope + 1.0).min(0.0) } else { 0.0 };
+        self.slope = (order >= Self::ENOUGH).then_some(slope);
     }
 
-    /// Least number of orders from which a decrease is inferred.
+    /// Least number of orders from which a slope is inferred.
     const ENOUGH: usize = 8;
 
     /// Upper estimate of the binary digits before the point of the largest number of an order;
     /// negative if it is below one.
     fn size(&self, order: usize) -> f64 {
+        /// Number of binary digits at each order for a slope that is not the same everywhere.
+        const CAUTION: f64 = 0.5;
+        let largest = self.growth * order as f64;
         let last = self.sizes.len().saturating_sub(1);
-        match self.sizes.last() {
-            Some(size) if self.decay < 0.0 && order >= last => {
-                size + self.decay * (order - last) as f64
+        match (self.slope, self.sizes.last()) {
+            (Some(slope), Some(size)) if order >= last => {
+                largest.min(size + (slope + CAUTION) * (order - last) as f64)
             }
-            _ => self.growth * order as f64,
+            _ => largest,
         }
     }
 }
@@ -638,16 +640,15 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
                 displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
                 excess = excess.product(&common);
             }
-            let whole = &frequency[order];
-            let over = self.weighted_denominator(whole, of_frequency.take());
-            let constants = self.numbers(of_frequency.insert(over), 2, |image, _, lanes| {
-                (lanes.0[0], lanes.0[1]) = (image.frequency[order], image.frequency_squared[order]);
-            });
-            let constants = constants?.into_iter().map(|numerator| {
-                let (numerator, denominator) = whole.lowest_terms(numerator);
-                Rational::new_raw(numerator, denominator)
-            });
-            let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
+            let [frequency, frequency_squared] = match self.plan.wave(order) {
+                // A sum of sines has no frequency to correct.
+                Wave::Sine => [Rational::zero(), Rational::zero()],
+                Wave::Cosine => {
+                    let whole = &frequency[order];
+                    let over = self.weighted_denominator(whole, of_frequency.take());
+                    self.constants(order, whole, of_frequency.insert(over))?
+                }
+            };
             let denominator = denominator.quotient(&common);
             let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
                 (AmplitudeKind::Determined, Wave::Cosine) => {
@@ -665,6 +666,23 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
             });
         }
         Some(lifted)
+    }
+
+    /// The frequency and its square at an order, over a denominator.
+    fn constants(
+        &self,
+        order: usize,
+        whole: &Factored,
+        over: &WeightedDenominator,
+    ) -> Option<[Rational; 2]> {
+        let numerators = self.numbers(over, 2, |image, _, lanes| {
+            (lanes.0[0], lanes.0[1]) = (image.frequency[order], image.frequency_squared[order]);
+        });
+        let constants = numerators?.into_iter().map(|numerator| {
+            let (numerator, denominator) = whole.lowest_terms(numerator);
+            Rational::new_raw(numerator, denominator)
+        });
+        constants.collect::<Vec<_>>().try_into().ok()
     }
 
     /// The numerators of the motion; empty if no prime keeps it.

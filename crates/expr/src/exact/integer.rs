@@ -29,6 +29,15 @@ impl Integer {
         Self(value)
     }
 
+    /// The remainder of a division by a positive word, with the sign of this integer.
+    ///
+    /// # Panics
+    /// If `divisor` is zero.
+    pub fn remainder(&self, divisor: u64) -> i128 {
+        let remainder = &self.0 % IBig::from(divisor);
+        i128::try_from(&remainder).unwrap_or_default()
+    }
+
     /// The number of binary digits of the absolute value; 0 for zero.
     pub fn bits(&self) -> u64 {
         self.0.bit_len() as u64

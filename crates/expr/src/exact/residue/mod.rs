@@ -33,8 +33,6 @@ pub use memory::Memory;
 pub use moduli::{Moduli, Residues};
 pub use tables::Tables;
 
-use num_integer::Integer as _;
-use num_traits::ToPrimitive;
 
 use super::Integer;
 
@@ -143,8 +141,9 @@ impl Modulus {
 
     /// The residue of a whole number of any length.
     pub fn integer(&self, value: &Integer) -> u64 {
-        let remainder = value.mod_floor(&Integer::from(self.prime));
-        self.residue(remainder.to_u64().unwrap_or_default())
+        let remainder = value.remainder(self.prime);
+        let size = self.residue(remainder.unsigned_abs() as u64);
+        if remainder < 0 { self.negative(size) } else { size }
     }
 
     /// A plain residue, below the prime, from one in Montgomery's form.

@@ -128,18 +128,18 @@ impl Factored {
     /// The number.
     pub fn value(&self) -> Integer {
         let mut value = Integer::one();
-        // As many factors as fit are multiplied in one word.
+        // As many powers as fit are multiplied in one word.
         let mut word = 1_u64;
         for &(prime, exponent) in self.0.iter().filter(|factor| factor.0 != 2) {
-            let (power, count) = largest_power(prime);
-            for exponent in std::iter::repeat_n(count, (exponent / count) as usize)
-                .chain(std::iter::once(exponent % count))
-            {
-                let own = if exponent == count { power } else { prime.pow(exponent as u32) };
-                word = word.checked_mul(own).unwrap_or_else(|| {
-                    value *= Integer::from(word);
-                    own
-                });
+            let exponent = u32::try_from(exponent).unwrap_or(u32::MAX);
+            match prime.checked_pow(exponent) {
+                Some(power) => {
+                    word = word.checked_mul(power).unwrap_or_else(|| {
+                        value *= Integer::from(word);
+                        power
+                    });
+                }
+                None => value *= Integer::from(prime).pow(exponent),
             }
         }
         (value * Integer::from(word)) << self.exponent(2) as usize
@@ -152,7 +152,7 @@ impl Factored {
         let with_digit = |digit: u32| -> Vec<u64> {
             let factors = self.0.iter().filter(|(_, exponent)| exponent >> digit & 1 == 1);
             let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
-            words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
+            words(&primes).map(|lot| lot.iter().product()).collect()
         };
         ExponentBits((0..digits).rev().map(with_digit).collect())
     }
@@ -176,8 +176,9 @@ impl Factored {
                 numerator /= common.value();
             }
             // Each step removes at most one word of each odd prime.
+            let next = |exponent: u64| u32::try_from(exponent + 1).unwrap_or(u32::MAX);
             let mut odd = common.0.iter().filter(|factor| factor.0 != 2);
-            if !odd.any(|(prime, exponent)| *exponent >= largest_power(*prime).1) {
+            if !odd.any(|(prime, exponent)| prime.checked_pow(next(*exponent)).is_none()) {
                 return (numerator, left.value());
             }
         }
@@ -296,34 +297,28 @@ fn lower(exponents: &mut [(u64, u64)], number: u64) {
 }
 
 /// Splits a list of numbers into groups whose products fit a word.
-fn words(numbers: &[u64]) -> Vec<&[u64]> {
-    let mut lots = Vec::new();
+fn words(numbers: &[u64]) -> impl Iterator<Item = &[u64]> {
     let mut rest = numbers;
-    while !rest.is_empty() {
+    std::iter::from_fn(move || {
         let products = rest.iter().scan(1_u64, |product, number| {
             *product = product.checked_mul(*number)?;
             Some(())
         });
-        let (lot, others) = rest.split_at(products.count().max(1));
-        lots.push(lot);
+        let (lot, others) = rest.split_at(products.count().max(1).min(rest.len()));
         rest = others;
-    }
-    lots
+        (!lot.is_empty()).then_some(lot)
+    })
 }
 
 /// The absolute remainder of a division by a word.
 fn remainder(number: &Integer, divisor: u64) -> u64 {
-    let remainder = number % Integer::from(divisor);
-    remainder.to_i128().map_or(0, |remainder| remainder.unsigned_abs() as u64)
+    number.remainder(divisor).unsigned_abs() as u64
 }
 
 /// The largest power of a prime in one word, and its exponent.
 fn largest_power(prime: u64) -> (u64, u64) {
-    let mut power = (prime, 1);
-    while let Some(next) = power.0.checked_mul(prime) {
-        power = (next, power.1 + 1);
-    }
-    power
+    let exponent = u64::MAX.ilog(prime);
+    (prime.pow(exponent), exponent.into())
 }
 
 /// Divides by a prime as often as it goes, `most` times at most, and says how often.

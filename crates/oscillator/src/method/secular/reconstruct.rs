@@ -700,6 +700,16 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
         denominator: &Factored,
         last: Option<WeightedDenominator>,
     ) -> WeightedDenominator {
+        /// Number of primes for which a division each costs less than to prepare powers.
+        const FEW: usize = 2 * WIDTH;
+        if self.images.len() < FEW {
+            let value = denominator.value();
+            return WeightedDenominator {
+                denominator: denominator.clone(),
+                weights: self.remainders.weights(|modulus| modulus.integer(&value)).collect(),
+                in_test: self.test.modulus.integer(&value),
+            };
+        }
         match last.filter(|last| last.denominator.quotient(denominator).is_one()) {
             Some(mut last) => {
                 let ratio = denominator.quotient(&last.denominator).ladder();

@@ -7,17 +7,30 @@
 //! of them for the fit and the other half for a test. It is a guess: every number that is found
 //! with it is tried modulo one more prime.
 
-use std::sync::LazyLock;
-
 use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use crate::exact::residue::{Modulus, primes_up_to};
 use crate::exact::{Integer, Rational};
 
-/// The primes that are looked for in denominators: larger ones could only come from a coefficient
-/// of the equation.
-static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
+/// The primes that are looked for in denominators, those below 1000: larger ones could only come
+/// from a coefficient of the equation.
+const SMALL: [u64; 168] = {
+    let mut primes = [0; 168];
+    let (mut count, mut number) = (0, 2);
+    while count < primes.len() {
+        let mut place = 0;
+        while place < count && number % primes[place] != 0 {
+            place += 1;
+        }
+        if place == count {
+            primes[count] = number;
+            count += 1;
+        }
+        number += 1;
+    }
+    primes
+};
 
 /// A positive whole number by its prime factors, in order, and their exponents.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

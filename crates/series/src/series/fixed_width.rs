@@ -369,7 +369,9 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
         let pairs = sums.iter_mut().zip(&series.numerators);
         match factor_size.max(series.largest) < WORD {
             true => pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(of_words(factor, *own))),
-            false => pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(factor.wrapping_mul(*own))),
+            false => {
+                pairs.for_each(|(sum, own)| *sum = sum.wrapping_add(factor.wrapping_mul(*own)))
+            }
         }
     }
     ShortSeries::new(first.wave, first.harmonics, common, sums)

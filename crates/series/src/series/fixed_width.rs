@@ -510,7 +510,7 @@ fn add_doubled_product(
 mod tests {
     use super::super::fourier::{self, FourierSeries};
     use super::*;
-    use crate::exact::{Integer, Integers};
+    use crate::exact::{Integer, Integers, Rational};
 
     /// The series with integers of any length.
     fn long(series: &ShortSeries) -> FourierSeries<Integers> {
@@ -594,6 +594,38 @@ mod tests {
             }
         }
         assert!(products > 100);
+    }
+
+    #[test]
+    fn short_fractions_are_those_of_any_length() {
+        let long = |own: ShortFraction| Rational::new(own.numerator.into(), own.denominator.into());
+        let wide = (1_i128 << 70) + 3;
+        let numbers =
+            [(0, 5), (1, 1), (-6, 4), (35, 12), (7 << 66, 96), (wide, 3 * wide), (-9, wide)];
+        let fractions = numbers.map(|(numerator, denominator)| {
+            let own = ShortFraction::new(numerator, denominator).expect("short");
+            assert_eq!(long(own), Rational::new(numerator.into(), denominator.into()));
+            assert_eq!(Integer::from(own.denominator()), *long(own).denom());
+            assert_eq!(Integer::from(own.numerator()), *long(own).numer());
+            assert_eq!(long(own.negative()), -long(own));
+            own
+        });
+        for left in fractions {
+            for right in fractions {
+                let check = |found: Option<ShortFraction>, expected: Rational| match found {
+                    Some(found) => assert_eq!(long(found), expected),
+                    None => assert!(expected.numer().bits() + expected.denom().bits() > 126),
+                };
+                check(left.sum(right), long(left) + long(right));
+                check(left.product(right), long(left) * long(right));
+                match right.is_zero() {
+                    true => assert_eq!(left.quotient(right), None),
+                    false => check(left.quotient(right), long(left) / long(right)),
+                }
+            }
+        }
+        assert_eq!(ShortFraction::new(1, 0), None);
+        assert_eq!(ShortFraction::new(i128::MIN, 3), None);
     }
 
     #[test]

@@ -5,8 +5,6 @@
 //! bound exceeds two words, the operation returns `None`: no result is ever wrong, and no addition
 //! or multiplication has to check for overflow.
 
-use num_integer::Integer as _;
-
 use super::waves::Wave;
 
 /// Bound of numerators and of all intermediate sums. It is half of what fits, which leaves room for
@@ -313,20 +311,36 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
         return 1 << left.trailing_zeros().min(right.trailing_zeros());
     }
     // Often one number divides the other, and a single division tells it.
-    match (u64::try_from(left), u64::try_from(right.unsigned_abs())) {
-        (Ok(left), Ok(right)) => match right % left {
-            0 => left.into(),
-            rest => left.gcd(&rest).into(),
-        },
-        (Ok(left), _) => match (right % i128::from(left)).unsigned_abs() as u64 {
-            0 => left.into(),
-            rest => left.gcd(&rest).into(),
-        },
-        _ => match right % left {
-            0 => left,
-            rest => left.gcd(&rest),
-        },
+    let rest = match (u64::try_from(left), u64::try_from(right.unsigned_abs())) {
+        (Ok(left), Ok(right)) => i128::from(right % left),
+        _ => (right % left).abs(),
+    };
+    if rest == 0 {
+        return left;
     }
+    let (left, rest) = (left.unsigned_abs(), rest.unsigned_abs());
+    let halvings = (left | rest).trailing_zeros();
+    (common_odd_divisor(left >> left.trailing_zeros(), rest >> rest.trailing_zeros()) << halvings)
+        as i128
+}
+
+/// Greatest common divisor of two odd numbers. No branch but the end of a loop depends on them,
+/// because nothing could foretell it.
+fn common_odd_divisor(mut smaller: u128, mut other: u128) -> u128 {
+    while smaller != other {
+        if let (Ok(mut smaller), Ok(mut other)) = (u64::try_from(smaller), u64::try_from(other)) {
+            while smaller != other {
+                let difference = smaller.abs_diff(other);
+                smaller = smaller.min(other);
+                other = difference >> difference.trailing_zeros();
+            }
+            return smaller.into();
+        }
+        let difference = smaller.abs_diff(other);
+        smaller = smaller.min(other);
+        other = difference >> difference.trailing_zeros();
+    }
+    smaller
 }
 
 /// Least common multiple of positive numbers.
@@ -337,14 +351,16 @@ fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     if left == 1 || (is_power_of_two(left) && is_power_of_two(right)) {
         return Some(left.max(right));
     }
-    // Mostly one is a multiple of the other, and a single division of words tells it.
-    if let (Ok(left), Ok(right)) = (u64::try_from(left), u64::try_from(right)) {
-        let (larger, smaller) = (left.max(right), left.min(right));
-        if larger.is_multiple_of(smaller) {
-            return Some(larger.into());
-        }
+    // Mostly one is a multiple of the other, and a single division tells it.
+    let (larger, smaller) = (left.max(right), left.min(right));
+    let rest = match (u64::try_from(larger), u64::try_from(smaller)) {
+        (Ok(larger), Ok(smaller)) => i128::from(larger % smaller),
+        _ => larger % smaller,
+    };
+    match rest {
+        0 => Some(larger),
+        _ => exact_quotient(larger, greatest_common_divisor(smaller, rest)).checked_mul(smaller),
     }
-    exact_quotient(left, greatest_common_divisor(left, right)).checked_mul(right)
 }
 
 /// `sum of (numerator / denominator) series`; all series must have the same kind of waves.
@@ -508,6 +524,8 @@ fn add_doubled_product(
 
 #[cfg(test)]
 mod tests {
+    use num_integer::Integer as _;
+
     use super::super::fourier::{self, FourierSeries};
     use super::*;
     use crate::exact::{Integer, Integers, Rational};
@@ -594,6 +612,21 @@ mod tests {
             }
         }
         assert!(products > 100);
+    }
+
+    #[test]
+    fn common_divisors_are_those_of_any_length() {
+        let wide = 3_i128.pow(50);
+        let numbers =
+            [1, 2, 3, 12, 35, 96, 1 << 40, (1 << 61) - 1, 3_i128.pow(39), wide, 10 * wide];
+        for left in numbers {
+            for right in numbers.into_iter().chain([0, 7 << 100]) {
+                for right in [right, -right] {
+                    let found = greatest_common_divisor(left, right);
+                    assert_eq!(found, left.gcd(&right), "{left} {right}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -43,14 +43,17 @@ const LONG: usize = 28;
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
-    /// Number of orders that show whether the last one will fit.
-    const FEW: usize = 8;
+    /// Number of orders that show whether the last one will fit, and how denominators grow.
+    const FEW: usize = 10;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
+    // Before its order a term leaves no trace in the denominators.
+    let furthest = plan.terms.iter().map(|term| term.order).max().unwrap_or(0);
+    let few = FEW.max(furthest);
     let mut beginning = FirstOrders::default();
     if let Some(mut recursion) = Recursion::new(plan) {
         while recursion.complete <= last && !interrupt.is_requested() {
             if recursion.next_order().is_none()
-                || (recursion.complete == FEW + 1 && !recursion.may_fit(last))
+                || (recursion.complete == few + 1 && !recursion.may_fit(last))
             {
                 break;
             }

@@ -119,7 +119,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let table = compare(&pendulum, &"A = 1".parse()?, None, 0.01)?;
-/// assert!(lindstedt::export::latex::comparison(&table).contains(r"\begin{tabular}"));
+/// assert!(lindstedt::export::latex::comparison(&table).contains(r"\begin{longtable}"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn comparison(comparison: &Comparison) -> String {

@@ -458,37 +458,38 @@ fn a_sweep_that_is_stopped_keeps_its_motions() {
     }
 }
 
-/// Power series end at the touch of a contact: with both integrators that is said, and the motion
-/// is followed without.
+/// Contact has its power series, too, but where a force presses it from rest exactly at its touch:
+/// with both integrators that is said, and the motion is followed without.
 #[test]
-fn a_contact_has_no_second_integrator_and_is_told_so() {
+fn a_contact_has_two_integrators_but_pressed_from_rest_at_its_touch() {
     let forms = ["(x - 0.5)^(3/2)*H(x - 0.5)", "max(x - 0.5, 0)^(3/2)"];
-    for (form, start) in [(forms[0], "x=-1"), (forms[1], "x=-1"), (forms[1], "x=0.5")] {
+    for (form, start) in
+        [(forms[0], "x=-1"), (forms[1], "x=-1"), (forms[1], "x=0.5"), (forms[1], "x=0.4")]
+    {
         let equation = format!("x'' + x + 1e4*{form} = 0");
-        let asked = ["simulate", &equation, "--from", start, "--until", "20"];
-        let output = run(&[&asked[..], &["--integrator", "both"]].concat());
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{message}");
-        assert!(output.stdout.is_empty());
-        assert!(
-            message.contains("no second integrator")
-                && message.contains("help: leave out --integrator"),
-            "{message}"
-        );
-        assert_eq!(json(&asked)["complete"], true);
+        let both = json(&[
+            "simulate",
+            &equation,
+            "--from",
+            start,
+            "--until",
+            "20",
+            "--integrator",
+            "both",
+        ]);
+        assert!(both["difference"].as_f64().expect("a difference") < 1e-10, "{both}");
     }
-    // Where it is not touched there are two.
-    let apart = json(&[
-        "simulate",
-        "x'' + x + 1e4*max(x - 0.5, 0)^(3/2) = 0",
-        "--from",
-        "x=0.4",
-        "--until",
-        "20",
-        "--integrator",
-        "both",
-    ]);
-    assert!(apart["difference"].as_f64().expect("a difference") < 1e-10, "{apart}");
+    let pressed = ["simulate", "x'' + 1e4*max(x, 0)^(3/2) = 1", "--from", "x=0", "--until", "20"];
+    let output = run(&[&pressed[..], &["--integrator", "both"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(output.stdout.is_empty());
+    assert!(
+        message.contains("no second integrator")
+            && message.contains("help: leave out --integrator"),
+        "{message}"
+    );
+    assert_eq!(json(&pressed)["complete"], true);
     // Both come to the pole of x'' = x^2 and stop there.
     let output =
         run(&["simulate", "x'' = x^2", "--from", "x=1", "--until", "20", "--integrator", "both"]);

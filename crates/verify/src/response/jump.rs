@@ -42,7 +42,7 @@ enum Course {
     /// One after the other between the jumps.
     Legs(Vec<Trajectory<Point<VariationalState>>>),
     /// In one piece, by Taylor series, where there are no jumps.
-    Series(Path),
+    Series(Box<Path>),
 }
 
 /// The condition at which the integration stops.
@@ -158,7 +158,7 @@ pub fn follow(
     {
         let end = path.states_at(path.end())?.try_into().ok()?;
         return Some(VariationalMotion {
-            course: Course::Series(path),
+            course: Course::Series(Box::new(path)),
             stuck: 0.0,
             turned: false,
             end,

@@ -368,7 +368,9 @@ impl<'a> TaylorRun<'a> {
     /// [`SystemError`] with the first state or event without one.
     fn defined(&mut self) -> Result<(), SystemError> {
         let settled = self.expansion.switch_corners();
-        settled.map_err(|state| SystemError::Start(self.system.state[state]))?;
+        // Behind the states come the variables of the roots.
+        let name = |state: usize| *self.system.state.get(state).unwrap_or(&self.system.time);
+        settled.map_err(|state| SystemError::Start(name(state)))?;
         let is_undefined =
             |event: &usize| !self.expansion.event(*event).iter().all(|value| value.is_finite());
         match (0..self.events.len()).find(is_undefined) {

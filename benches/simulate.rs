@@ -83,16 +83,25 @@ fn workloads(criterion: &mut Criterion) {
 }
 
 /// A pendulum with a hundred dampings, as `lindstedt simulate EQUATION --sweep zeta=0.01:0.2:100`
-/// follows it.
+/// follows it, free and against barriers of three stiffnesses, which take the same time.
 fn sweep_of_an_equation(criterion: &mut Criterion) {
-    let equation = Oscillator::parse("x'' + 2*zeta*x' + sin(x) = 0").expect("an equation");
-    let mut course = TrajectoryRequest::of_equation(&equation);
-    course.begin("x".into(), -1.5).expect("a state");
-    let dampings: Vec<Vec<f64>> =
-        (0..100).map(|index| vec![0.01 + 0.0019 * f64::from(index)]).collect();
-    criterion.bench_function("equation, a sweep of 100 motions", |bencher| {
-        bencher.iter(|| sweep(&course, &["zeta".into()], &dampings, || ()));
-    });
+    let free = "x'' + 2*zeta*x' + sin(x)";
+    let against = |stiffness: &str| format!("{free} + {stiffness}*max(x - 0.3, 0)^1.5 = 0");
+    for (name, equation) in [
+        ("", format!("{free} = 0")),
+        (", contact 1e3", against("1e3")),
+        (", contact 1e7", against("1e7")),
+        (", contact 1e12", against("1e12")),
+    ] {
+        let equation = Oscillator::parse(&equation).expect("an equation");
+        let mut course = TrajectoryRequest::of_equation(&equation);
+        course.begin("x".into(), -1.5).expect("a state");
+        let dampings: Vec<Vec<f64>> =
+            (0..100).map(|index| vec![0.01 + 0.0019 * f64::from(index)]).collect();
+        criterion.bench_function(&format!("equation, a sweep of 100 motions{name}"), |bencher| {
+            bencher.iter(|| sweep(&course, &["zeta".into()], &dampings, || ()));
+        });
+    }
 }
 
 criterion_group! {

@@ -3,8 +3,8 @@
 //! In come a result or its document of [`report`], or an expression alone; out goes text to be
 //! pasted into an article. The numbers are those of the text format.
 //!
-//! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek
-//! letters and the named functions.
+//! The output uses `amsmath`, and `longtable` for a table that may be longer than a page, and nothing
+//! else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named functions.
 
 pub(super) mod comparison;
 mod expression;

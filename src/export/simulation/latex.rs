@@ -129,14 +129,16 @@ fn formula(form: ClosedForm) -> Vec<String> {
         }
         ClosedForm::Contact { barrier, duration, sines } => {
             let wave = std::f64::consts::PI / duration;
-            let term = |(j, sine): (u32, f64)| {
-                format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave))
+            let term = |(j, sine): (u32, f64)| match sine == 0.0 {
+                true => String::new(),
+                false => format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave)),
             };
             let [first, second, third] = sines;
-            vec![
-                format!("{}{}", scientific(barrier), term((1, first))),
-                format!("{}{}", term((2, second)), term((3, third))),
-            ]
+            let mut parts = vec![format!("{}{}", scientific(barrier), term((1, first)))];
+            parts.extend(
+                Some(term((2, second)) + &term((3, third))).filter(|part| !part.is_empty()),
+            );
+            parts
         }
     }
 }

@@ -24,10 +24,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod expansion;
 mod narrow;
 mod polynomial;
 mod roots;
 mod runge_kutta;
+mod step_length;
 mod steps;
 mod taylor;
 
@@ -41,9 +43,10 @@ use crate::symbol::Symbol;
 
 pub use taylor::LANES;
 
+use expansion::Expansions;
 use narrow::Argument;
 use steps::TaylorSteps;
-use taylor::{Expansions, TaylorRun};
+use taylor::TaylorRun;
 
 /// A system of first-order equations, ready for integration.
 ///
@@ -529,7 +532,7 @@ impl System {
             critical: vec![],
             narrow: narrow::arguments(right, state, &narrow::guards_in(right, numbers), numbers),
         };
-        taylor::check(&system, &[])?;
+        expansion::check(&system, &[])?;
         Ok(system)
     }
 
@@ -626,12 +629,38 @@ impl System {
 /// Returns a corner whose argument jumps at another corner, so that its side after the jump does
 /// not follow from the side before; `None` if there is none.
 fn jump_in_corner(expression: &Expr) -> Option<Expr> {
-    use Function::{Absolute, Maximum, Minimum, Sign, Step};
-    let jumps = |part: &Expr| part.contains_function(Step) || part.contains_function(Sign);
+    let jumps = |part: &Expr| {
+        part.contains_function(Function::Step) || part.contains_function(Function::Sign)
+    };
     let is_corner = |part: &&Expr| match part.node() {
-        Node::Function(function, _) => [Absolute, Maximum, Minimum, Sign, Step].contains(function),
+        Node::Function(function, _) => function.has_corner(),
         _ => false,
     };
     let mut corners = expression.unique_nodes().filter(is_corner);
     corners.find(|corner| corner.children().any(jumps)).cloned()
+}
+
+/// Returns the rate of an expression along the motion of states with these rates; `None` if it
+/// cannot be written.
+///
+/// ```
+/// # use lindstedt_dynamics as lindstedt;
+/// use lindstedt::{Symbol, expr::parse_expression, system::rate_along};
+///
+/// let [energy, force] = ["v^2/2 + x^2/2", "-x - v/5"].map(|text| parse_expression(text).expect("a text"));
+/// let [x, v] = ["x", "v"].map(Symbol::new);
+/// let rate = rate_along(&energy, "t".into(), &[x, v], &[v.into(), force]).expect("a rate");
+/// assert_eq!(rate.expand().expect("a sum").to_string(), "-v^2/5");
+/// ```
+pub fn rate_along(
+    expression: &Expr,
+    time: Symbol,
+    states: &[Symbol],
+    right: &[Expr],
+) -> Option<Expr> {
+    let mut parts = vec![expression.differentiate(time).ok()?];
+    for (state, right) in states.iter().zip(right) {
+        parts.push(expression.differentiate(*state).ok()? * right);
+    }
+    Some(Expr::sum(parts))
 }

@@ -241,7 +241,7 @@ pub(super) fn in_open_brackets(formula: &str) -> String {
     open
 }
 
-/// What braces hold.
+/// The content of a pair of braces.
 enum Braces {
     /// Anything but a part of a fraction.
     Plain,

@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 
 use num_integer::Integer as _;
 
-use super::System;
 use super::narrow::{FunctionGrowth, root_of_square};
+use super::{System, rate_along};
 use crate::exact::rational::{from_f64, ratio, to_f64};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::series::guard::Guard;
@@ -28,13 +28,28 @@ use crate::symbol::{Symbol, fresh};
 #[derive(Clone, Debug)]
 pub(super) struct Root {
     /// The expression u.
-    pub(super) argument: Expr,
+    argument: Expr,
     guard: Guard,
     /// The common denominator q of the exponents.
-    pub(super) degree: u32,
+    degree: u32,
     /// The rate du/dt along the motion.
     rate: Expr,
     variable: Symbol,
+}
+
+impl Root {
+    /// The value of u in these states; not a number where it has none.
+    pub(super) fn argument_at(&self, system: &System, time: f64, states: &[f64]) -> f64 {
+        let mut values = system.numbers.clone();
+        values.extend(system.state.iter().copied().zip(states.iter().copied()));
+        values.insert(system.time, time);
+        self.argument.evaluate(&values).unwrap_or(f64::NAN)
+    }
+
+    /// The value of w in these states.
+    pub(super) fn variable_at(&self, system: &System, time: f64, states: &[f64]) -> f64 {
+        self.argument_at(system, time, states).abs().powf(1.0 / f64::from(self.degree))
+    }
 }
 
 /// The equations of a system on one side of each of its roots.
@@ -119,7 +134,7 @@ fn fraction(exponent: f64) -> Option<[u32; 2]> {
 
 /// Finds the roots in the right sides and events whose arguments move with the states; none if the
 /// rate of one of them cannot be written, or the powers of w would be too high to gain by them.
-pub(super) fn roots(system: &System, events: &[&Expr]) -> Vec<Root> {
+pub(super) fn corner_roots(system: &System, events: &[&Expr]) -> Vec<Root> {
     const HIGHEST: u32 = 24;
     let expressions = system.right.iter().chain(events.iter().copied());
     let mut found: Vec<Root> = Vec::new();
@@ -142,7 +157,10 @@ pub(super) fn roots(system: &System, events: &[&Expr]) -> Vec<Root> {
             }
             continue;
         }
-        let Some(rate) = is_smooth(&argument).then(|| rate(&argument, system)).flatten() else {
+        let Some(rate) = is_smooth(&argument)
+            .then(|| rate_along(&argument, system.time, &system.state, &system.right))
+            .flatten()
+        else {
             return vec![];
         };
         let variable = fresh("w", &taken);
@@ -172,7 +190,7 @@ fn inside_corner(expression: &Expr, numbers: &BTreeMap<Symbol, f64>) -> Option<E
 /// Whether an expression has neither corners nor roots.
 fn is_smooth(expression: &Expr) -> bool {
     expression.unique_nodes().all(|node| match node.node() {
-        Node::Function(function, _) => !is_corner(*function),
+        Node::Function(function, _) => !function.has_corner(),
         Node::Power(_, exponent) => exponent.as_number().is_some_and(|number| number.is_integer()),
         _ => true,
     })
@@ -183,31 +201,17 @@ fn is_smooth(expression: &Expr) -> bool {
 pub(super) fn fixed_symbols(expression: &Expr) -> impl Iterator<Item = Symbol> {
     let nodes = expression.unique_nodes().filter(|node| match node.node() {
         Node::Power(_, exponent) => exponent.as_number().is_none_or(|number| !number.is_integer()),
-        Node::Function(function, _) => is_corner(*function),
+        Node::Function(function, _) => function.has_corner(),
         _ => false,
     });
     nodes.flat_map(|node| node.symbols())
-}
-
-fn is_corner(function: Function) -> bool {
-    use Function::{Absolute, Maximum, Minimum, Sign, Step};
-    [Absolute, Maximum, Minimum, Sign, Step].contains(&function)
-}
-
-/// The rate of an expression along the motion; `None` if it cannot be written.
-fn rate(expression: &Expr, system: &System) -> Option<Expr> {
-    let mut parts = vec![expression.differentiate(system.time).ok()?];
-    for (state, right) in system.state.iter().zip(&system.right) {
-        parts.push(expression.differentiate(*state).ok()? * right);
-    }
-    Some(Expr::sum(parts))
 }
 
 /// Writes the equations of a system where the arguments of its roots have these signs.
 ///
 /// # Errors
 /// [`ExprError`] if an expression becomes too large.
-pub(super) fn equations(
+pub(super) fn equations_on_side(
     system: &System,
     events: &[&Expr],
     roots: &[Root],

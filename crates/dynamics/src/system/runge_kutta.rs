@@ -17,7 +17,7 @@ use std::cell::RefCell;
 use super::narrow::{Argument, COARSE, FunctionGrowth, arguments, end_by_values};
 use super::{
     Event, EventCrossing, LARGEST, Path, PathEnd, System, SystemError, SystemOptions, end_of_range,
-    is_vanishing, taylor, within_range, without_value,
+    expansion, is_vanishing, taylor, within_range, without_value,
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{
@@ -147,7 +147,7 @@ pub(super) fn follow(
     options: &SystemOptions,
 ) -> Result<Path, SystemError> {
     // Both integrators refuse equations that cannot be expanded into series.
-    taylor::check(system, events)?;
+    expansion::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
     let units = RunScales::new(system, [start, end], values, events);
     let scaled = ScaledSystem {

@@ -97,6 +97,11 @@ impl Function {
         self as usize > Self::Step as usize
     }
 
+    /// Whether the function has a corner or a jump: `abs`, `sgn`, `H`, `max` and `min`.
+    pub fn has_corner(self) -> bool {
+        matches!(self, Self::Absolute | Self::Sign | Self::Step | Self::Maximum | Self::Minimum)
+    }
+
     /// The name as it is read and printed.
     pub fn name(self) -> &'static str {
         self.entry().name

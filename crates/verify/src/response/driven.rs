@@ -52,10 +52,6 @@ pub struct Driven {
     pub smooth: bool,
 }
 
-/// The functions with a corner or a jump.
-const CORNERS: [Function; 5] =
-    [Function::Absolute, Function::Sign, Function::Step, Function::Maximum, Function::Minimum];
-
 /// A line in the plane of position and velocity on which the force jumps, `n_x x + n_v x' = c(p)`;
 /// n_v is one, or n_x where n_v is zero.
 #[derive(Clone, Debug)]
@@ -327,7 +323,9 @@ impl Driven {
             periods,
             self_excited: false,
             undamped,
-            smooth: !CORNERS.iter().any(|corner| oscillator.force.contains_function(*corner)),
+            smooth: !Function::all().any(|function| {
+                function.has_corner() && oscillator.force.contains_function(function)
+            }),
         })
     }
 

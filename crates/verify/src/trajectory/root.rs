@@ -25,7 +25,7 @@ pub(crate) fn roots_across_corners(
     values: &BTreeMap<Symbol, f64>,
 ) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
-        (Node::Function(function, arguments), _) if is_corner(*function) => {
+        (Node::Function(function, arguments), _) if function.has_corner() => {
             let inside: Result<Vec<Expr>, ExprError> =
                 arguments.iter().map(|argument| inside_corner(argument, values)).collect();
             expr.with_children(&inside?)
@@ -41,11 +41,6 @@ pub(crate) fn roots_across_corners(
         (Node::Product(..), _) => behind_gates(expr, children, values),
         _ => expr.with_children(children),
     })
-}
-
-fn is_corner(function: Function) -> bool {
-    use Function::{Absolute, Maximum, Minimum, Sign, Step};
-    [Absolute, Maximum, Minimum, Sign, Step].contains(&function)
 }
 
 /// An argument of a corner: `(max(u, 0)^2)^(r/2)`, and `abs(u) (u^2)^((r - 1)/2)` where r is more

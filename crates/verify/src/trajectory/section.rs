@@ -18,7 +18,7 @@ use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
-use crate::system::{Event, EventCrossing};
+use crate::system::{Event, EventCrossing, rate_along};
 
 /// The most states that one section holds.
 pub const MOST_CROSSINGS: f64 = 1e6;
@@ -55,22 +55,13 @@ impl PoincareSection {
         match self {
             Self::Every(_) => vec![],
             Self::Rising(expression) => {
-                let rate = rate(expression, rates);
+                let rate = rate_along(expression, Symbol::new("t"), &rates.states, &rates.right);
+                let rate = rate.filter(|rate| !rate.is_zero());
                 let both = [Some(expression.clone()), rate].into_iter().flatten();
                 both.map(Event::record).collect()
             }
         }
     }
-}
-
-/// ds/dt along a motion; `None` if it cannot be written.
-fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
-    let mut parts = vec![expression.differentiate(Symbol::new("t")).ok()?];
-    for (state, right) in rates.states.iter().zip(&rates.right) {
-        parts.push(expression.differentiate(*state).ok()? * right);
-    }
-    let rate = Expr::sum(parts);
-    (!rate.is_zero()).then_some(rate)
 }
 
 /// Crossings and touches of the section.

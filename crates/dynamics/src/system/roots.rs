@@ -189,8 +189,10 @@ fn inside_corner(expression: &Expr, numbers: &BTreeMap<Symbol, f64>) -> Option<E
 
 /// Whether an expression has neither corners nor roots.
 fn is_smooth(expression: &Expr) -> bool {
+    if expression.contains_corner() {
+        return false;
+    }
     expression.unique_nodes().all(|node| match node.node() {
-        Node::Function(function, _) => !function.has_corner(),
         Node::Power(_, exponent) => exponent.as_number().is_some_and(|number| number.is_integer()),
         _ => true,
     })

@@ -364,6 +364,12 @@ impl Expr {
             .any(|expr| matches!(expr.node(), Node::Function(found, _) if *found == function))
     }
 
+    /// Whether a function with a corner or a jump occurs: `abs`, `sgn`, `H`, `max` or `min`.
+    pub fn contains_corner(&self) -> bool {
+        self.unique_nodes()
+            .any(|expr| matches!(expr.node(), Node::Function(found, _) if found.has_corner()))
+    }
+
     /// Computes a value for the whole tree from the bottom up: `step` gets each node with the
     /// values of its children. The walk does not recurse, and visits a node that occurs in several
     /// places once.

@@ -46,10 +46,8 @@ use crate::symbol::Symbol;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
-    use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     use crate::expr::Node;
-    let corners = [Absolute, Maximum, Minimum, Sign, Step];
-    if corners.into_iter().any(|function| force.contains_function(function)) {
+    if force.contains_corner() {
         return false;
     }
     let has_root = force.fold(|expr, children: &[bool]| {

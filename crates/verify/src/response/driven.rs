@@ -323,9 +323,7 @@ impl Driven {
             periods,
             self_excited: false,
             undamped,
-            smooth: !Function::all().any(|function| {
-                function.has_corner() && oscillator.force.contains_function(function)
-            }),
+            smooth: !oscillator.force.contains_corner(),
         })
     }
 

@@ -1,12 +1,16 @@
 //! The steps of a path by Taylor series: the start of each, and the polynomials of all states about
 //! it, in the time or in a variable in which [roots](super::roots) are power series.
 //!
-//! All coefficients are in one list, so that a step needs no allocation of its own; `n` steps of
-//! `s` states to order `p` take `8 n (s (p + 1) + 3)` bytes, and `p + 1` more numbers where the time
-//! is a series of its own.
+//! All coefficients are in one list, so that a step needs no allocation of its own: `s` states to
+//! order `p` take `8 s (p + 1)` bytes a step, and `p + 1` more numbers where the time is a series of
+//! its own. A long path keeps them of its last steps alone. Of every other step it keeps the point
+//! of expansion, `8 (s + 4)` bytes and 8 for every root and corner, from which the same recurrences
+//! give the same coefficients once more, bit for bit, when states on it are asked for: one
+//! expansion for each step that is asked for.
 
 use crate::numeric::ode::root::find_root;
 
+use super::expansion::SystemSeries;
 use super::polynomial::{roots, sign_at_start, value, values};
 
 /// The steps of a path.
@@ -17,8 +21,14 @@ pub(super) struct TaylorSteps {
     /// The number of steps that are no longer kept.
     forgotten: usize,
     steps: Vec<TaylorStep>,
+    /// The number of steps, the first ones, whose coefficients are no longer kept.
+    without_series: usize,
     /// The coefficients of `s^0, s^1, ...`, step by step and state by state.
     coefficients: Vec<f64>,
+    /// The points of expansion, step by step.
+    points: Vec<f64>,
+    /// What the coefficients are computed from once more; `None` if all are kept.
+    recurrences: Option<SideRecurrences>,
 }
 
 /// A step from one expansion to the next.
@@ -30,17 +40,47 @@ struct TaylorStep {
     length: f64,
     /// The index of its first coefficient.
     first: usize,
+    /// The index of the first number of its point of expansion.
+    point: usize,
+}
+
+/// The point about which a step is expanded.
+pub(super) struct ExpansionPoint<'a> {
+    /// The signs of the arguments of all roots.
+    pub root_signs: &'a [f64],
+    /// The sides of all corners.
+    pub sides: &'a [f64],
+    /// The states, then the variables of the roots that act.
+    pub values: &'a [f64],
+}
+
+/// The recurrences on every side of the roots that a path has been on.
+#[derive(Clone, Debug)]
+struct SideRecurrences {
+    /// The time at which the path starts.
+    origin: f64,
+    /// The signs of the arguments of the roots, with the recurrences there.
+    sides: Vec<(Vec<f64>, SystemSeries)>,
 }
 
 impl TaylorSteps {
     /// An empty list of steps for this many states, to this order.
     pub(super) fn new(states: usize, order: usize) -> Self {
-        Self { states, order, forgotten: 0, steps: vec![], coefficients: vec![] }
+        Self {
+            states,
+            order,
+            forgotten: 0,
+            steps: vec![],
+            without_series: 0,
+            coefficients: vec![],
+            points: vec![],
+            recurrences: None,
+        }
     }
 
     /// A single step of length zero in these states.
     pub(super) fn at_rest(values: Vec<f64>) -> Self {
-        let step = TaylorStep { start: 0.0, length: 0.0, first: 0 };
+        let step = TaylorStep { start: 0.0, length: 0.0, first: 0, point: 0 };
         let states = values.len();
         Self { steps: vec![step], coefficients: values, ..Self::new(states, 0) }
     }
@@ -58,11 +98,43 @@ impl TaylorSteps {
         if self.steps.len() < MANY || before.start > time || last.start > time {
             return;
         }
-        let (first, unneeded) = (before.first, self.steps.len() - 2);
+        let (unneeded, point) = (self.steps.len() - 2, before.point);
+        self.drop_series();
         self.forgotten += unneeded;
+        self.without_series = 0;
         self.steps.drain(..unneeded);
+        self.points.drain(..point);
+        self.steps.iter_mut().for_each(|step| step.point -= point);
+    }
+
+    /// Keeps the coefficients of the last two steps alone.
+    fn drop_series(&mut self) {
+        let [.., before, _] = self.steps.as_slice() else { return };
+        let first = before.first;
+        self.without_series = self.steps.len() - 2;
         self.coefficients.drain(..first);
-        self.steps.iter_mut().for_each(|step| step.first -= first);
+        self.steps[self.without_series..].iter_mut().for_each(|step| step.first -= first);
+    }
+
+    /// Ends a path that starts at the time `origin`. `recurrences` gives those for the signs of the
+    /// arguments of the roots; they are called for only where coefficients are missing.
+    pub(super) fn finish(
+        &mut self,
+        origin: f64,
+        roots: usize,
+        recurrences: impl Fn(&[f64]) -> Option<SystemSeries>,
+    ) {
+        if self.without_series == 0 {
+            return;
+        }
+        let mut sides: Vec<(Vec<f64>, SystemSeries)> = vec![];
+        for step in &self.steps[..self.without_series] {
+            let signs = &self.points[step.point..][..roots];
+            if sides.iter().all(|(known, _)| known != signs) {
+                sides.extend(recurrences(signs).map(|series| (signs.to_vec(), series)));
+            }
+        }
+        self.recurrences = Some(SideRecurrences { origin, sides });
     }
 
     /// The start of the first step that is kept; infinity before the first.
@@ -81,26 +153,33 @@ impl TaylorSteps {
         self.coefficients[first..].chunks_exact(self.order + 1).take(self.states)
     }
 
-    /// Adds a step that begins at this time, with the length and the polynomials of its states, and
-    /// with that of the time unless it is the variable.
+    /// Adds a step that begins at this time, with the length, the point and the polynomials of its
+    /// states, and with that of the time unless it is the variable.
     pub(super) fn push<'a>(
         &mut self,
         [start, length]: [f64; 2],
+        point: &ExpansionPoint,
         states: impl Iterator<Item = &'a [f64]>,
         time: Option<&[f64]>,
     ) {
-        self.steps.push(TaylorStep { start, length, first: self.coefficients.len() });
-        states.for_each(|series| self.coefficients.extend_from_slice(series));
-        if let Some([_, since_start @ ..]) = time {
-            self.coefficients.push(0.0);
-            self.coefficients.extend_from_slice(since_start);
+        /// Number of coefficients that are kept: 4 MB.
+        const MOST_COEFFICIENTS: usize = 1 << 19;
+        if self.coefficients.len() > MOST_COEFFICIENTS {
+            self.drop_series();
         }
+        let (first, place) = (self.coefficients.len(), self.points.len());
+        self.steps.push(TaylorStep { start, length, first, point: place });
+        let ExpansionPoint { root_signs, sides, values } = point;
+        [root_signs, sides, values].into_iter().for_each(|own| self.points.extend_from_slice(own));
+        states.for_each(|series| self.coefficients.extend_from_slice(series));
+        self.coefficients.extend(time_since_start(time));
     }
 
     /// Removes the last step; returns its start.
     pub(super) fn pop(&mut self) -> Option<f64> {
         let step = self.steps.pop()?;
         self.coefficients.truncate(step.first);
+        self.points.truncate(step.point);
         Some(step.start)
     }
 
@@ -108,14 +187,18 @@ impl TaylorSteps {
     /// first.
     pub(super) fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let step = self.step_at(time)?;
-        let place = self.place(step, time);
-        Some((0..self.states).map(|state| value(self.series(step, state), place)).collect())
+        let mut reader = StepReader::new(self);
+        let series = reader.series(step);
+        let place = series.place(time);
+        Some((0..self.states).map(|state| value(series.state(state), place)).collect())
     }
 
     /// One state at a time since the start; `None` before the first step.
     pub(super) fn state_at(&self, time: f64, state: usize) -> Option<f64> {
         let step = self.step_at(time)?;
-        (state < self.states).then(|| value(self.series(step, state), self.place(step, time)))
+        let mut reader = StepReader::new(self);
+        let series = reader.series(step);
+        (state < self.states).then(|| value(series.state(state), series.place(time)))
     }
 
     /// The times from `from` until `end` at which a state passes through zero, in order.
@@ -123,14 +206,12 @@ impl TaylorSteps {
         let first = self.step_at(from).unwrap_or(0);
         let (mut zeros, mut before) = (Vec::new(), 0.0);
         let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
+        let mut reader = StepReader::new(self);
         for step in steps {
-            let (start, series) = (self.steps[step].start, self.series(step, state));
             let end = self.steps.get(step + 1).map_or(end, |next| next.start);
-            let since_start = |place: f64| match self.time(step) {
-                Some(time) => value(time, place),
-                None => place,
-            };
-            let [here, there] = [from.max(start), end].map(|time| self.place(step, time));
+            let own = reader.series(step);
+            let (start, series) = (own.step.start, own.state(state));
+            let [here, there] = [from.max(start), end].map(|time| own.place(time));
             let sign = sign_at_start(series, here, there);
             // A crossing that rounding has put between two steps.
             if sign != 0.0 && before == -sign {
@@ -138,7 +219,7 @@ impl TaylorSteps {
             }
             let met = roots(series, here, there);
             before = met.last().map_or(sign, |(_, rising)| if *rising { 1.0 } else { -1.0 });
-            zeros.extend(met.into_iter().map(|(place, _)| start + since_start(place)));
+            zeros.extend(met.into_iter().map(|(place, _)| start + own.since_start(place)));
         }
         zeros
     }
@@ -147,19 +228,20 @@ impl TaylorSteps {
     /// increasing order.
     pub(super) fn sample(&self, mut times: &[f64], columns: &mut [Vec<f64>]) {
         let mut places = Vec::new();
+        let mut reader = StepReader::new(self);
         let mut step = 0;
         while let (Some(first), true) = (times.first(), step < self.steps.len()) {
-            let next = |step: usize| self.steps.get(step + 1).map(|step| step.start);
-            while next(step).is_some_and(|start| start <= *first) {
-                step += 1;
-            }
-            let count =
-                next(step).map_or(times.len(), |until| times.partition_point(|time| *time < until));
+            step = self.step_at(*first).unwrap_or(step);
+            let count = match self.steps.get(step + 1) {
+                Some(next) => times.partition_point(|time| *time < next.start),
+                None => times.len(),
+            };
             let (own, others) = times.split_at(count);
+            let series = reader.series(step);
             places.clear();
-            places.extend(own.iter().map(|time| self.place(step, *time)));
+            places.extend(own.iter().map(|time| series.place(*time)));
             for (state, column) in columns.iter_mut().enumerate().take(self.states) {
-                values(self.series(step, state), &places, column);
+                values(series.state(state), &places, column);
             }
             times = others;
         }
@@ -169,12 +251,104 @@ impl TaylorSteps {
     fn step_at(&self, time: f64) -> Option<usize> {
         self.steps.partition_point(|step| step.start <= time).checked_sub(1)
     }
+}
 
-    /// Returns the value of the variable of a step at a time since the start of the path.
-    fn place(&self, step: usize, time: f64) -> f64 {
-        let TaylorStep { start, length, .. } = self.steps[step];
+/// The coefficients of the time since the start of a step, whose first is zero.
+fn time_since_start(time: Option<&[f64]>) -> impl Iterator<Item = f64> {
+    let behind = time.and_then(|series| series.get(1..));
+    behind.into_iter().flat_map(|behind| [0.0].into_iter().chain(behind.iter().copied()))
+}
+
+/// Reads the polynomials of one step after the other.
+struct StepReader<'a> {
+    path: &'a TaylorSteps,
+    /// The recurrences, copied when the first coefficients have to be computed once more.
+    recurrences: Option<SideRecurrences>,
+    /// The coefficients of a step that were computed once more.
+    computed: Vec<f64>,
+}
+
+impl<'a> StepReader<'a> {
+    fn new(path: &'a TaylorSteps) -> Self {
+        Self { path, recurrences: None, computed: vec![] }
+    }
+
+    /// The polynomials of a step.
+    fn series(&mut self, index: usize) -> StepSeries<'_> {
+        let path = self.path;
+        let step = path.steps[index];
+        let coefficients = match index < path.without_series {
+            true => {
+                self.compute(index);
+                self.computed.as_slice()
+            }
+            false => {
+                let next = path.steps.get(index + 1);
+                &path.coefficients
+                    [step.first..next.map_or(path.coefficients.len(), |own| own.first)]
+            }
+        };
+        StepSeries { step, states: path.states, order: path.order, coefficients }
+    }
+
+    /// Computes the coefficients of a step from its point of expansion.
+    fn compute(&mut self, index: usize) {
+        let TaylorSteps { states, order, steps, points, .. } = self.path;
+        let step = steps[index];
+        self.computed.clear();
+        let own = self.recurrences.get_or_insert_with(|| {
+            let known = self.path.recurrences.clone();
+            known.unwrap_or(SideRecurrences { origin: 0.0, sides: vec![] })
+        });
+        let end = steps.get(index + 1).map_or(points.len(), |next| next.point);
+        let point = &points[step.point..end];
+        let here = |(signs, _): &&mut (Vec<f64>, SystemSeries)| point.starts_with(signs);
+        let Some((signs, series)) = own.sides.iter_mut().find(here) else {
+            // No side is missing; a step without recurrences has no values.
+            self.computed.resize(states * (order + 1), f64::NAN);
+            return;
+        };
+        let behind = &point[signs.len()..];
+        let (sides, values) = behind.split_at(series.sides().len().min(behind.len()));
+        series.set_sides(sides);
+        series.expand_about(own.origin + step.start, values);
+        series.compute();
+        (0..*states).for_each(|state| self.computed.extend_from_slice(series.state(state)));
+        self.computed.extend(time_since_start(series.time()));
+    }
+}
+
+/// The polynomials of a step.
+struct StepSeries<'a> {
+    step: TaylorStep,
+    states: usize,
+    order: usize,
+    coefficients: &'a [f64],
+}
+
+impl StepSeries<'_> {
+    /// Returns the polynomial of a state.
+    fn state(&self, state: usize) -> &[f64] {
+        let length = self.order + 1;
+        &self.coefficients[state * length..][..length]
+    }
+
+    /// The time since the start of the step, as a series; `None` if it is the variable itself.
+    fn time(&self) -> Option<&[f64]> {
+        let has_time = self.coefficients.len() > self.states * (self.order + 1);
+        has_time.then(|| self.state(self.states))
+    }
+
+    /// Returns the time since the start of the step at a value of its variable.
+    fn since_start(&self, place: f64) -> f64 {
+        self.time().map_or(place, |time| value(time, place))
+    }
+
+    /// Returns the value of the variable at a time since the start of the path.
+    fn place(&self, time: f64) -> f64 {
+        let TaylorStep { start, length, .. } = self.step;
         let since_start = time - start;
-        match self.time(step) {
+        match self.time() {
             None => since_start,
             // The time never goes back.
             Some(time) if since_start >= value(time, length) => length,
@@ -182,18 +356,6 @@ impl TaylorSteps {
                 find_root(|place| value(time, place) - since_start, 0.0, length).unwrap_or(0.0)
             }
         }
-    }
-
-    fn series(&self, step: usize, state: usize) -> &[f64] {
-        let length = self.order + 1;
-        &self.coefficients[self.steps[step].first + state * length..][..length]
-    }
-
-    /// The time since the start of a step, as a series; `None` if it is the variable itself.
-    fn time(&self, step: usize) -> Option<&[f64]> {
-        let next = self.steps.get(step + 1).map_or(self.coefficients.len(), |next| next.first);
-        let has_time = next - self.steps[step].first > self.states * (self.order + 1);
-        has_time.then(|| self.series(step, self.states))
     }
 }
 
@@ -220,5 +382,37 @@ mod tests {
         });
         assert!(one.len() == 1001 && (101..200).contains(&other.len()), "{}", other.len());
         assert_eq!(one[1001 - other.len()..], other);
+    }
+
+    /// A path whose first coefficients were dropped equals a short one that keeps all, bit for bit.
+    #[test]
+    fn coefficients_that_were_dropped_are_computed_once_more() {
+        let equations = [
+            // A pendulum; a driven one with a corner and a contact, whose root has a variable of its own.
+            "-sin(x)",
+            "-x - x^3/5 - abs(v)*v/10 - 100*((x - 1/2)^2)^(3/4)*H(x - 1/2) + cos(t)",
+        ];
+        for rate in equations {
+            let system = System::parse(&[("x", "v"), ("v", rate)], &[]).expect("a system");
+            let [short, long] = [60.0, 10_000.0].map(|end| {
+                let options = SystemOptions::default();
+                system.solve([0.0, end], &[-1.0, 0.0], &[], &options).expect("a path")
+            });
+            assert!(long.step_count() > 12_000, "{}", long.step_count());
+            let times: Vec<f64> = (0..=590).map(|index| f64::from(index) / 10.0).collect();
+            for time in &times {
+                assert_eq!(long.states_at(*time), short.states_at(*time), "{rate} at {time}");
+                assert_eq!(long.state_at(*time, 1), short.state_at(*time, 1));
+            }
+            let [one, other] = [&short, &long].map(|path| {
+                let (mut kept, mut columns) = (vec![], vec![vec![]; 2]);
+                path.sample(&times, &mut kept, &mut columns);
+                (kept, columns)
+            });
+            assert_eq!(one, other);
+            let [one, other] = [&short, &long].map(|path| path.zeros(1, 5.0).expect("series"));
+            assert!(one.len() > 10);
+            assert_eq!(one, other[..one.len()]);
+        }
     }
 }

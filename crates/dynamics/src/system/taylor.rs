@@ -13,7 +13,7 @@
 use super::expansion::{Expansions, SystemSeries, expressions};
 use super::polynomial::value;
 use super::roots::{Equations, Root};
-use super::steps::TaylorSteps;
+use super::steps::{ExpansionPoint, TaylorSteps};
 use super::{
     Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
     end_of_range, is_vanishing, within_range, without_value,
@@ -215,6 +215,8 @@ impl<'a> TaylorRun<'a> {
             self.values.truncate(self.system.state.len());
             self.steps = TaylorSteps::at_rest(self.values);
         }
+        let on_side = |signs: &[f64]| self.expansions.on_side(self.system, self.events, signs);
+        self.steps.finish(self.start, self.root_signs.len(), on_side);
         Path {
             end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
             motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
@@ -365,7 +367,12 @@ impl<'a> TaylorRun<'a> {
             rising,
         }));
         let series = (0..self.system.state.len()).map(|state| self.expansion.state(state));
-        self.steps.push([time, length], series, self.expansion.time());
+        let point = ExpansionPoint {
+            root_signs: &self.root_signs,
+            sides: &last.sides,
+            values: &last.values,
+        };
+        self.steps.push([time, length], &point, series, self.expansion.time());
         self.steps.forget_before(self.options.keep_from - start);
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);

@@ -145,10 +145,13 @@ impl Trajectory {
                 (1..=count as u32).map(|index| number * f64::from(index)).collect()
             }
         };
-        let crossing = |time: f64| Some(Crossing { time, state: self.states_at(time)? });
         let in_time = |time: &f64| *time >= course.after;
+        let sampled =
+            self.sample(times.into_iter().filter(in_time).collect(), course.rates.states.len());
+        let crossing =
+            |(index, time): (usize, &f64)| Crossing { time: *time, state: sampled.row(index) };
         Ok(OnSection {
-            crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
+            crossings: sampled.times.iter().enumerate().map(crossing).collect(),
             touches: touched.into_iter().map(|[_, at, _]| at).filter(in_time).collect(),
         })
     }
@@ -161,12 +164,16 @@ impl Trajectory {
         let Some(function) = self.compiled(expression) else {
             return vec![];
         };
-        let value = |time: f64| {
-            Some(function(time, &self.states_at(time)?)).filter(|value| value.is_finite())
-        };
-        let times = [0.0].into_iter().chain(turns).chain([self.end()]);
-        let heights: Vec<(f64, f64)> =
-            times.filter_map(|time| Some((time, value(time)?))).collect();
+        let times = [0.0].into_iter().chain(turns).chain([self.end()]).collect();
+        let sampled = self.sample(times, self.course.rates.states.len());
+        let height = |(index, time): (usize, &f64)| (*time, function(*time, &sampled.row(index)));
+        let heights: Vec<(f64, f64)> = sampled
+            .times
+            .iter()
+            .enumerate()
+            .map(height)
+            .filter(|(_, height)| height.is_finite())
+            .collect();
         let largest = heights.iter().fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
         let touch = |around: &[(f64, f64)]| {
             let [(before, one), (at, height), (behind, other)] = [around[0], around[1], around[2]];

@@ -154,20 +154,29 @@ fn motion_by_pieces(rates: &TimePerAngle) -> Result<(f64, Vec<f64>), PeriodError
         // The phase from the far turning point, where it is -pi.
         let mut phase = -std::f64::consts::PI;
         for piece in 0..rates.angles.len() - 1 {
-            let (low, high) = (rates.angles[piece], rates.angles[piece + 1]);
+            let [low, high] = rates.variable_range(piece);
+            // The angle and the rate at a value of the variable of the piece.
+            let at = |variable: f64| {
+                let (phi, slope) = rates.angle_at(piece, variable);
+                Ok::<_, PeriodError>((phi, slope * rates.time_per_angle(piece, phi)?))
+            };
             let mut duration = 0.0;
-            for (phi, weight) in nodes_and_weights(low, high) {
-                duration += weight * rates.time_per_angle(piece, phi)?;
+            for (variable, weight) in nodes_and_weights(low, high) {
+                duration += weight * at(variable)?.1;
             }
             let parts = (1 + (frequency * duration / LONGEST) as u32) << halving;
             let place = |part: u32| low + (high - low) * f64::from(part) / f64::from(parts);
             for part in 0..parts {
                 let (from, to) = (place(part), place(part + 1));
                 let nodes: Vec<(f64, f64)> = nodes_and_weights(from, to).collect();
-                let values = nodes.iter().map(|node| rates.time_per_angle(piece, node.0));
-                let values = values.collect::<Result<Vec<f64>, _>>()?;
+                let found = nodes.iter().map(|node| at(node.0));
+                let (angles, values): (Vec<f64>, Vec<f64>) =
+                    found.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
                 let elapsed = running_integral(&nodes, &values, from, to);
-                for ((&(phi, weight), rate), elapsed) in nodes.iter().zip(&values).zip(elapsed) {
+                let weights = nodes.iter().map(|node| node.1);
+                for (((phi, rate), weight), elapsed) in
+                    angles.iter().zip(&values).zip(weights).zip(elapsed)
+                {
                     let theta = phase + frequency * elapsed;
                     let x = 0.5 * (start + end) + 0.5 * (start - end) * phi.sin();
                     for (k, coefficient) in coefficients.iter_mut().enumerate() {
@@ -193,16 +202,19 @@ fn period_by_pieces(rates: &TimePerAngle) -> Result<f64, PeriodError> {
     /// The part of the period that its error must stay below.
     const GOOD_ENOUGH: f64 = 1e-9;
     let (mut half, mut uncertain) = (0.0, 0.0);
-    for (piece, ends) in rates.angles.windows(2).enumerate() {
+    for piece in 0..rates.angles.len() - 1 {
         let mut lost = None;
-        let rate = |phi: f64| {
+        let rate = |variable: f64| {
+            let (phi, slope) = rates.angle_at(piece, variable);
             let rate = rates.time_per_angle(piece, phi);
-            rate.unwrap_or_else(|error| {
-                lost = Some(error);
-                f64::NAN
-            })
+            slope
+                * rate.unwrap_or_else(|error| {
+                    lost = Some(error);
+                    f64::NAN
+                })
         };
-        let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance(piece)) {
+        let [from, to] = rates.variable_range(piece);
+        let (time, error) = match integrate_smooth(rate, from, to, rates.tolerance(piece)) {
             // No panel can be more accurate than the rounding of the force.
             Err(QuadratureError::NotConverged { value, error_estimate, .. }) => {
                 (value, error_estimate)

@@ -19,7 +19,7 @@ use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use super::IntegrationError;
-use super::mean_value::MeanValues;
+use super::mean_value::{IntervalEnd, MOST_TERMS, MeanValues};
 use super::quadrature::{QuadratureError, integrate_within, nodes_and_weights};
 use super::root::{RootError, find_root};
 
@@ -282,13 +282,22 @@ impl<'a> TimePerAngle<'a> {
             false => force.knots(end, start),
             true => graded(&force.knots(end, start)),
         };
-        let knots = resolved(force, knots, infinite_middle)?;
+        // At a turning point the mean divides, elsewhere it is added to an energy.
+        let series = |pair: &[f64], most: usize| match infinite_middle {
+            true => None,
+            false => {
+                let turning = [pair[0] == end, pair[1] == start];
+                MeanValues::new(force.value, [pair[0], pair[1]], turning, most)
+            }
+        };
+        let (knots, means) = resolved(force, &knots, infinite_middle, &series)?;
         // A single piece needs no sums.
-        let pieces = knots.windows(2).filter(|_| knots.len() > 2);
-        let pieces = pieces.map(|pair| match infinite_middle && pair.contains(&0.0) {
+        let pieces = knots.windows(2).zip(&means).filter(|_| knots.len() > 2);
+        let pieces = pieces.map(|(pair, means)| match means {
             // This value is never used, as no energy is counted through the middle.
-            true => Ok(f64::NAN),
-            false => integral(force.value, pair[0], pair[1], 0.0),
+            _ if infinite_middle && pair.contains(&0.0) => Ok(f64::NAN),
+            Some(means) if means.power_at().is_some() => Ok((pair[1] - pair[0]) * means.mean()),
+            _ => integral(force.value, pair[0], pair[1], 0.0),
         });
         let works = pieces.collect::<Result<Vec<f64>, _>>()?;
         let (mut below_end, mut below_start) = (vec![0.0], vec![0.0]);
@@ -311,18 +320,10 @@ impl<'a> TimePerAngle<'a> {
                 FRAC_PI_2 - 2.0 * (1.0 - part).max(0.0).sqrt().asin()
             }
         };
-        // At a turning point the mean divides, elsewhere it is added to an energy.
-        let series = |pair: &[f64]| match infinite_middle {
-            true => None,
-            false => {
-                let turning = [pair[0] == end, pair[1] == start];
-                MeanValues::new(force.value, [pair[0], pair[1]], turning)
-            }
-        };
         Ok(Self {
             force,
             weight,
-            means: knots.windows(2).map(series).collect(),
+            means,
             angles: knots.iter().map(angle).collect(),
             knots,
             infinite_middle,
@@ -346,6 +347,37 @@ impl<'a> TimePerAngle<'a> {
         } else {
             TOLERANCE_OF_PIECES
         }
+    }
+
+    /// Returns the range of the variable in which `dt/dphi` is integrated over one of the pieces:
+    /// the angle itself, or, next to a power of the force, the cube root of the distance from the
+    /// angle there. The integrand is smooth enough in it that two panels do where a hundred would be
+    /// needed in the angle.
+    pub fn variable_range(&self, piece: usize) -> [f64; 2] {
+        match self.power_at(piece) {
+            None => [self.angles[piece], self.angles[piece + 1]],
+            Some(_) => [0.0, 1.0],
+        }
+    }
+
+    /// Returns the angle at a value of the [variable](Self::variable_range) of one of the pieces, and
+    /// its rate of change with that.
+    pub fn angle_at(&self, piece: usize, variable: f64) -> (f64, f64) {
+        let [from, to] = [self.angles[piece], self.angles[piece + 1]];
+        let slope = |distance: f64| 3.0 * distance * distance * (to - from);
+        match self.power_at(piece) {
+            None => (variable, 1.0),
+            Some(IntervalEnd::First) => (from + (to - from) * variable.powi(3), slope(variable)),
+            Some(IntervalEnd::Last) => {
+                let distance = 1.0 - variable;
+                (to - (to - from) * distance.powi(3), slope(distance))
+            }
+        }
+    }
+
+    /// The end of a piece at which the force is a power of the distance.
+    fn power_at(&self, piece: usize) -> Option<IntervalEnd> {
+        self.means[piece].as_ref()?.power_at()
     }
 
     /// Returns `dt/dphi` in one of the pieces.
@@ -433,25 +465,39 @@ fn graded(knots: &[f64]) -> Vec<f64> {
 /// Adds knots where the force oscillates too often between two of these for [`MOST_PANELS`] panels,
 /// until a few panels suffice. Without them every value of `dt/dphi` would need an integral over
 /// many waves, at a total cost as the square of their number. A piece that ends at a zero at which
-/// the force is infinite is left as it is.
+/// the force is infinite is left as it is, and so is one that ends at a power and has a `series` of few
+/// terms. Returns
+/// the knots and the series of the pieces between them.
 ///
 /// # Errors
 /// [`PeriodError::Waves`] if too many knots are needed.
 fn resolved(
     force: &PiecewiseForce,
-    knots: Vec<f64>,
+    knots: &[f64],
     infinite_middle: bool,
-) -> Result<Vec<f64>, PeriodError> {
+    series: &dyn Fn(&[f64], usize) -> Option<MeanValues>,
+) -> Result<(Vec<f64>, Vec<Option<MeanValues>>), PeriodError> {
     const FEW_PANELS: i32 = 4;
     const MOST_KNOTS: usize = 1 << 14;
     const HALVINGS: u32 = 15;
+    /// The most terms of a series next to a power.
+    const FEW_TERMS: usize = 128;
     let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
+    let mut means: Vec<Option<MeanValues>> = vec![];
     for pair in knots.windows(2) {
+        // Next to a power no number of equal panels would do.
+        let graded = series(pair, FEW_TERMS).filter(|means| means.power_at().is_some());
+        if graded.is_some() {
+            found.push(pair[1]);
+            means.push(graded);
+            continue;
+        }
         let in_the_middle = infinite_middle && pair.contains(&0.0);
         if in_the_middle
             || converged_value(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some()
         {
             found.push(pair[1]);
+            means.push(series(pair, MOST_TERMS));
             continue;
         }
         let mut open = vec![(pair[0], pair[1], 0)];
@@ -463,13 +509,14 @@ fn resolved(
                 || converged_value(force.value, from, to, 0.0, FEW_PANELS).is_some()
             {
                 found.push(to);
+                means.push(series(&[from, to], MOST_TERMS));
                 continue;
             }
             let middle = 0.5 * (from + to);
             open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
         }
     }
-    Ok(found)
+    Ok((found, means))
 }
 
 /// Panels after which an integral is left to adaptive quadrature.

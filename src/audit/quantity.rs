@@ -5,7 +5,7 @@
 //! [`method::solve`](crate::method::solve), true frequencies from verification, phases and contacts
 //! from [`impact`](crate::impact), rest times from its simulation.
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::claim::{ClaimComputation, ClaimQuantity};
@@ -452,9 +452,13 @@ impl EvaluationScope<'_, '_> {
         let slope =
             equation.force.differentiate(equation.coordinate).map_err(|error| refused(&error))?;
         let (force, slope) = (compiled(&equation.force)?, compiled(&slope)?);
+        // The speed of contact takes thousands of values of the force: only the position changes.
+        let others = equation.parameters.iter().map(|name| number(name.name()));
+        let values = RefCell::new(std::iter::once(0.0).chain(others).collect::<Vec<f64>>());
         let call = |function: &CompiledFunction, x: f64| {
-            let others = equation.parameters.iter().map(|name| number(name.name()));
-            function.call(&std::iter::once(x).chain(others).collect::<Vec<f64>>())
+            let mut values = values.borrow_mut();
+            values[0] = x;
+            function.call(&values)
         };
         let swing = ImpactProblem {
             amplitude: number("A"),

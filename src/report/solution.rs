@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
 use super::{Block, Document};
 use crate::decimal::decimal;
+use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::homotopy_analysis::convergence_control;
@@ -123,16 +124,25 @@ fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec
     let remark = (!solution.numerical).then(|| rounded_to(longest));
     let first = below.coefficient(&Monomial::one());
     let sign = if fraction.negative { -Rational::one() } else { Rational::one() };
+    // A double has all digits that are shown, and is the same without lowest terms, which would take
+    // longer here than everything else.
+    let quotient = |number: &Rational, factor: &Rational| {
+        let [above, below] = [number.numer() * first.denom(), number.denom() * first.numer()];
+        let sign = if below.is_negative() { -factor } else { factor.clone() };
+        let rounded = to_f64(&Rational::new_raw(above, below.abs()));
+        let rounded = Some(rounded).filter(|value| value.is_normal()).and_then(from_f64);
+        rounded.map_or_else(|| number * factor / &first, |value| value * sign)
+    };
     let over = |polynomial: &Polynomial, factor: &Rational| {
-        polynomial.map(|number| number * factor / &first)
+        polynomial.map(|number| quotient(number, factor))
     };
     let letters = ["P", "Q"].map(|letter| fresh(letter, &solution.names()));
-    let quotient = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
-    let quotient = Polynomial::term(quotient, Rational::one());
+    let law = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
+    let law = Polynomial::term(law, Rational::one());
     (!first.is_zero()).then(|| {
         let law = Block::Law {
             left: left.clone(),
-            right: Sum::new(&quotient, false, |monomial| solution.order_of(monomial)),
+            right: Sum::new(&law, false, |monomial| solution.order_of(monomial)),
         };
         let letters = [
             rounded(letters[0], &over(&above, &sign)),

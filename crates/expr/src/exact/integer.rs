@@ -215,6 +215,15 @@ impl Shl<usize> for &Integer {
 }
 
 /// Shifts and rounds down.
+impl Shr<usize> for &Integer {
+    type Output = Integer;
+
+    fn shr(self, places: usize) -> Integer {
+        Integer(&self.0 >> places)
+    }
+}
+
+/// Shifts and rounds down.
 impl Shr<usize> for Integer {
     type Output = Self;
 

@@ -51,6 +51,10 @@ pub(super) fn greatest_common_divisor(a: &Integer, b: &Integer) -> Integer {
     if a.is_one() || b.is_one() {
         return Integer::one();
     }
+    // Of long numbers a division takes off a few bits only, with a number as long each time.
+    if a.bits().min(b.bits()) > 2 * u64::from(u64::BITS) {
+        return num_integer::Integer::gcd(a, b);
+    }
     let (mut larger, mut smaller) = (a.abs(), b.abs());
     while !smaller.is_zero() {
         let remainder = larger % &smaller;

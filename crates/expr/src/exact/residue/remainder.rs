@@ -6,7 +6,7 @@
 //! the recursion that gave the residues. The result is the number between `-M/2` and `M/2`.
 
 use num_integer::Integer as _;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Signed, ToPrimitive, Zero};
 use pulp::NullaryFnOnce;
 
 use super::sums::multiples;
@@ -265,7 +265,9 @@ impl ReconstructedIntegers {
 }
 
 /// Returns numerator and denominator of the fraction with this residue modulo `modulus`, by Wang's
-/// algorithm; the residue may be negative. Numerator and denominator together have at least 24 bits
+/// algorithm; the residue may be negative. Far from the end some eighteen divisions of Euclid's
+/// algorithm are made at once ([`lehmer_step`]), so that the cost is `n^2/30` word products for `n`
+/// bits. Numerator and denominator together have at least 24 bits
 /// fewer than the modulus, so that another such fraction would be a coincidence; `None` if there is
 /// none.
 pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
@@ -275,6 +277,19 @@ pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Intege
     let (mut larger, mut smaller) = (modulus.clone(), positive);
     let (mut before, mut denominator) = (Integer::zero(), Integer::one());
     while smaller.bits() > bound {
+        // One such step takes off less than a word, and must not go beyond the bound.
+        if smaller.bits() > bound + u64::from(u64::BITS)
+            && let Some([[a, b], [c, d]]) = lehmer_step(&larger, &smaller)
+        {
+            let combined = |p: &Integer, m: i64, q: &Integer, n: i64| {
+                p * &Integer::from(m) + q * &Integer::from(n)
+            };
+            (larger, smaller) =
+                (combined(&larger, a, &smaller, b), combined(&larger, c, &smaller, d));
+            (before, denominator) =
+                (combined(&before, a, &denominator, b), combined(&before, c, &denominator, d));
+            continue;
+        }
         let (quotient, rest) = larger.div_rem(&smaller);
         let next = before - &denominator * quotient;
         (larger, smaller) = (smaller, rest);
@@ -285,6 +300,31 @@ pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Intege
     }
     let short = smaller.bits() + denominator.bits() + ROOM <= modulus.bits();
     (short && !denominator.is_zero()).then_some((smaller, denominator))
+}
+
+/// Returns the matrix of as many steps of Euclid's algorithm as follow from the leading digits of two
+/// positive numbers; `None` if not one does.
+///
+/// Reference: D. H. Lehmer, Amer. Math. Monthly 45 (1938) 227-233; D. E. Knuth, *The Art of Computer
+/// Programming* 2, section 4.5.2, algorithm L.
+fn lehmer_step(larger: &Integer, smaller: &Integer) -> Option<[[i64; 2]; 2]> {
+    /// Leading binary digits that are looked at: sums with the entries stay within a word.
+    const LEADING: u64 = 62;
+    let shift = usize::try_from(larger.bits().saturating_sub(LEADING)).ok()?;
+    let leading = |number: &Integer| (number >> shift).to_i64();
+    let (mut x, mut y) = (leading(larger)?, leading(smaller)?);
+    let [mut upper, mut lower] = [[1, 0], [0, 1]];
+    // The quotient is certain where both bounds of the numbers give it.
+    while y + lower[0] != 0 && y + lower[1] != 0 {
+        let quotient = (x + upper[0]) / (y + lower[0]);
+        if quotient != (x + upper[1]) / (y + lower[1]) {
+            break;
+        }
+        let next: [i64; 2] = std::array::from_fn(|k| upper[k] - quotient * lower[k]);
+        (upper, lower) = (lower, next);
+        (x, y) = (y, x - quotient * y);
+    }
+    (upper[1] != 0).then_some([upper, lower])
 }
 
 #[cfg(test)]
@@ -353,5 +393,40 @@ mod tests {
             fraction(&Integer::from(3_000_000_001_i64).pow(2).mod_floor(&modulus), &modulus),
             None
         );
+    }
+
+    #[test]
+    fn many_steps_at_once_are_those_of_euclid() {
+        let long = Integer::from(7).pow(500);
+        let others = [Integer::from(3).pow(800), Integer::from(5).pow(40), &long - Integer::one()];
+        for other in others {
+            let (mut larger, mut smaller) =
+                if long > other { (long.clone(), other) } else { (other, long.clone()) };
+            let mut pairs = vec![];
+            while smaller.is_positive() {
+                pairs.push([larger.clone(), smaller.clone()]);
+                (larger, smaller) = (smaller.clone(), larger.mod_floor(&smaller));
+            }
+            let mut steps = 0;
+            for (place, [larger, smaller]) in pairs.iter().enumerate() {
+                let Some(rows) = lehmer_step(larger, smaller) else { continue };
+                let found =
+                    rows.map(|[m, n]| larger * &Integer::from(m) + smaller * &Integer::from(n));
+                let ahead = pairs[place + 1..].iter().position(|pair| *pair == found);
+                assert!(ahead.is_some() || found[1].is_zero(), "{place}");
+                steps = ahead.map_or(steps, |ahead| steps.max(ahead + 1));
+            }
+            assert!(steps > 12 || pairs.len() < 100, "{steps} of {}", pairs.len());
+        }
+    }
+
+    #[test]
+    fn a_long_fraction_is_found() {
+        // The inverse of d modulo M = 2 d t - 1 is 2 t.
+        let (numerator, denominator) = (-Integer::from(5).pow(200), Integer::from(7).pow(200));
+        let double = Integer::from(2) * Integer::from(3).pow(900);
+        let modulus = &denominator * &double - Integer::one();
+        let residue = (&numerator * double).mod_floor(&modulus);
+        assert_eq!(fraction(&residue, &modulus), Some((numerator, denominator)));
     }
 }

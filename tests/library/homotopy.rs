@@ -2,7 +2,7 @@
 
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
-use lindstedt::method::numbers::evaluate;
+use lindstedt::method::numbers::{evaluate, frequency_squared_of};
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Oscillator, Symbol};
@@ -321,4 +321,25 @@ fn homotopy_analysis_says_where_its_first_frequency_is_not_real() {
     let refused = at(3.88).expect_err("not real");
     assert!(refused.to_string().contains("w0 has no real value"), "{refused}");
     assert!(at(1e-5).is_ok());
+}
+
+/// The frequency alone comes from the series in hbar with which that is chosen, the numbers of an
+/// answer from its formula.
+#[test]
+fn the_frequency_at_the_chosen_hbar_is_that_of_the_formula() {
+    for equation in ["x'' + sin(x) = 0", "x'' + 4*x + x^3 = 0", "x'' + x^3 = 0"] {
+        let oscillator = Oscillator::parse(equation).expect("an oscillator");
+        let options = Options {
+            method: Some(Method::HomotopyAnalysis),
+            order: Some(4),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect("a solution");
+        for amplitude in [0.5, 1.5, -2.0] {
+            let at = [("A".into(), amplitude)].into();
+            let alone = frequency_squared_of(&oscillator, &solution, &at).expect("a frequency");
+            let whole = evaluate(&oscillator, &solution, &at).expect("numbers").frequency_squared;
+            assert!((alone / whole - 1.0).abs() < 1e-12, "{equation}: {alone} {whole}");
+        }
+    }
 }

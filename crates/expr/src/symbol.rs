@@ -6,6 +6,7 @@
 
 pub mod letters;
 
+use std::cmp::Ordering;
 use std::collections::HashSet;
 use std::fmt;
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -22,8 +23,22 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 /// assert_eq!(x.derivative().name(), "x'");
 /// assert_eq!(x.derivative().primes(), 1);
 /// ```
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Symbol(&'static str);
+
+// Polynomials compare symbols all the time. Most equal symbols are one pointer, for each name is
+// stored once: the text is read only where the pointers differ.
+impl Ord for Symbol {
+    fn cmp(&self, other: &Self) -> Ordering {
+        if std::ptr::eq(self.0, other.0) { Ordering::Equal } else { self.0.cmp(other.0) }
+    }
+}
+
+impl PartialOrd for Symbol {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 /// Names of Greek letters, which a coordinate may have besides a single letter, and which formulas
 /// show as that letter.

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The cost is a product of whole numbers for each pair of terms, and a reduction to lowest terms
-//! for each term of the result.
+//! for each term of the result. The products of all pairs of harmonics of two Fourier series go into
+//! one array.
 
 use num_integer::Integer as _;
 use num_traits::Zero;
@@ -49,40 +50,103 @@ pub(super) fn dense_product<R: Ring>(
     left: &Polynomial<R::Element>,
     right: &Polynomial<R::Element>,
 ) -> Option<Polynomial<R::Element>> {
-    let pairs = left.terms().len() * right.terms().len();
+    let [left, right] = [left, right].map(std::slice::from_ref);
+    let product = products(ring, left, right, 1, |_, _| [Some(0), None])?;
+    product.into_iter().next()
+}
+
+/// Returns the coefficients `c_k` of `2 sum_i a_i cos(i theta) sum_j b_j cos(j theta)`, to which each
+/// product adds twice, at `i + j` and at `|i - j|`; `None` as for [`dense_product`].
+pub(super) fn dense_cosine_product<R: Ring>(
+    ring: &Polynomials<R>,
+    left: &[Polynomial<R::Element>],
+    right: &[Polynomial<R::Element>],
+) -> Option<Vec<Polynomial<R::Element>>> {
+    let count = (left.len() + right.len()).checked_sub(1)?;
+    products(ring, left, right, count, |i, j| [Some(i + j), Some(i.abs_diff(j))])
+}
+
+/// Sums the products of all pairs of polynomials: that of the pair `(i, j)` into the one or two of the
+/// `count` sums that `into(i, j)` names, twice if it names one twice.
+fn products<R: Ring>(
+    ring: &Polynomials<R>,
+    left: &[Polynomial<R::Element>],
+    right: &[Polynomial<R::Element>],
+    count: usize,
+    into: impl Fn(usize, usize) -> [Option<usize>; 2],
+) -> Option<Vec<Polynomial<R::Element>>> {
+    let terms = |factor: &[Polynomial<R::Element>]| {
+        factor.iter().map(|own| own.terms().len()).sum::<usize>()
+    };
+    let pairs = terms(left) * terms(right);
     if pairs < MANY {
         return None;
     }
-    let exponents = ExponentBox::of_product(left, right, SPARSE * pairs)?;
-    let (own, own_denominator) = ring.0.numerators(left.terms().map(|term| term.1))?;
-    let (other, other_denominator) = ring.0.numerators(right.terms().map(|term| term.1))?;
-    let places = |polynomial: &Polynomial<R::Element>, factor: usize| -> Vec<usize> {
-        polynomial.terms().map(|(monomial, _)| exponents.place(monomial, factor)).collect()
-    };
-    let (own_places, other_places) = (places(left, 0), places(right, 1));
-    let mut cells = vec![Integer::zero(); exponents.places];
-    for (own, place) in own.iter().zip(own_places) {
-        for (other, behind) in other.iter().zip(&other_places) {
-            cells[place + behind] += own * other;
+    let exponents = ExponentBox::of_product(left, right, SPARSE * pairs / count)?;
+    let (own, own_denominator) = numerators(ring, left, &exponents, 0)?;
+    let (other, other_denominator) = numerators(ring, right, &exponents, 1)?;
+    let mut cells = vec![Integer::zero(); exponents.places * count];
+    for (i, own) in own.iter().enumerate() {
+        for (j, other) in other.iter().enumerate() {
+            let sums = into(i, j).map(|sum| sum.map(|sum| sum * exponents.places));
+            for (place, number) in own {
+                for (behind, factor) in other {
+                    let product = number * factor;
+                    if let Some(second) = sums[1] {
+                        cells[second + place + behind] += &product;
+                    }
+                    if let Some(first) = sums[0] {
+                        cells[first + place + behind] += product;
+                    }
+                }
+            }
         }
     }
     let denominator = own_denominator * other_denominator;
-    let mut product = ring.zero();
-    for (place, cell) in cells.into_iter().enumerate().filter(|(_, cell)| !cell.is_zero()) {
-        let coefficient = ring.0.fraction(cell, &denominator)?;
-        ring.add_term(&mut product, exponents.monomial(place), coefficient);
-    }
-    Some(product)
+    let monomials: Vec<Monomial> =
+        (0..exponents.places).map(|place| exponents.monomial(place)).collect();
+    let mut cells = cells.into_iter();
+    let sum = |_| {
+        let own = cells.by_ref().take(exponents.places).zip(&monomials);
+        let terms = own
+            .filter(|(cell, _)| !cell.is_zero())
+            .map(|(cell, monomial)| Some((monomial.clone(), ring.0.fraction(cell, &denominator)?)));
+        Some(Polynomial::from_terms(terms.collect::<Option<Vec<_>>>()?.into_iter()))
+    };
+    (0..count).map(sum).collect()
+}
+
+/// The numerators of the terms of one factor with their places, a list for each of its polynomials,
+/// and their common denominator.
+type Numerators = (Vec<Vec<(usize, Integer)>>, Integer);
+
+fn numerators<R: Ring>(
+    ring: &Polynomials<R>,
+    polynomials: &[Polynomial<R::Element>],
+    exponents: &ExponentBox,
+    factor: usize,
+) -> Option<Numerators> {
+    let all = polynomials.iter().flat_map(|own| own.terms().map(|term| term.1));
+    let (numbers, denominator) = ring.0.numerators(all)?;
+    let mut numbers = numbers.into_iter();
+    let placed = |own: &Polynomial<R::Element>| {
+        let places = own.terms().map(|(monomial, _)| exponents.place(monomial, factor));
+        places.zip(numbers.by_ref()).collect()
+    };
+    Some((polynomials.iter().map(placed).collect(), denominator))
 }
 
 impl ExponentBox {
-    /// The box of the product of two polynomials; `None` if it has more than `most` places.
+    /// The box of the products of polynomials of one list and of another; `None` if it has more than
+    /// `most` places.
     fn of_product<'a, K>(
-        left: &'a Polynomial<K>,
-        right: &'a Polynomial<K>,
+        left: &'a [Polynomial<K>],
+        right: &'a [Polynomial<K>],
         most: usize,
     ) -> Option<Self> {
-        let monomials = |polynomial: &'a Polynomial<K>| polynomial.terms().map(|term| term.0);
+        let monomials = |factor: &'a [Polynomial<K>]| {
+            factor.iter().flat_map(Polynomial::terms).map(|term| term.0)
+        };
         let mut symbols: Vec<Symbol> = vec![];
         let factors = [left, right].into_iter().flat_map(monomials).flat_map(Monomial::factors);
         for (symbol, _) in factors {
@@ -90,6 +154,7 @@ impl ExponentBox {
                 symbols.push(*symbol);
             }
         }
+        symbols.sort();
         let (mut places, mut axes) = (1_usize, Vec::with_capacity(symbols.len()));
         for symbol in symbols {
             let exponents = |factor| monomials(factor).map(|monomial| monomial.exponent(symbol));
@@ -97,10 +162,12 @@ impl ExponentBox {
             let mut range = 0_u32;
             for (least, factor) in axis.least.iter_mut().zip([left, right]) {
                 *least = exponents(factor).min()?;
+                let mut largest = 0;
                 for distance in exponents(factor).map(|exponent| exponent.abs_diff(*least)) {
                     axis.step = axis.step.gcd(&distance);
+                    largest = distance.max(largest);
                 }
-                range = range.saturating_add(exponents(factor).max()?.abs_diff(*least));
+                range = range.saturating_add(largest);
             }
             axis.step = axis.step.max(1);
             axis.length += (range / axis.step) as usize;
@@ -122,12 +189,10 @@ impl ExponentBox {
     fn monomial(&self, mut place: usize) -> Monomial {
         let power = |axis: &ExponentRange| {
             let steps = (place % axis.length) as i32 * axis.step as i32;
-            let exponent = axis.least[0] + axis.least[1] + steps;
             place /= axis.length;
-            Monomial::power_of(axis.symbol, exponent)
+            (axis.symbol, axis.least[0] + axis.least[1] + steps)
         };
-        let powers: Vec<Monomial> = self.axes.iter().map(power).collect();
-        powers.iter().fold(Monomial::one(), |product, power| product.product(power))
+        Monomial::from_ordered(self.axes.iter().map(power))
     }
 }
 
@@ -176,6 +241,35 @@ mod tests {
         let mut plus = one.clone();
         plus.add_term(Monomial::one(), ratio(1, 1));
         assert_eq!(POLYNOMIALS.product(&plus, &minus), by_terms(&plus, &minus));
+    }
+
+    #[test]
+    fn a_product_of_cosine_series_is_the_sum_over_its_pairs() {
+        let series = |names: [&str; 2], harmonics: &[usize]| {
+            let term = |k: usize| match harmonics.contains(&k) {
+                true => filled(names[0], names[1]).map(|number| number * ratio(k as i64 + 1, 3)),
+                false => Polynomial::zero(),
+            };
+            (0..6).map(term).collect::<Vec<Polynomial>>()
+        };
+        let (left, right) = (series(["a", "b"], &[0, 2, 5]), series(["b", "c"], &[0, 1, 2]));
+        let found = dense_cosine_product(&POLYNOMIALS, &left, &right).expect("many terms");
+        let mut expected = vec![Polynomial::zero(); 11];
+        for (i, own) in left.iter().enumerate() {
+            for (j, other) in right.iter().enumerate() {
+                let product = by_terms(own, other);
+                expected[i + j].accumulate(&product);
+                expected[i.abs_diff(j)].accumulate(&product);
+            }
+        }
+        assert_eq!(found, expected);
+        // Constants alone: the harmonics i + j and |i - j| are one.
+        let found =
+            dense_cosine_product(&POLYNOMIALS, &left[..1], &right[..1]).expect("many terms");
+        let mut doubled = by_terms(&left[0], &right[0]);
+        doubled.accumulate(&doubled.clone());
+        assert_eq!(found, [doubled]);
+        assert!(dense_cosine_product(&POLYNOMIALS, &left[3..4], &[]).is_none());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::ops::Add;
 
 use num_traits::Zero;
 
-use super::dense_product::dense_product;
+use super::dense_product::{dense_cosine_product, dense_product};
 use super::rational::{Integer, Rational, to_f64};
 use super::ring::{NotInvertible, Number, Rationals, Ring};
 use super::scaled::Scaled;
@@ -32,6 +32,11 @@ impl Monomial {
     /// `symbol^exponent`.
     pub fn power_of(symbol: Symbol, exponent: i32) -> Self {
         Self(if exponent == 0 { vec![] } else { vec![(symbol, exponent)] })
+    }
+
+    /// The product of powers of these symbols, which are in their order; a power of zero is left out.
+    pub(super) fn from_ordered(factors: impl Iterator<Item = (Symbol, i32)>) -> Self {
+        Self(factors.filter(|factor| factor.1 != 0).collect())
     }
 
     /// The symbols and their exponents, in the order of the symbols.
@@ -150,6 +155,11 @@ impl<K: Number> Number for Polynomial<K> {
 }
 
 impl<K> Polynomial<K> {
+    /// The sum of different monomials with coefficients that are not zero.
+    pub(super) fn from_terms(terms: impl Iterator<Item = (Monomial, K)>) -> Self {
+        Self { terms: terms.collect() }
+    }
+
     /// The terms, lowest total degree first.
     pub fn terms(&self) -> impl DoubleEndedIterator<Item = (&Monomial, &K)> + ExactSizeIterator {
         self.terms.iter()
@@ -510,6 +520,13 @@ impl<R: Ring> Ring for Polynomials<R> {
             }
         }
         result
+    }
+    fn doubled_cosine_product(
+        &self,
+        left: &[Self::Element],
+        right: &[Self::Element],
+    ) -> Option<Vec<Self::Element>> {
+        dense_cosine_product(self, left, right)
     }
     fn scale(&self, element: &mut Self::Element, factor: i64) {
         for coefficient in element.terms.values_mut() {

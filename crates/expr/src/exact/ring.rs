@@ -101,6 +101,16 @@ pub trait Ring: Clone + Debug + PartialEq {
     /// The pair `unit` and `integer` with `element * unit = integer`; `None` if the element has no
     /// such pair: the step from a linear equation `element * x = b` to `x = b * unit / integer`.
     fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)>;
+    /// Twice the product of two series in `cos(k theta)`, whose elements are the coefficients by `k`,
+    /// for rings that form it faster as a whole than product by product; `None` for all others.
+    fn doubled_cosine_product(
+        &self,
+        left: &[Self::Element],
+        right: &[Self::Element],
+    ) -> Option<Vec<Self::Element>> {
+        let _ = (left, right);
+        None
+    }
     /// The numerators of elements over one positive common denominator; `None` if elements are
     /// neither whole numbers nor fractions.
     fn numerators<'a>(

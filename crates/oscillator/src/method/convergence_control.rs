@@ -36,6 +36,13 @@ pub(super) struct FormulaInHbar {
     waves: Vec<[Samples; 2]>,
 }
 
+/// The hbar of least residual, and omega by the formula there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeastResidual {
+    pub(super) hbar: f64,
+    pub(super) frequency: f64,
+}
+
 /// A coefficient, the power of hbar, and the indices of the other powers.
 struct TermInHbar {
     coefficient: Scaled,
@@ -77,12 +84,13 @@ impl FormulaInHbar {
     }
 
     /// The hbar between -2 and 0 at which the squared residual of the equation is least, with these
-    /// values of all other symbols; `None` if one is missing or no residual is finite.
+    /// values of all other symbols, and omega there; `None` if one is missing or no residual is
+    /// finite.
     pub(super) fn least_residual(
         &self,
         force: &CentredForce,
         value_of: impl Fn(Symbol) -> Option<f64>,
-    ) -> Option<f64> {
+    ) -> Option<LeastResidual> {
         const TRIALS: usize = 40;
         let powers = self
             .powers
@@ -90,6 +98,7 @@ impl FormulaInHbar {
             .map(|(symbol, exponent)| Some(Scaled::new(value_of(*symbol)?).power(*exponent)));
         let powers: Vec<Scaled> = powers.collect::<Option<_>>()?;
         let frequency = in_hbar(&self.frequency, &powers);
+        let omega = |hbar: f64| frequency.iter().rev().fold(0.0, |sum, c| sum * hbar + c);
         // Place and acceleration at the samples, a coefficient for each power of hbar.
         let (mut places, mut accelerations): (Vec<Samples>, Vec<Samples>) = (vec![], vec![]);
         for (harmonic, waves) in self.harmonics.iter().zip(&self.waves) {
@@ -108,7 +117,7 @@ impl FormulaInHbar {
             }
         }
         let squared_residual = |hbar: f64| {
-            let frequency = frequency.iter().rev().fold(0.0, |sum, c| sum * hbar + c);
+            let frequency = omega(hbar);
             let value = |series: &[Samples], j: usize| {
                 series.iter().rev().fold(0.0, |sum, samples| sum * hbar + samples[j])
             };
@@ -122,8 +131,8 @@ impl FormulaInHbar {
         let place = |k: usize| -2.0 * k as f64 / TRIALS as f64;
         let sums: Vec<f64> = (1..=TRIALS).map(|k| squared_residual(place(k))).collect();
         let best = (1..=TRIALS).min_by(|&a, &b| sums[a - 1].total_cmp(&sums[b - 1]))?;
-        let (value, least) = find_minimum(squared_residual, place(best + 1), place(best - 1));
-        least.is_finite().then_some(value)
+        let (hbar, least) = find_minimum(squared_residual, place(best + 1), place(best - 1));
+        least.is_finite().then(|| LeastResidual { hbar, frequency: omega(hbar) })
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
-use super::convergence_control::FormulaInHbar;
+use super::convergence_control::{FormulaInHbar, LeastResidual};
 use super::exact_motion::{cosines, motion_about};
 use super::table::{Choice, MethodEntry, MotionEvaluation};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
@@ -265,7 +265,7 @@ pub fn evaluate(
     let mut chosen = Vec::new();
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar, known)?;
+        let value = best_hbar(oscillator, solution, &numbers, hbar, known)?.hbar;
         numbers.insert(hbar, value);
         chosen.push((hbar, value));
     }
@@ -332,8 +332,13 @@ pub fn frequency_squared_along(
 ) -> Result<f64, NoNumbers> {
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
-        let value = best_hbar(oscillator, solution, &numbers, hbar, known)?;
-        numbers.insert(hbar, value);
+        let best = best_hbar(oscillator, solution, &numbers, hbar, known)?;
+        let squared = best.frequency * best.frequency.abs();
+        // Only the reason why there is no value is sought in the formula itself.
+        if squared.is_finite() {
+            return Ok(squared);
+        }
+        numbers.insert(hbar, best.hbar);
     }
     match solution.law.is_solved_by_numbers() {
         true => solve(oscillator, solution, &numbers, known).map(|found| found.0),
@@ -963,7 +968,7 @@ fn best_hbar(
     numbers: &BTreeMap<Symbol, f64>,
     hbar: Symbol,
     known: &NumbersCache,
-) -> Result<f64, NoNumbers> {
+) -> Result<LeastResidual, NoNumbers> {
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let mut numbers = numbers.clone();
     for definition in &solution.definitions {

@@ -473,10 +473,15 @@ impl<R: Ring> FourierSeries<R> {
     /// `2 cos i cos j = cos(i+j) + cos(i-j)` stay whole.
     fn add_doubled_product(&mut self, left: &Self, right: &Self) {
         let Self { ring, cosine, sine, .. } = self;
-        for_each_product(ring, &left.cosine, &right.cosine, |i, j, product| {
-            ring.accumulate(&mut cosine[i + j], &product);
-            ring.add(&mut cosine[i.abs_diff(j)], product);
-        });
+        match ring.doubled_cosine_product(&left.cosine, &right.cosine) {
+            Some(doubled) => {
+                cosine.iter_mut().zip(doubled).for_each(|(sum, term)| ring.add(sum, term));
+            }
+            None => for_each_product(ring, &left.cosine, &right.cosine, |i, j, product| {
+                ring.accumulate(&mut cosine[i + j], &product);
+                ring.add(&mut cosine[i.abs_diff(j)], product);
+            }),
+        }
         for_each_product(ring, &left.sine, &right.sine, |i, j, mut product| {
             ring.accumulate(&mut cosine[i.abs_diff(j)], &product);
             ring.negate(&mut product);

@@ -13,7 +13,7 @@ use crate::conservative::force::CentredForce;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
 use crate::method::inertia;
-use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
+use crate::method::numbers::{NumbersCache, error_of_integral, frequency_squared_along, law_name};
 use crate::method::table::{ForceRepresentation, MethodEntry};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
@@ -225,9 +225,10 @@ fn positive_from(
     let amplitude = *numbers.get(&symbol)?;
     let (inner, outer) =
         (truth.smallest_amplitude(), f64::min(truth.largest_amplitude(), 4.0 * amplitude.abs()));
+    let known = NumbersCache::default();
     let squared = |size: f64| {
         let numbers = truth.numbers_at(size);
-        frequency_squared_of(oscillator, solution, &numbers).unwrap_or(f64::NAN)
+        frequency_squared_along(oscillator, solution, &numbers, &known).unwrap_or(f64::NAN)
     };
     let place = |k: usize| inner + (outer - inner) * k as f64 / STEPS as f64;
     let values: Vec<f64> = (0..=STEPS).map(|k| squared(place(k))).collect();
@@ -264,10 +265,11 @@ fn vanishing(
     } else {
         FARTHEST * amplitude.abs()
     };
+    let known = NumbersCache::default();
     let squared = |size: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(symbol, size.copysign(amplitude));
-        frequency_squared_of(oscillator, solution, &numbers).unwrap_or(f64::NAN)
+        frequency_squared_along(oscillator, solution, &numbers, &known).unwrap_or(f64::NAN)
     };
     let mut places: Vec<f64> = (1..=STEPS)
         .map(|k| farthest * (k as f64 / STEPS as f64).powi(2))

@@ -38,6 +38,7 @@
 //! | [`problem`] | reads problem files | [`problem::Problem`] |
 //! | [`catalog`] | classical oscillators by name | [`catalog::find`] |
 //! | [`report`] | what a report of a result says, for every format | [`report::Document`] |
+//! | [`cli`] | the program, and its commands inside another process | [`cli::run`], [`cli::call`] |
 //! | [`export`] | text, LaTeX, JSON, programs, pictures, pages | [`export::latex`], [`export::code`] |
 //! | [`expr`] | the expression tree: reading, printing, calculus, evaluation | [`expr::Expr`] |
 //! | [`exact`] | fractions, polynomials, rings of coefficients | [`exact::Ring`] |
@@ -91,6 +92,9 @@ pub mod audit;
 pub mod report;
 
 pub mod export;
+
+#[cfg(feature = "cli")]
+pub mod cli;
 
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
 pub use method::motion::Motion;

@@ -1,7 +1,5 @@
 //! The command-line program; see `lindstedt --help`.
 
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::run()
+    lindstedt::cli::run()
 }

@@ -3,12 +3,12 @@
 
 use std::path::PathBuf;
 
-use lindstedt::export::html::{self, HtmlPage};
-use lindstedt::export::{latex, printable, text};
-use lindstedt::report::Document;
-use lindstedt::solution::Solution;
+use crate::export::html::{self, HtmlPage};
+use crate::export::{latex, printable, text};
+use crate::report::Document;
+use crate::solution::Solution;
 
-use super::{Common, Failure, Format, Outcome, text_writer};
+use super::{Common, Failure, Format, Outcome, Reason, session, text_writer};
 
 /// A result, and how it is written in each format.
 pub(super) struct Answer<'a> {
@@ -28,7 +28,21 @@ pub(super) type Draw<'a> = &'a dyn Fn() -> Result<String, Failure>;
 impl Answer<'_> {
     /// The result and the picture that were asked for, without a verdict.
     pub(super) fn outcome(&self, common: &Common) -> Result<Outcome, Failure> {
-        let text = match common.format() {
+        let text = self.written(common, common.format())?;
+        let session = session::current();
+        session.keep_forms(common.format(), |format| self.written(common, format));
+        Ok(Outcome {
+            result: text_writer(text),
+            picture: pictured(common, self.picture),
+            note: None,
+            verdict: None,
+            partial: false,
+        })
+    }
+
+    /// The result in a format.
+    fn written(&self, common: &Common, format: Format) -> Result<String, Failure> {
+        Ok(match format {
             Format::Text => printable(&text::document(self.document, self.width)),
             Format::Latex => common.latex(printable(&latex::document(self.document))),
             Format::Html => {
@@ -36,13 +50,6 @@ impl Answer<'_> {
             }
             Format::Svg => drawn(self.picture)?,
             format => (self.other)(format)?,
-        };
-        Ok(Outcome {
-            result: text_writer(text),
-            picture: pictured(common, self.picture),
-            note: None,
-            verdict: None,
-            partial: false,
         })
     }
 }
@@ -72,15 +79,14 @@ pub(super) fn page(
 ) -> String {
     let drawn = picture.map(|draw| {
         draw().map_err(|failure| match failure {
-            Failure::Refused(reason) | Failure::Usage(reason) => reason,
+            Failure::Refused(Reason { text, .. }) | Failure::Usage(text) => text,
         })
     });
     let picture = drawn.as_ref().map(|drawn| match drawn {
         Ok(picture) => Ok(picture.as_str()),
         Err(reason) => Err(reason.as_str()),
     });
-    let words: Vec<String> =
-        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let words = session::current().words();
     write(&HtmlPage {
         title: &command(&what_is_asked(&words)),
         picture,

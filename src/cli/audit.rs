@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::audit::{Claims, audit};
+use crate::export::json;
+use crate::problem::ProblemError;
+use crate::report;
+use crate::verify::Verdict;
 use clap::Args;
-use lindstedt::audit::{Claims, audit};
-use lindstedt::export::json;
-use lindstedt::problem::ProblemError;
-use lindstedt::report;
-use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_standard, width};

@@ -1,9 +1,9 @@
 //! `lindstedt catalog`.
 
+use crate::catalog::{CATALOG, find, nearest};
+use crate::export::text::fitted;
+use crate::export::{catalog, json};
 use clap::Args;
-use lindstedt::catalog::{CATALOG, find, nearest};
-use lindstedt::export::text::fitted;
-use lindstedt::export::{catalog, json};
 
 use super::answer::{no_such, page};
 use super::files::{OF_FILES, width};

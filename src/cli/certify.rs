@@ -2,25 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
+use crate::exact::Rational;
+use crate::export::json::{self, CertificateDocument, DampedCertificateDocument};
+use crate::export::printable_in_line;
+use crate::expr::parse_expression;
+use crate::method::with_resonance_at;
+use crate::report::{self, AnyCertificate, CertificateReport};
+use crate::verify::Verdict;
+use crate::{Method, Options, Oscillator, Solution, Values, solve};
 use clap::Args;
-use lindstedt::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
-use lindstedt::exact::Rational;
-use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
-use lindstedt::export::printable_in_line;
-use lindstedt::expr::parse_expression;
-use lindstedt::method::with_resonance_at;
-use lindstedt::report::{self, AnyCertificate, CertificateReport};
-use lindstedt::verify::Verdict;
-use lindstedt::{
-    Interrupt, Method, Options, Oscillator, Progress, Solution, Supervision, Values, solve,
-};
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
 use super::derive::{self, EquationArguments, Solved};
 use super::files::width;
-use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_most, tolerance};
+use super::progress::with_progress;
+use super::session;
+use super::{Common, Failure, Format, Outcome, Work, json_text, read_at_most, tolerance};
 
 /// A proof beside a formula: the motion exists, and how far the formula is off, from both sides
 #[derive(Args)]
@@ -112,7 +111,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     }
     if solution.response.is_some() {
         if arguments.no_formula {
-            return Err(Failure::Refused(
+            return Err(Failure::because(
                 "--no-formula leaves nothing to find a driven motion by: of several it is the one near the formula's\n  help: leave --no-formula out; `response` finds the motions of a range in numbers".to_owned(),
             ));
         }
@@ -124,10 +123,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
         false => certificate::certify(&oscillator, &solution, &values),
     };
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
-    let supervision = Supervision {
-        interrupt: Interrupt::from_flag(&STOP),
-        progress: Progress::from_counter(&PROGRESS),
-    };
+    let supervision = session::supervision();
     let validity = arguments.range.as_ref().map(|(low, high)| {
         with_progress("of the range", || {
             certificate::validity(
@@ -168,7 +164,7 @@ fn without_amplitude(
     proved: impl FnOnce() -> Result<(DampedCertificate, Certified), NotCertified>,
 ) -> Result<Outcome, Failure> {
     if arguments.range.is_some() {
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "--range is of amplitudes, and {kind} has one of its own\n  help: leave --range out: the proof is of the motion at these values"
         )));
     }
@@ -203,7 +199,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let file = &arguments.file;
     let refused = |reason: &dyn std::fmt::Display| {
         let reason = printable_in_line(&reason.to_string());
-        Failure::Refused(format!("{}: {reason}", file.display()))
+        Failure::because(format!("{}: {reason}", file.display()))
     };
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
@@ -243,7 +239,7 @@ struct EquationAlone {
 fn without_picture(common: &Common) -> Result<(), Failure> {
     match common.plot {
         None => Ok(()),
-        Some(_) => Err(Failure::Refused(
+        Some(_) => Err(Failure::because(
             "a proof has no picture\n  help: `derive` draws the formula beside the true motion"
                 .to_owned(),
         )),

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use crate::Oscillator;
+use crate::export::{self, json};
+use crate::problem::ReadingCommand;
+use crate::report;
+use crate::verify::comparison::{self, Comparison};
+use crate::verify::{Verdict, VerificationError};
 use clap::Args;
-use lindstedt::Oscillator;
-use lindstedt::export::{self, json};
-use lindstedt::problem::ReadingCommand;
-use lindstedt::report;
-use lindstedt::verify::comparison::{self, Comparison};
-use lindstedt::verify::{Verdict, VerificationError};
 
 use super::answer::{Answer, no_such};
 use super::derive::{Numbered, formula, named, notes_on_letters, oscillator, with_values};
@@ -100,7 +100,7 @@ fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
 }
 
 fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, Failure> {
-    use lindstedt::export::figure::backbone_figure;
+    use crate::export::figure::backbone_figure;
 
     let (truth, curves) = comparison::backbones(oscillator, comparison)?;
     let at: Vec<String> =

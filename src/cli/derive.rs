@@ -4,29 +4,28 @@ use std::path::Path;
 
 use std::time::Duration;
 
+use crate::Values;
+use crate::catalog::nearest;
+use crate::export::code::{self, CodeStyle, Language};
+use crate::export::{html, json, latex, text};
+use crate::expr::{Expr, ResultSymbols, parse_expression};
+use crate::method::table::{Choice, MethodEntry, that_take};
+use crate::method::{self, Options, Reason, Refusal};
+use crate::problem::{FormulaProblem, Order, Problem, ProblemError, ReadingCommand};
+use crate::report;
+use crate::solution::{AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution};
+use crate::verify::{self, VerificationError};
+use crate::{Oscillator, Symbol};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use lindstedt::Values;
-use lindstedt::catalog::nearest;
-use lindstedt::export::code::{self, CodeStyle, Language};
-use lindstedt::export::{html, json, latex, text};
-use lindstedt::expr::{Expr, ResultSymbols, parse_expression};
-use lindstedt::method::table::{Choice, MethodEntry, that_take};
-use lindstedt::method::{self, Options, Reason, Refusal};
-use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, ReadingCommand};
-use lindstedt::report;
-use lindstedt::solution::{
-    AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution,
-};
-use lindstedt::verify::{self, VerificationError};
-use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::files::width;
 use super::problem::{expression, problem, value_name};
-use super::progress::{PROGRESS, with_progress};
+use super::progress::with_progress;
+use super::session::{self, Session};
 use super::{
-    Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer, tolerance, values_of,
+    Common, Failure, Format, Outcome, Work, in_flags, json_text, text_writer, tolerance, values_of,
 };
 
 /// An equation, and how it is to be answered.
@@ -332,8 +331,8 @@ fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) ->
 }
 
 /// The grace period after a timeout: an expansion that has begun has orders to show.
-pub(super) fn grace_period() -> Duration {
-    match PROGRESS.read() {
+pub(super) fn grace_period(session: &Session) -> Duration {
+    match session.progress.read() {
         (_, 0) => Duration::ZERO,
         _ => Duration::from_secs(60),
     }
@@ -373,7 +372,8 @@ fn solve_at(
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
-    Failure::with_advice(&format!("{refusal}{shown}"), refusal.help())
+    let help = refusal.help().as_ref().map(in_flags);
+    Failure::refused(&format!("{refusal}{shown}"), help).of_kind(refusal).naming(refusal.term())
 }
 
 /// Reads the equation and the choices of a problem for this command.
@@ -390,7 +390,7 @@ pub(super) fn oscillator(
     about: Option<&str>,
 ) -> Result<Oscillator, Failure> {
     let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::with_advice(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()).naming(error.term()))?;
     let Some(about) = about.or(formula.about) else {
         return Ok(oscillator);
     };
@@ -604,10 +604,7 @@ fn options(
         cycle: arguments.cycle,
         resonance: arguments.resonance,
         frequency_alone: arguments.omega_only,
-        supervision: Supervision {
-            interrupt: Interrupt::from_flag(&STOP),
-            progress: Progress::from_counter(&PROGRESS),
-        },
+        supervision: session::supervision(),
     })
 }
 
@@ -693,11 +690,11 @@ fn picture(
     solution: &Solution,
     values: &Values,
 ) -> Result<String, Failure> {
-    use lindstedt::export::figure::{MotionFigure, motion_figure};
+    use crate::export::figure::{MotionFigure, motion_figure};
 
     let motions = verify::motions(oscillator, solution, values)?;
     let Some(motions) = motions else {
-        return Err(Failure::Refused(
+        return Err(Failure::because(
             "the formula has no real frequency there, so it has no motion".to_owned(),
         ));
     };

@@ -93,7 +93,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
                 path.display()
             )));
         }
-        writable(path).map_err(Failure::Refused)?;
+        writable(path).map_err(Failure::because)?;
     }
     Ok(())
 }

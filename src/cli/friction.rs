@@ -1,9 +1,9 @@
 //! `lindstedt friction`.
 
+use crate::export::{friction, json};
+use crate::impact::friction::{FrictionSetup, study};
+use crate::report;
 use clap::Args;
-use lindstedt::export::{friction, json};
-use lindstedt::impact::friction::{FrictionSetup, study};
-use lindstedt::report;
 
 use super::answer::{Answer, no_such};
 use super::files::width;

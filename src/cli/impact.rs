@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use crate::certificate::enclose_impact;
+use crate::exact::Rational;
+use crate::export::json;
+use crate::expr::parse_expression;
+use crate::impact::{Impact, Setup, Side, compare, solve};
+use crate::problem::{BarrierSide, Problem};
+use crate::report::{self, ImpactCertificateReport};
+use crate::verify::Verdict;
 use clap::Args;
-use lindstedt::certificate::enclose_impact;
-use lindstedt::exact::Rational;
-use lindstedt::export::json;
-use lindstedt::expr::parse_expression;
-use lindstedt::impact::{Impact, Setup, Side, compare, solve};
-use lindstedt::problem::{BarrierSide, Problem};
-use lindstedt::report::{self, ImpactCertificateReport};
-use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
 use super::derive::given_values;
@@ -136,7 +136,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let exact =
         [-towards * setup.release, towards * setup.barrier, setup.stiffness].map(as_written);
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
-        return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
+        return Err(Failure::because("a number of the impact is not finite".to_owned()));
     };
     let enclosure = enclose_impact(amplitude, barrier, stiffness)?;
     let impact = solve(setup)?;
@@ -220,7 +220,7 @@ fn problem_of(arguments: &ImpactArguments) -> Result<Problem, Failure> {
         }
     }
     if let Some(order) = arguments.order {
-        asked.order = Some(lindstedt::problem::Order::Power(order));
+        asked.order = Some(crate::problem::Order::Power(order));
     }
     if arguments.left {
         asked.pendulum.side = Some(BarrierSide::Left);
@@ -229,9 +229,9 @@ fn problem_of(arguments: &ImpactArguments) -> Result<Problem, Failure> {
 }
 
 fn picture(impact: &Impact) -> Result<String, Failure> {
-    use lindstedt::export::decimal;
-    use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::{PhaseReading, SampledMotion};
+    use crate::export::decimal;
+    use crate::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
+    use crate::impact::{PhaseReading, SampledMotion};
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::audit::paper;
+use crate::export::json;
+use crate::mechanics::study;
+use crate::problem::{Problem, ReadingCommand};
+use crate::report;
 use clap::Args;
-use lindstedt::audit::paper;
-use lindstedt::export::json;
-use lindstedt::mechanics::study;
-use lindstedt::problem::{Problem, ReadingCommand};
-use lindstedt::report;
 
 use super::answer::{Answer, no_such};
 use super::derive::exact_values;

@@ -2,17 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::export::{json, materials};
+use crate::impact::{Integrator, MaterialsError, Settings, study_materials};
+use crate::problem::Problem;
+use crate::report;
 use clap::Args;
-use lindstedt::Interrupt;
-use lindstedt::export::{json, materials};
-use lindstedt::impact::{Integrator, MaterialsError, Settings, study_materials};
-use lindstedt::problem::Problem;
-use lindstedt::report;
 
 use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text};
+use super::{Common, Failure, Format, Outcome, Work, json_text};
 
 /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
 #[derive(Args)]
@@ -61,7 +60,7 @@ fn run(arguments: &MaterialsArguments) -> Result<Outcome, Failure> {
     let mut question = problem
         .materials(arguments.only_own)
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    question.settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..question.settings };
+    question.settings = Settings { interrupt: super::session::interrupt(), ..question.settings };
     if arguments.chain {
         question.integrator = Integrator::Chain;
     }

@@ -10,6 +10,7 @@
 
 mod answer;
 mod audit;
+mod call;
 mod catalog;
 mod certify;
 mod compare;
@@ -25,31 +26,37 @@ mod problem;
 mod progress;
 mod response;
 mod schema;
+mod session;
 mod shell;
 mod simulate;
 mod stability;
 mod suggestions;
 mod trajectory;
 
+pub use call::{CallFailure, CallResult, EquationRead, call, commands, read_equation};
+
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{Read as _, Write as _};
 use std::panic::RefUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
+use crate::Symbol;
+use crate::export::code::Language;
+use crate::export::{is_invisible, latex, printable};
+use crate::problem::LARGEST_FILE;
+use crate::solution::{Advice, Setting};
+use crate::verify::{DEFAULT_TOLERANCE, Verdict};
 use clap::builder::styling::{AnsiColor, Style};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
-use lindstedt::Symbol;
-use lindstedt::export::code::Language;
-use lindstedt::export::{is_invisible, latex, printable};
-use lindstedt::problem::LARGEST_FILE;
-use lindstedt::solution::{Advice, Setting};
-use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
 use serde::Serialize;
+
+use self::session::Session;
 
 /// The version, with the commit that it was built from where that is known.
 const VERSION: &str = env!("LINDSTEDT_VERSION");
@@ -129,7 +136,7 @@ struct Command {
     /// The time to wait for a part of the result, once the time is up. Only a simulation, a search,
     /// branches and an expansion have parts worth waiting for; to add up what a long one did takes
     /// a while.
-    patience: fn() -> Duration,
+    patience: fn(&Session) -> Duration,
     /// The time limit in seconds where none is given.
     limit: Option<f64>,
     /// Whether a verdict that fails is exit code 3 without `--tolerance`.
@@ -163,7 +170,7 @@ impl Command {
         Self {
             name,
             formats: Formats::PicturesAndTables,
-            patience: || Duration::ZERO,
+            patience: |_| Duration::ZERO,
             limit: None,
             is_judged: false,
             example: "",
@@ -178,7 +185,7 @@ impl Command {
     }
 
     /// The command with a result that may be a part.
-    const fn waiting(self, patience: fn() -> Duration) -> Self {
+    const fn waiting(self, patience: fn(&Session) -> Duration) -> Self {
         Self { patience, ..self }
     }
 
@@ -221,7 +228,7 @@ impl Command {
 }
 
 /// A minute: the patience with work that is stopped and hands back a part.
-fn one_minute() -> Duration {
+fn one_minute(_: &Session) -> Duration {
     Duration::from_secs(60)
 }
 
@@ -423,9 +430,21 @@ fn count(text: &str) -> Result<u32, String> {
 /// Why a command ends without its result.
 enum Failure {
     /// Exit code 1: the problem was refused, or something failed.
-    Refused(String),
+    Refused(Reason),
     /// Exit code 2.
     Usage(String),
+}
+
+/// The reason of a refusal.
+#[derive(Debug, PartialEq)]
+struct Reason {
+    /// The whole message, with its help and its notes.
+    text: String,
+    /// The part of the program that refused, by the name of its error, `oscillator` say; `command`
+    /// for what belongs to no part.
+    kind: String,
+    /// The term of the equation that is to blame, as it was typed.
+    term: Option<String>,
 }
 
 /// A refusal that knows no way forward.
@@ -438,17 +457,52 @@ impl<E: std::error::Error> From<E> for Failure {
 impl Failure {
     /// A refusal with its way forward.
     fn refused(error: &impl Display, help: Option<String>) -> Self {
-        Self::Refused(match help {
+        let text = match help {
             Some(help) => format!("{error}\n  help: {help}"),
             None => error.to_string(),
-        })
+        };
+        Self::Refused(Reason { text, kind: kind_of(error), term: None })
+    }
+
+    /// A refusal for this reason, by the command itself.
+    fn because(text: impl Into<String>) -> Self {
+        Self::refused(&text.into(), None)
+    }
+
+    /// A refusal by the part of the program that this error belongs to.
+    fn of_kind<E>(self, error: &E) -> Self {
+        match self {
+            Self::Refused(reason) => Self::Refused(Reason { kind: kind_of(error), ..reason }),
+            usage => usage,
+        }
+    }
+
+    /// A refusal with the term that is to blame.
+    fn naming(self, term: Option<&str>) -> Self {
+        match self {
+            Self::Refused(reason) => {
+                Self::Refused(Reason { term: term.map(str::to_owned), ..reason })
+            }
+            usage => usage,
+        }
+    }
+
+    /// The failure of one of many, after the name of that one.
+    fn within(self, name: &str) -> Self {
+        match self {
+            Self::Refused(reason) => {
+                Self::Refused(Reason { text: format!("{name}: {}", reason.text), ..reason })
+            }
+            Self::Usage(text) => Self::because(format!("{name}: {text}")),
+        }
     }
 
     /// A refusal with what else may be behind it.
     fn with_notes(self, notes: &[String]) -> Self {
         match self {
-            Self::Refused(text) => {
-                Self::Refused(notes.iter().fold(text, |text, note| text + "\n  note: " + note))
+            Self::Refused(reason) => {
+                let added = |text: String, note: &String| text + "\n  note: " + note;
+                Self::Refused(Reason { text: notes.iter().fold(reason.text, added), ..reason })
             }
             Self::Usage(text) => Self::Usage(text),
         }
@@ -460,18 +514,46 @@ impl Failure {
     }
 }
 
-/// Advice of the library with its options as they are typed here.
+/// The name of an error without `Error`, in the spelling of the formats: `oscillator`.
+fn kind_of<E>(_: &E) -> String {
+    let path = std::any::type_name::<E>();
+    let name = path.rsplit("::").next().unwrap_or_default().trim_end_matches("Error");
+    let mut kind = String::new();
+    for letter in name.chars().filter(|letter| letter.is_ascii_alphanumeric()) {
+        if letter.is_ascii_uppercase() && !kind.is_empty() {
+            kind.push('-');
+        }
+        kind.push(letter.to_ascii_lowercase());
+    }
+    match kind.as_str() {
+        "string" | "" => "command".to_owned(),
+        _ => kind,
+    }
+}
+
+/// Advice of the library with its options as they are typed here: words of the command line, or
+/// keywords inside another process.
 fn in_flags(advice: &Advice) -> String {
+    let is_call = session::current().is_call();
+    let option = |name: &str, value: &str| match is_call {
+        true if value.parse::<f64>().is_ok() => format!("{name}={value}"),
+        true => format!("{name}=\"{value}\""),
+        false => format!("--{name} {value}"),
+    };
     advice.spelt(|setting| match setting {
-        Setting::Method(method) => format!("--method {}", method.name()),
-        Setting::Order(order) => format!("--order {order}"),
-        Setting::Degrees(degrees) => format!("--order {}", degrees.separated()),
-        Setting::Amplitude(convention) => format!("--amplitude {}", convention.name()),
-        Setting::Small(name) => format!("--small {name}"),
+        Setting::Method(method) => option("method", method.name()),
+        Setting::Order(order) => option("order", &order.to_string()),
+        Setting::Degrees(degrees) => option("order", &degrees.separated()),
+        Setting::Amplitude(convention) => option("amplitude", convention.name()),
+        Setting::Small(name) => option("small", &name.to_string()),
+        Setting::Taylor if is_call => "taylor=DEGREE".to_owned(),
         Setting::Taylor => "--taylor DEGREE".to_owned(),
-        Setting::About { coordinate, position } => format!("--about {coordinate}={position}"),
+        Setting::About { coordinate, position } => {
+            option("about", &format!("{coordinate}={position}"))
+        }
+        Setting::Values if is_call => "values of the symbols".to_owned(),
         Setting::Values => "--at".to_owned(),
-        Setting::Resonance(driving, linear) => format!("--resonance {driving}:{linear}"),
+        Setting::Resonance(driving, linear) => option("resonance", &format!("{driving}:{linear}")),
         other => other.to_string(),
     })
 }
@@ -517,8 +599,9 @@ fn command_line() -> clap::Command {
 
 /// The row of the command that is asked for, and its arguments; an error is a message of the
 /// parser, `--help` among them.
-fn parse_command() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
-    let matches = command_line().try_get_matches()?;
+fn parse_command(words: Vec<OsString>) -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
+    let words = std::iter::once("lindstedt".into()).chain(words);
+    let matches = command_line().try_get_matches_from(words)?;
     let (name, arguments) = matches.subcommand().unzip();
     let name = name.unwrap_or(USUAL);
     let Some(command) = COMMANDS.iter().find(|command| command.name == name) else {
@@ -531,35 +614,53 @@ fn parse_command() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
     Ok((command, work))
 }
 
-/// The program.
+/// Runs the program with the words of the command line of this process.
 pub fn run() -> ExitCode {
-    let (command, work) = match parse_command() {
+    ExitCode::from(main(std::env::args_os().skip(1).collect()))
+}
+
+/// Runs the program with these words, and returns its exit code.
+pub fn main(words: Vec<OsString>) -> u8 {
+    let session = Session::of_program(&words);
+    let (command, work) = match parse_command(words) {
         Ok(asked) => asked,
         Err(error) => {
             // `--help` and `--version` are results and succeed; a closed pipe is no failure of
             // theirs.
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
             let _ = suggestions::with_what_is_meant(error).print();
-            return ExitCode::from(code);
+            return code;
         }
     };
     let common = work.common();
     let judged = common.tolerance.is_some() || command.is_judged;
-    progress::QUIET.store(common.quiet, Ordering::Relaxed);
+    session.quiet.store(common.quiet, Ordering::Relaxed);
     match command
         .check_format(common.format())
         .map_err(|failure| by_ending(failure, &common))
         .and_then(|()| files::check(&common, work.input()))
     {
-        Err(Failure::Refused(message)) => return fail(1, &message),
+        Err(Failure::Refused(reason)) => return fail(1, &reason.text),
         Err(Failure::Usage(message)) => return fail(2, &message),
         Ok(()) => {}
     }
     let timeout = common.timeout.or(command.limit);
-    let (outcome, in_vain) = within_limits(work, timeout, command.patience);
+    // The first interrupt asks for what there is, the second ends the program.
+    let (sender, receiver) = channel();
+    let interrupted = sender.clone();
+    let handler = ctrlc::set_handler(move || {
+        if session.stop.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+        let _ = interrupted.send(Message::Interrupt);
+    });
+    // Without a handler an interrupt just ends the program, as it would any other.
+    drop(handler);
+    let limits = Limits { timeout, patience: command.patience, watch: None };
+    let (outcome, in_vain) = within_limits(work, session, (sender, receiver), limits);
     match (outcome, in_vain) {
         (Some(Some(Ok(outcome))), _) => finish(outcome, &common, judged),
-        (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
+        (Some(Some(Err(Failure::Refused(reason)))), _) => fail(1, &reason.text),
         (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
         (None, Some((code, message))) => fail(code, &message),
         (Some(None), _) | (None, None) => {
@@ -588,42 +689,45 @@ type InVain = (u8, String);
 /// and what to say where nothing did because it was ended.
 fn within_limits(
     work: Box<dyn Work>,
-    timeout: Option<f64>,
-    patience: fn() -> Duration,
+    session: &'static Session,
+    (sender, receiver): (Sender<Message>, Receiver<Message>),
+    Limits { timeout, patience, watch }: Limits,
 ) -> (Option<Worked>, Option<InVain>) {
-    let (sender, receiver) = channel();
-    let interrupted = sender.clone();
-    // The first interrupt asks for what there is, the second ends the program.
-    let handler = ctrlc::set_handler(move || {
-        if STOP.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-        let _ = interrupted.send(Message::Interrupt);
-    });
-    // Without a handler an interrupt just ends the program, as it would any other.
-    drop(handler);
     // The work has a thread of its own so that a time limit can end it, wherever it is.
     let limit =
         timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     // No time at all is up before the work begins, whichever of the two threads is run first.
     if limit.is_some_and(|limit| limit.is_zero()) {
-        STOP.store(true, Ordering::Relaxed);
+        session.stop.store(true, Ordering::Relaxed);
     }
     let started = Instant::now();
     let worker = std::thread::spawn(move || {
+        session.enter();
         let outcome = std::panic::catch_unwind(|| work.run());
         let _ = sender.send(Message::Done(outcome.ok()));
     });
-    let first = match limit {
-        None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
-        Some(limit) => receiver.recv_timeout(limit),
+    let first = match watch {
+        None => receive(&receiver, limit),
+        Some(watch) => loop {
+            let left = limit.map(|limit| limit.saturating_sub(started.elapsed()));
+            let wait = left.unwrap_or(EVERY).min(EVERY);
+            match receiver.recv_timeout(wait) {
+                Err(RecvTimeoutError::Timeout) if left.is_none_or(|left| left > EVERY) => {
+                    let (done, all) = session.progress.read();
+                    if !watch(done, all) {
+                        break Ok(Message::Interrupt);
+                    }
+                }
+                other => break other,
+            }
+        },
     };
     // A whole result that comes too late is too late, however soon it was taken from the channel.
-    let late = limit.is_some_and(|limit| started.elapsed() > limit) && patience().is_zero();
+    let late = limit.is_some_and(|limit| started.elapsed() > limit) && patience(session).is_zero();
     let found = match first {
         Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
         Ok(Message::Interrupt) => (
-            wait_for_part(&receiver, patience()),
+            wait_for_part(&receiver, session, patience(session)),
             Some((INTERRUPTED, "interrupted without a result".to_owned())),
         ),
         Ok(Message::Done(_)) | Err(_) => {
@@ -631,7 +735,7 @@ fn within_limits(
             let message = format!(
                 "stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"
             );
-            (wait_for_part(&receiver, patience()), Some((1, message)))
+            (wait_for_part(&receiver, session, patience(session)), Some((1, message)))
         }
     };
     if let (Some(None), _) | (None, None) = found {
@@ -641,8 +745,32 @@ fn within_limits(
     found
 }
 
-/// Set by an interrupt or at the time limit; work that can hand back a part looks at it.
-static STOP: AtomicBool = AtomicBool::new(false);
+/// The limits of a work.
+struct Limits<'a> {
+    /// The time limit in seconds.
+    timeout: Option<f64>,
+    /// The time to wait for a part of the result.
+    patience: fn(&Session) -> Duration,
+    /// Is told the progress again and again, and says whether to go on.
+    watch: Option<Watch<'a>>,
+}
+
+/// Takes the parts done and all of them, and returns whether the work is to go on.
+type Watch<'a> = &'a mut dyn FnMut(u64, u64) -> bool;
+
+/// The time between two looks at the progress of a call.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// The next message, within the limit.
+fn receive(
+    receiver: &Receiver<Message>,
+    limit: Option<Duration>,
+) -> Result<Message, RecvTimeoutError> {
+    match limit {
+        None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        Some(limit) => receiver.recv_timeout(limit),
+    }
+}
 
 /// The exit code of a program ended by an interrupt, by the convention of shells.
 const INTERRUPTED: u8 = 130;
@@ -657,8 +785,12 @@ enum Message {
 
 /// Asks the work to hand back what it has, and waits a little for it; not at all for work that has
 /// no parts.
-fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Worked> {
-    STOP.store(true, Ordering::Relaxed);
+fn wait_for_part(
+    receiver: &Receiver<Message>,
+    session: &Session,
+    patience: Duration,
+) -> Option<Worked> {
+    session.stop.store(true, Ordering::Relaxed);
     if patience.is_zero() {
         return None;
     }
@@ -671,7 +803,7 @@ fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Wor
     None
 }
 
-fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
+fn finish(outcome: Outcome, common: &Common, judged: bool) -> u8 {
     let mut no_picture = None;
     match outcome.picture {
         Some((path, Ok(picture))) => {
@@ -679,8 +811,8 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
                 return fail(1, &error);
             }
         }
-        Some((_, Err(Failure::Refused(reason) | Failure::Usage(reason)))) => {
-            no_picture = Some(reason)
+        Some((_, Err(Failure::Refused(Reason { text, .. }) | Failure::Usage(text)))) => {
+            no_picture = Some(text);
         }
         None => {}
     }
@@ -693,18 +825,18 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     }
     match written {
         Err(error) => fail(1, &error),
-        Ok(()) if outcome.partial => ExitCode::from(4),
-        Ok(()) if judged && outcome.verdict == Some(Verdict::Fail) => ExitCode::from(3),
-        Ok(()) if no_picture.is_some() => ExitCode::from(1),
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) if outcome.partial => 4,
+        Ok(()) if judged && outcome.verdict == Some(Verdict::Fail) => 3,
+        Ok(()) if no_picture.is_some() => 1,
+        Ok(()) => 0,
     }
 }
 
-fn fail(code: u8, message: &str) -> ExitCode {
+fn fail(code: u8, message: &str) -> u8 {
     const STYLE: Style = AnsiColor::Red.on_default().bold();
     // A file that is quoted may hold anything.
     let _ = writeln!(anstream::stderr(), "{STYLE}error:{STYLE:#} {}", printable(message));
-    ExitCode::from(code)
+    code
 }
 
 /// The text of a file, or of standard input for `-`; never more than a problem may have.
@@ -719,10 +851,13 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     } else {
         path.display().to_string()
     };
-    let failure = |error: std::io::Error| Failure::Refused(format!("cannot read {name}: {error}"));
+    let failure = |error: std::io::Error| Failure::because(format!("cannot read {name}: {error}"));
     let limit = length as u64 + 1;
     let mut bytes = Vec::new();
-    if path.as_os_str() == "-" {
+    if path.as_os_str() == "-" && session::current().is_call() {
+        let text = session::current().take_input().unwrap_or_default();
+        return Ok(text);
+    } else if path.as_os_str() == "-" {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(failure)?;
     } else {
         std::fs::File::open(path)
@@ -733,7 +868,7 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
-        Failure::Refused(format!("{name} is not UTF-8 text: byte {place} belongs to no character"))
+        Failure::because(format!("{name} is not UTF-8 text: byte {place} belongs to no character"))
     })
 }
 

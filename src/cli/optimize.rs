@@ -4,24 +4,24 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use clap::Args;
-use lindstedt::export::json::optimization::{read_record, record_head, record_line};
-use lindstedt::export::{json, optimization};
-use lindstedt::genetic::SearchError;
-use lindstedt::optimize::{
+use crate::export::json::optimization::{read_record, record_head, record_line};
+use crate::export::{json, optimization};
+use crate::genetic::SearchError;
+use crate::optimize::{
     OptimizationProblem, OptimizeError, SearchRun, Study, StudyObserver, optimize, optimize_on,
 };
-use lindstedt::problem::Problem;
-use lindstedt::report;
+use crate::problem::Problem;
+use crate::report;
+use clap::Args;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_same_file, is_standard, width};
 use super::problem::from_file;
-use super::progress;
-use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read_at_most};
+use super::progress::PartsBar;
+use super::session;
+use super::{Common, Failure, Format, Outcome, Work, count, json_text, read_at_most};
 
 /// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts
 /// of several wishes
@@ -147,24 +147,24 @@ fn search(
     record: &Record,
     deadline: Option<Instant>,
 ) -> Result<Study, Failure> {
-    let bar = progress::bar(
+    let bar = PartsBar::new(
         question.most_work(),
         "{bar:40} {percent} % of the generations, {eta} left at most",
     );
+    let interrupt = session::interrupt();
     let watch = StudyObserver {
         stop: &|| {
-            STOP.load(Ordering::Relaxed)
-                || deadline.is_some_and(|deadline| Instant::now() >= deadline)
+            interrupt.is_requested() || deadline.is_some_and(|deadline| Instant::now() >= deadline)
         },
         done: &|run| record.write(run),
-        progress: &|done| bar.inc(done as u64),
+        progress: &|done| bar.advance(done),
     };
     let known = record.known.clone();
     let study = match arguments.jobs {
         Some(threads) => optimize_on(usize::from(threads), question, known, &watch),
         None => optimize(question, known, &watch),
     };
-    bar.finish_and_clear();
+    bar.finish();
     study.map_err(refused)
 }
 
@@ -224,7 +224,7 @@ impl Record {
         if let Some(path) = &arguments.resume {
             let text = read_at_most(path, LARGEST_RECORD)?;
             (known, end) = read_record(&text, question).map_err(|error| {
-                Failure::Refused(format!("--resume {}: {error}", path.display()))
+                Failure::because(format!("--resume {}: {error}", path.display()))
             })?;
         }
         let (path, goes_on) = match (&arguments.record, &arguments.resume) {
@@ -234,7 +234,7 @@ impl Record {
             (None, Some(resume)) => (resume, true),
         };
         let cannot = |error: std::io::Error| {
-            Failure::Refused(format!("cannot write {}: {}", path.display(), error.kind()))
+            Failure::because(format!("cannot write {}: {}", path.display(), error.kind()))
         };
         let file = match goes_on {
             true => {
@@ -260,7 +260,7 @@ impl Record {
 
     fn create(path: &Path) -> Result<File, Failure> {
         OpenOptions::new().write(true).create_new(true).open(path).map_err(|error| {
-            Failure::Refused(match error.kind() {
+            Failure::because(match error.kind() {
                 std::io::ErrorKind::AlreadyExists => format!(
                     "--record {0} exists: take it up with --resume {0}, or give another name",
                     path.display()

@@ -1,20 +1,20 @@
 //! `lindstedt simulate FILE` of a file with a main mass, `[primary]`.
 
-use lindstedt::Interrupt;
-use lindstedt::export::{json, primary};
-use lindstedt::impact::primary::{
+use crate::export::{json, primary};
+use crate::impact::primary::{
     PrimaryError, PrimaryParameter, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary,
 };
-use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
-use lindstedt::problem::Problem;
-use lindstedt::report::{self, PrimaryReport, PrimarySweepReport, TRUSTED};
-use lindstedt::verify::Verdict;
+use crate::impact::sweep::{Axis, grid_size, grid_values};
+use crate::problem::Problem;
+use crate::report::{self, PrimaryReport, PrimarySweepReport, TRUSTED};
+use crate::verify::Verdict;
 
 use super::answer::{Answer, Draw, no_such};
 use super::files::width;
-use super::progress::{self, MOTIONS};
+use super::progress::{MOTIONS, PartsBar};
+use super::session;
 use super::simulate::{SimulateArguments, check_format, check_samples, check_varied};
-use super::{Failure, Format, Outcome, STOP, json_text};
+use super::{Failure, Format, Outcome, json_text};
 
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     check_format(&asked.common)?;
@@ -27,7 +27,7 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
 fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
+    let settings = PrimarySettings { interrupt: session::interrupt(), ..file.settings };
     check_samples(&asked.sample, settings.duration, "`duration` in [run]")?;
     let motion = simulate_primary(file.case, &settings)?;
     let report = PrimaryReport { motion: &motion, units: &file.units, samples: &asked.sample };
@@ -79,14 +79,14 @@ fn run_sweep(
             parameters.iter().copied().zip(grid_values(axes, number)).collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-        let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
+        let settings = PrimarySettings { interrupt: session::interrupt(), ..file.settings };
         motions.push((file.case, settings));
         units.push(file.units);
     }
-    let bar = progress::bar(total, MOTIONS);
-    let rows = sweep_primary(&motions, |done| bar.inc(done as u64))
-        .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
-    bar.finish_and_clear();
+    let bar = PartsBar::new(total, MOTIONS);
+    let rows = sweep_primary(&motions, |done| bar.advance(done))
+        .map_err(|(number, error)| Failure::because(format!("motion {}: {error}", number + 1)))?;
+    bar.finish();
     let report = PrimarySweepReport { axes, parameters: &parameters, rows: &rows, units: &units };
     let draw: Draw = &|| Ok(primary::sweep_picture(&report)?);
     let answer = Answer {

@@ -3,16 +3,14 @@
 
 use std::path::Path;
 
-use lindstedt::Symbol;
-use lindstedt::catalog;
-use lindstedt::catalog::nearest;
-use lindstedt::expr::{
-    Expr, ParseError, equation_in_grammar, expression_in_grammar, parse_expression,
-};
-use lindstedt::problem::{Problem, ProblemError};
+use crate::Symbol;
+use crate::catalog;
+use crate::catalog::nearest;
+use crate::expr::{Expr, ParseError, equation_in_grammar, expression_in_grammar, parse_expression};
+use crate::problem::{Problem, ProblemError};
 
 use super::files::is_standard;
-use super::{Failure, progress, read};
+use super::{Failure, read, session};
 
 /// Reads a PROBLEM. A name that ends in `.toml`, or a file that exists, is a file. An equation may
 /// have the notations of print; how it was read is said on standard error.
@@ -28,7 +26,7 @@ pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
     let equation = problem.equation.map(|typed| {
         let read = equation_in_grammar(&typed);
         if read != typed.as_str() {
-            progress::note(&format!("the equation is read as {read}"));
+            session::current().note(&format!("the equation is read as {read}"));
         }
         read.into_owned()
     });
@@ -94,7 +92,7 @@ fn from_words(text: &str) -> Result<Problem, Failure> {
             Some(near) => format!("did you mean `{near}`?"),
             None => "write an equation such as \"x'' + sin(x) = 0\"; `lindstedt catalog` lists the names".to_owned(),
         };
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "`{}` is no equation, no file, and no name of the catalogue\n  help: {help}",
             text.trim()
         )));

@@ -2,18 +2,19 @@
 
 use std::path::Path;
 
+use crate::export::{self, json};
+use crate::problem::{Order, ReadingCommand};
+use crate::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
+use crate::solution::{Method, Solution};
+use crate::{Options, Oscillator, Supervision, Symbol, report, solve};
 use clap::Args;
-use lindstedt::export::{self, json};
-use lindstedt::problem::{Order, ReadingCommand};
-use lindstedt::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
-use lindstedt::solution::{Method, Solution};
-use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 
 use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::{expression, problem};
-use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance, values_of};
+use super::progress::with_progress;
+use super::session;
+use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
 /// period doublings, backbone
@@ -67,18 +68,19 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
         (None, None) => None,
         (None, Some(Order::Degrees(_))) => {
-            return Err(Failure::Refused(format!(
+            return Err(Failure::because(format!(
                 "the order of a response is a number of harmonics, 1 to {MOST_HARMONICS}, or that of the slow equations"
             )));
         }
     };
     let Some(vary) = arguments.vary.as_deref().or(problem.vary.as_deref()) else {
         let name = oscillator.parameters.first().map_or("Omega", |name| name.name());
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "nothing varies\n  help: --vary {name}=FROM:TO, or vary = \"{name}=FROM:TO\" in the file"
         )));
     };
     let (parameter, range) = range(vary)?;
+    let Supervision { interrupt, progress } = session::supervision();
     let mut question = ResponseRequest {
         oscillator,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
@@ -88,8 +90,8 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         harmonics: order.filter(|_| method == Method::HarmonicBalance).map(|count| count as usize),
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
-        interrupt: Interrupt::from_flag(&STOP),
-        progress: Progress::from_counter(&PROGRESS),
+        interrupt,
+        progress,
     };
     let slow = match method {
         Method::HarmonicBalance => None,

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::export::json::DocumentKind;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use lindstedt::export::json::DocumentKind;
 
 use super::{Common, Failure, Outcome, Work, text_writer};
 

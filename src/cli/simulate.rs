@@ -1,29 +1,30 @@
 //! `lindstedt simulate [PROBLEM]`.
 
+use std::io::Write;
 use std::path::Path;
 
-use clap::{Args, ValueEnum};
-use lindstedt::Interrupt;
-use lindstedt::export::json;
-use lindstedt::export::simulation::{
+use crate::export::json;
+use crate::export::simulation::{
     Report, SweepReport, csv, figure, html, latex, sweep_csv, sweep_html, sweep_text, text,
 };
-use lindstedt::export::text::fitted;
-use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
-use lindstedt::impact::{
+use crate::export::text::fitted;
+use crate::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
+use crate::impact::{
     BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline,
     known_until, simulate,
 };
-use lindstedt::problem::{Problem, ProblemError, Simulate};
-use lindstedt::verify::Verdict;
+use crate::problem::{Problem, ProblemError, Simulate};
+use crate::verify::Verdict;
+use clap::{Args, ValueEnum};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::files::width;
 use super::primary;
 use super::problem::problem;
-use super::progress::{self, MOTIONS};
+use super::progress::{MOTIONS, PartsBar};
+use super::session;
 use super::trajectory;
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer};
+use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
 /// equation or mechanism
@@ -211,7 +212,7 @@ pub(super) fn check_format(common: &Common) -> Result<(), Failure> {
 pub(super) fn check_samples(samples: &[f64], duration: f64, given: &str) -> Result<(), Failure> {
     match samples.iter().find(|sample| **sample > duration) {
         None => Ok(()),
-        Some(late) => Err(Failure::Refused(format!(
+        Some(late) => Err(Failure::because(format!(
             "--sample {late} lies beyond the duration {duration}\n  help: raise {given}"
         ))),
     }
@@ -223,7 +224,7 @@ pub(super) fn check_varied(axes: &[Axis]) -> Result<(), Failure> {
         |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
     match axes.iter().find(shared) {
         None => Ok(()),
-        Some(axis) => Err(Failure::Refused(format!(
+        Some(axis) => Err(Failure::because(format!(
             "`{}` is the same for all motions of a sweep: give it in [run]",
             axis.name()
         ))),
@@ -267,15 +268,20 @@ fn run_single(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcom
         known_until: if arguments.chain { None } else { known_until(&motion) },
     };
     let draw: Option<Draw> = Some(&|| Ok(figure::simulation(&report)?));
-    let text = match arguments.common.format() {
-        Format::Csv => csv(&report),
-        Format::Json => json_text(&json::simulation(&report))?,
-        Format::Text => fitted(&text(&report), width(arguments.common.output.as_deref())),
-        Format::Latex => arguments.common.latex(latex(&report)),
-        Format::Html => page(draw, None, |page| html(&report, page)),
-        Format::Svg => drawn(draw)?,
-        format => no_such(format)?,
+    let written = |format: Format| -> Result<String, Failure> {
+        Ok(match format {
+            Format::Csv => csv(&report),
+            Format::Json => json_text(&json::simulation(&report))?,
+            Format::Text => fitted(&text(&report), width(arguments.common.output.as_deref())),
+            Format::Latex if !arguments.chain => return no_such(format),
+            Format::Latex => arguments.common.latex(latex(&report)),
+            Format::Html => page(draw, None, |page| html(&report, page)),
+            Format::Svg => drawn(draw)?,
+            format => no_such(format)?,
+        })
     };
+    let text = written(arguments.common.format())?;
+    session::current().keep_forms(arguments.common.format(), written);
     let picture = pictured(&arguments.common, draw);
     let broken = [Some(&motion), judge.as_ref()]
         .into_iter()
@@ -300,7 +306,7 @@ fn run_single(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcom
 /// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
 /// damps the swing.
 fn settings(arguments: &SimulateArguments, asked: &Simulate) -> Settings {
-    let settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..asked.settings };
+    let settings = Settings { interrupt: session::interrupt(), ..asked.settings };
     let damped = asked.case.motion().is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
     match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
         true => Settings { duration: LONGEST_CHAIN, stop_at_rest: true, ..settings },
@@ -398,40 +404,47 @@ fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome
     check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
-    let bar = progress::bar(if arguments.baseline { 3 * total } else { total }, MOTIONS);
+    let bar = PartsBar::new(if arguments.baseline { 3 * total } else { total }, MOTIONS);
     let route = match arguments.chain {
         true => Integrator::Chain,
         false => Integrator::Taylor,
     };
-    let progress = |done: usize| bar.inc(done as u64);
+    let progress = |done: usize| bar.advance(done);
     let follow = |motions: &[(Model, Start)], settings: &Settings| {
         match arguments.jobs {
             Some(threads) => sweep_on(usize::from(threads), motions, route, settings, progress),
             None => sweep(motions, route, settings, progress),
         }
-        .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))
+        .map_err(|(number, error)| Failure::because(format!("motion {}: {error}", number + 1)))
     };
     let mut rows: Vec<Summary> = follow(&motions, &settings)?;
     if arguments.baseline {
         add_baseline(&mut rows, &motions, &settings, follow)?;
     }
-    bar.finish_and_clear();
+    bar.finish();
     let report = SweepReport { axes: &arguments.sweep, rows: &rows };
     let draw: Option<Draw> = Some(&|| Ok(figure::sweep(&report)?));
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note =
         (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
-    let write = match arguments.common.format() {
-        Format::Csv => sweep_csv,
-        Format::Json => json::sweep,
-        _ => sweep_text,
+    let made_whole = |format: Format| -> Result<Option<String>, Failure> {
+        Ok(match format {
+            Format::Svg => Some(drawn(draw)?),
+            Format::Html => Some(page(draw, None, |page| sweep_html(&report, page))),
+            _ => None,
+        })
     };
-    let made_whole = match arguments.common.format() {
-        Format::Svg => Some(drawn(draw)?),
-        Format::Html => Some(page(draw, None, |page| sweep_html(&report, page))),
-        _ => None,
-    };
+    session::current().keep_forms(arguments.common.format(), |format| {
+        let Some(write) = row_writer(format) else {
+            return made_whole(format)?.map_or_else(|| no_such(format), Ok);
+        };
+        let mut text = Vec::new();
+        write(&report, &mut text)?;
+        Ok(String::from_utf8(text)?)
+    });
+    let write = row_writer(arguments.common.format()).unwrap_or(sweep_text);
+    let made_whole = made_whole(arguments.common.format())?;
     let axes = arguments.sweep.clone();
     Ok(Outcome {
         result: match made_whole {
@@ -446,6 +459,16 @@ fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome
         verdict: Some(Verdict::from_passed(incomplete == 0)),
         partial: incomplete > 0,
     })
+}
+
+/// The writer of the rows of a sweep in a format; `None` for a format that is made as a whole.
+fn row_writer(format: Format) -> Option<fn(&SweepReport, &mut dyn Write) -> std::io::Result<()>> {
+    match format {
+        Format::Csv => Some(sweep_csv),
+        Format::Json => Some(json::sweep),
+        Format::Text => Some(sweep_text),
+        _ => None,
+    }
 }
 
 /// Refuses options that a sweep cannot take.

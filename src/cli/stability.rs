@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use crate::export::{json, stability};
+use crate::hill::{self, Chart, HillError, HillOptions, JudgedCurve, TransitionCurves};
+use crate::problem::{Order, ReadingCommand};
+use crate::report::{self, StabilityReport};
+use crate::verify::Verdict;
+use crate::{Symbol, Values};
 use clap::Args;
-use lindstedt::export::{json, stability};
-use lindstedt::hill::{self, Chart, HillError, HillOptions, JudgedCurve, TransitionCurves};
-use lindstedt::problem::{Order, ReadingCommand};
-use lindstedt::report::{self, StabilityReport};
-use lindstedt::verify::Verdict;
-use lindstedt::{Symbol, Values};
 
 use super::answer::{Answer, Draw, no_such};
 use super::derive::{exact_values, formula, oscillator};
@@ -69,7 +69,7 @@ fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
         None => None,
         Some(Order::Power(order)) => Some(order),
         Some(Order::Degrees(_)) => {
-            return Err(Failure::Refused(
+            return Err(Failure::because(
                 "`order` of a transition curve is a whole number: degrees L,M are those of pade"
                     .to_owned(),
             ));
@@ -124,7 +124,7 @@ fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
 }
 
 /// A refusal, with the term that it names shown in the equation.
-fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
+fn refused(typed: &crate::expr::Typed, error: &HillError) -> Failure {
     let place = error.term().and_then(|term| typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::refused(&format!("{error}{shown}"), error.help())
@@ -142,7 +142,7 @@ fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Cha
     let sizes = curves.small.iter().filter_map(|name| Some((*name, values.get(*name)?)));
     let eps = Symbol::new("eps");
     let Some((by, upto)) = sizes.max_by_key(|(name, _)| *name == eps) else {
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "a picture or a table of the curves needs to know how far it goes\n  help: --at {}=1",
             curves.small.first().map_or("eps", |name| name.name())
         )));

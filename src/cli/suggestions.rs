@@ -3,7 +3,7 @@
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use super::{COMMANDS, USUAL};
+use super::{COMMANDS, USUAL, session};
 
 /// The error of the command line with the option that is meant, where an unknown one is given.
 pub(super) fn with_what_is_meant(mut error: clap::Error) -> clap::Error {
@@ -13,8 +13,7 @@ pub(super) fn with_what_is_meant(mut error: clap::Error) -> clap::Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
-    let words: Vec<String> =
-        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let words = session::current().words();
     let is_similar = matches!(error.get(ContextKind::SuggestedArg), Some(ContextValue::String(_)));
     if let Some(tip) = meant(typed, &words, is_similar) {
         error.remove(ContextKind::SuggestedArg);

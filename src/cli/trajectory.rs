@@ -1,25 +1,26 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
-use lindstedt::export::{decimal, json, trajectory};
-use lindstedt::expr::Expr;
-use lindstedt::impact::sweep::{grid_size, grid_values};
-use lindstedt::problem::Problem;
-use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
-use lindstedt::system::{Integrator, PathEnd, SystemError};
-use lindstedt::trajectory::{
+use crate::Symbol;
+use crate::export::{decimal, json, trajectory};
+use crate::expr::Expr;
+use crate::impact::sweep::{grid_size, grid_values};
+use crate::problem::Problem;
+use crate::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
+use crate::system::{Integrator, PathEnd, SystemError};
+use crate::trajectory::{
     DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryError, TrajectoryRequest,
     in_words, sweep,
 };
-use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, Symbol};
+use crate::verify::Verdict;
 
 use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::problem::{expression, value_name};
-use super::progress::{self, MOTIONS};
+use super::progress::{MOTIONS, PartsBar};
+use super::session;
 use super::simulate::{Method, SimulateArguments, check_format, check_samples};
-use super::{Failure, Format, Outcome, STOP, json_text, values_of};
+use super::{Failure, Format, Outcome, json_text, values_of};
 
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
@@ -116,7 +117,7 @@ fn by_both(course: &TrajectoryRequest) -> Result<[Trajectory; 2], Failure> {
                 Some(_) => ", and its energy is accounted for",
                 None => "",
             };
-            Err(Failure::Refused(format!(
+            Err(Failure::because(format!(
                 "no second integrator: the power series end at t = {}, where the rates have none, as at rest exactly at the touch of a \
                  contact in d^(3/2), and Runge-Kutta goes on alone\n  help: leave out --integrator: the motion is followed by Runge-Kutta{judged}",
                 decimal(end)
@@ -150,7 +151,7 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
     }
     course.values = values.numbers();
     course.after = asked.after.unwrap_or(0.0);
-    course.interrupt = Interrupt::from_flag(&STOP);
+    course.interrupt = session::interrupt();
     if let Some(until) = asked.until {
         course.duration = until;
     }
@@ -158,7 +159,7 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
         course.step_limit = limit as usize;
     }
     if course.after > 0.0 && course.after >= course.duration {
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "--after {} leaves nothing of the duration {}\n  help: raise --until",
             course.after, course.duration
         )));
@@ -188,7 +189,7 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
                 )
             }
         };
-        return Err(Failure::Refused(format!(
+        return Err(Failure::because(format!(
             "a motion needs its start{and_values}\n  help: --from {name}=1.5{at} for a release from rest, --from \"{name}=0,{name}'=1\"{at} for a blow"
         )));
     }
@@ -265,7 +266,7 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
         if !parameters.contains(name) && !course.rates.states.contains(name) {
             let known: Vec<String> =
                 parameters.iter().chain(&course.rates.states).map(ToString::to_string).collect();
-            return Err(Failure::Refused(format!(
+            return Err(Failure::because(format!(
                 "--sweep: `{name}` is neither a parameter nor a state of the equations, so nothing would vary: choose one of {}",
                 known.join(", ")
             )));
@@ -281,14 +282,10 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
     }
     let total = grid_size(&asked.sweep)?;
     let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(&asked.sweep, number)).collect();
-    let bar = progress::bar(total, MOTIONS);
-    let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
-        let Failure::Refused(message) = refused(error) else {
-            return Failure::Refused(format!("motion {} cannot begin", number + 1));
-        };
-        Failure::Refused(format!("motion {}: {message}", number + 1))
-    })?;
-    bar.finish_and_clear();
+    let bar = PartsBar::new(total, MOTIONS);
+    let motions = sweep(course, &names, &grid, || bar.advance(1))
+        .map_err(|(number, error)| refused(error).within(&format!("motion {}", number + 1)))?;
+    bar.finish();
     let report = MotionSweep { course, names: &names, motions: &motions };
     let answer = Answer {
         document: &report::motion_sweep(&report),

@@ -14,7 +14,7 @@ struct Layers(Vec<Vec<String>>);
 
 impl Layers {
     /// The layers of the crates, lowest first: the modules of each `lib.rs` in order, those between
-    /// two empty lines together, and on top of them the program.
+    /// two empty lines together.
     fn of_crates() -> Self {
         let mut layers: Vec<Vec<String>> = Vec::new();
         let libraries: Vec<String> =
@@ -25,7 +25,6 @@ impl Layers {
                 layers.push(names);
             }
         }
-        layers.push(vec!["cli".to_owned()]);
         Self(layers)
     }
 
@@ -561,7 +560,7 @@ fn an_upward_use_is_seen() {
         ("method", 2, "use crate::series::taylor::taylor; // crate::verify"),
         ("method", 2, "use super::secular::expand;\nuse crate::{Symbol, expr::Expr};"),
         ("expr", 2, "use crate::expr::Node;\nuse super::number;"),
-        ("cli", 2, "use lindstedt::export::{json, text};\nuse super::Common;"),
+        ("cli", 2, "use crate::export::{json, text};\nuse super::Common;"),
         ("exact", 2, "let x = 1;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n"),
     ] {
         assert_eq!(found(module, depth, text), Vec::<String>::new(), "{text}");

@@ -1,0 +1,46 @@
+"""The classical oscillators that the program knows by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+from ._call import Call, answer
+from .documents.catalog import Entry
+from .oscillator import Oscillator
+from .tables import Table
+
+
+class CatalogOfOscillators(Mapping[str, Oscillator]):
+    """The oscillators by their names.
+
+    >>> import lindstedt as ls
+    >>> ls.catalog["pendulum"]
+    Oscillator("x'' + sin(x) = 0")
+    >>> "van-der-pol" in ls.catalog
+    True
+    """
+
+    @cached_property
+    def entries(self) -> Table[Entry]:
+        """The entries, with title, equation and source."""
+        return Table(answer(Call(("catalog",))).entries)
+
+    @cached_property
+    def _names(self) -> tuple[str, ...]:
+        return tuple(entry.name for entry in self.entries)
+
+    def __getitem__(self, name: str) -> Oscillator:
+        if name not in self._names:
+            raise KeyError(name)
+        return Oscillator(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+#: The catalogue.
+catalog = CatalogOfOscillators()

@@ -1,0 +1,838 @@
+"""The commands of the program as functions. Made by `python/generate.py` from its help."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+from ._call import Problem, Progress, Value, Values, ask
+
+if TYPE_CHECKING:
+    from .documents.audit import Audit
+    from .documents.certificate import DampedCertificateDocument
+    from .documents.friction import Friction
+    from .documents.impact import Impact
+    from .documents.impact_comparison import ImpactComparison
+    from .documents.lagrangian import Lagrangian
+    from .documents.materials import Materials
+    from .documents.primary import Primary
+    from .documents.primary_sweep import PrimarySweep
+    from .documents.stability import Stability
+    from .results import Certificate, Comparison, Law, Motion, MotionSweep, Optimization, Response, Simulation, Sweep
+
+
+def derive(
+    problem: Problem,
+    method: str | None = None,
+    *,
+    order: int | tuple[int, ...] | str | None = None,
+    amplitude: Literal["initial", "first-harmonic"] | None = None,
+    small: str | None = None,
+    about: Values | None = None,
+    taylor: int | None = None,
+    hbar: Value | None = None,
+    cycle: int | None = None,
+    resonance: tuple[int, int] | str | None = None,
+    omega_only: bool = False,
+    jobs: int | None = None,
+    steps: bool = False,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Law:
+    """Derive the frequency law and the motion of an oscillator, to an order.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input.
+        method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
+            iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
+            amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
+            pade, hermite-pade, multiple-scales or exact.
+        order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
+            balance; degrees L,M of pade, P,Q,R of hermite-pade.
+        amplitude: What the amplitude measures.
+        small: The small parameter; A for the amplitude.
+        about: The equilibrium to swing about, x=1 say: a stable one, without this the nearest
+            to zero, or an unstable one between two wells for motions over both.
+        taylor: Degree of the Taylor polynomial that homotopy perturbation puts for the force.
+        hbar: The convergence-control parameter of homotopy-analysis, exact; without it the best
+            one is chosen at the values.
+        cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
+            without it the smallest that attracts.
+        resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the
+            one nearest to the values, or 1:1.
+        omega_only: The frequency without the motion, of lindstedt-poincare: orders up to 2000,
+            in less time.
+        jobs: Threads of a long expansion; all cores without it. The result is the same for any
+            number.
+        steps: Print the derivation, order by order, before the result; in JSON as `derivation`,
+            in a program as a comment.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("derive", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def compare(
+    problem: Problem,
+    *,
+    small: str | None = None,
+    about: Values | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Comparison:
+    """Every method of the field on one equation, in one table, judged against the true motion.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input.
+        small: The small parameter; A for the amplitude.
+        about: The equilibrium to swing about, x=1 say: a stable one, without this the nearest
+            to zero, or an unstable one between two wells for motions over both.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("compare", problem, {"small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def impact(
+    problem: Problem | None = None,
+    method: str | None = None,
+    *,
+    order: int | tuple[int, ...] | str | None = None,
+    amplitude: str | None = None,
+    force: str | None = None,
+    contact: str | None = None,
+    left: bool = False,
+    compare: bool = False,
+    certify: bool = False,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Impact | ImpactComparison:
+    """The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input; without it the paper's swing.
+        method: How the swing of the derived phases is derived, by a method of `lindstedt
+            derive`; without it the first that passes.
+        order: The order of the law; without it 2 for the paper's reading, for the derived
+            phases the lowest that passes.
+        amplitude: What the amplitude of the derived law measures: initial or first-harmonic.
+        force: The whole force of the barrier in the depth d, such as "k*d^2"; without it
+            gamma*d^(3/2).
+        contact: The law of the contact in the derived phases, such as power-law; without it
+            exact; all for a table of every law.
+        left: The barrier is on the left of xc, and the release at x = A.
+        compare: Every method in one table, each at its lowest order that passes.
+        certify: Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how
+            far each closed form is off.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("impact", problem, {"method": method, "order": order, "amplitude": amplitude, "force": force, "contact": contact, "left": left, "compare": compare, "certify": certify, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def simulate(
+    problem: Problem | None = None,
+    *,
+    from_: Values | None = None,
+    until: float | None = None,
+    step_limit: int | None = None,
+    every: Value | None = None,
+    section: str | None = None,
+    after: float | None = None,
+    sample: Sequence[float] | None = None,
+    integrator: Literal["taylor", "runge-kutta", "both"] | None = None,
+    chain: bool = False,
+    sweep: Values | None = None,
+    baseline: bool = False,
+    jobs: int | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep:
+    """The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism.
+
+    Args:
+        problem: A TOML file, - for standard input, an equation in quotes or a name of the
+            catalogue; without it the paper's pendulum and barrier.
+        from_: Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"):
+            what is left out is 0.
+        until: How long it is followed; 50 without it.
+        step_limit: Steps of the integrator after which it ends; 250 000 without it.
+        every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
+            section): 2*pi/Omega.
+        section: Look at it where an expression of its coordinates, velocities and the time
+            grows through zero: x', "x - 0.1".
+        after: Look at it from this time on, when it has settled.
+        sample: Report the state at this time (repeatable).
+        integrator: The method: power series with the contact in a variable in which it is
+            analytic; Runge-Kutta, one smooth phase at a time; or both, and how far they differ.
+        chain: Do not integrate: swing and contact in closed form, impact after impact to rest,
+            each with its formula, and its error against the integration; a sweep is not judged.
+        sweep: Follow many motions: a parameter over a range by equal steps, by equal ratios
+            (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
+            combination.
+        baseline: In a sweep: beside each rest time those without a barrier and with one that
+            loses nothing.
+        jobs: Threads of a sweep; all cores without it. The result is the same for any number.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("simulate", problem, {"from_": from_, "until": until, "step_limit": step_limit, "every": every, "section": section, "after": after, "sample": sample, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def response(
+    problem: Problem,
+    method: str | None = None,
+    *,
+    vary: Values | None = None,
+    order: int | None = None,
+    periods: int | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Response:
+    """Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input.
+        method: harmonic-balance; or multiple-scales or averaging, their steady motions beside
+            the branches of harmonic balance, which judge them.
+        vary: The parameter that varies, and from where to where: Omega=0.5:1.5.
+        order: The highest harmonic kept; without it as many as bring the error below a tenth of
+            the tolerance, 64 at most; of multiple-scales its order.
+        periods: Periods of the drive in a period of the motion: 2 for motions after a period
+            doubling, 3 for a third of the frequency.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("response", problem, {"method": method, "vary": vary, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def friction(
+    *,
+    alpha: float | None = None,
+    amplitude: float | None = None,
+    speed: Sequence[float] | None = None,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Friction:
+    """The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest.
+
+    Args:
+        alpha: The friction alpha, between 0 and 1; 0.05 without it, for the paper prints none.
+        amplitude: The swing is released from rest at x = -A; 1.5 without it, as in the paper.
+        speed: Compare the two laws at this speed too, in units of omega (repeatable).
+        timeout: Give up after so many seconds.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("friction", None, {"alpha": alpha, "amplitude": amplitude, "speed": speed, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+def lagrange(
+    problem: Problem | None = None,
+    *,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Lagrangian:
+    """Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes.
+
+    Args:
+        problem: A TOML file with [lagrangian], or - for standard input; without it the paper's
+            pendulum, its equations (1) to (8) beside what follows.
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("lagrange", problem, {"timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def materials(
+    problem: Problem | None = None,
+    *,
+    only_own: bool = False,
+    chain: bool = False,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Materials:
+    """The same swing against barriers of several materials: contact, rest time, and what is held fixed.
+
+    Args:
+        problem: A TOML file, or - for standard input; without it the paper's design and the
+            materials of its Table 2.
+        only_own: Only the materials of the file, without those of the paper's Table 2.
+        chain: Do not integrate: every motion as a chain of closed forms, good to a percent
+            where damping is light and dry friction alpha no more than 0.02 of the amplitude.
+        timeout: Give up after so many seconds.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("materials", problem, {"only_own": only_own, "chain": chain, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+def optimize(
+    problem: Problem | None = None,
+    *,
+    seed: int | None = None,
+    runs: int | None = None,
+    jobs: int | None = None,
+    budget: int | str | None = None,
+    record: str | os.PathLike[str] | None = None,
+    resume: str | os.PathLike[str] | None = None,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Optimization:
+    """The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes.
+
+    Args:
+        problem: A TOML file, or - for standard input; without it the paper's study: its Table 4
+            searched for the least rest time.
+        seed: Seed of all random numbers, in place of that of the file.
+        runs: How often to run the search, in place of the number in the file.
+        jobs: Threads; all cores without it. The result is the same for any number.
+        budget: Stop after so many evaluations, shared evenly by the runs, or after so many
+            seconds (30s) with the runs that are done.
+        record: Write every run to this file as soon as it is done, a line of JSON each.
+        resume: Take the runs of this record over, do the missing ones, and add them to it: the
+            result is the same as in one go.
+        timeout: Give up after so many seconds.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("optimize", problem, {"seed": seed, "runs": runs, "jobs": jobs, "budget": budget, "record": record, "resume": resume, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+def stability(
+    problem: Problem,
+    *,
+    order: int | tuple[int, ...] | str | None = None,
+    tongues: int | None = None,
+    for_: str | None = None,
+    small: Sequence[str] | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Stability:
+    """Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input.
+        order: Highest power of the small parameters, all together, that is kept; 6 without it.
+        tongues: The tongues 0 to N; 3 without it.
+        for_: What the curves give: a letter of the mean stiffness, or the frequency.
+        small: A small parameter (repeatable); without it eps, and letters that alone stand
+            before a wave or the velocity.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("stability", problem, {"order": order, "tongues": tongues, "for_": for_, "small": small, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def audit(
+    problem: Problem,
+    *,
+    strict: bool = False,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Audit:
+    """Claims of a publication from a file, each computed again, with a verdict.
+
+    Args:
+        problem: A TOML file of claims, or - for standard input.
+        strict: Exit with code 3 for every claim that is not reproduced, also where the file
+            expects so.
+        timeout: Give up after so many seconds.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("audit", problem, {"strict": strict, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+def paper(
+    *,
+    strict: bool = False,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Audit:
+    """Every number, equation, table and figure of the paper, computed again, with a verdict.
+
+    Args:
+        strict: Exit with code 3 for every claim that is not reproduced, also where the file
+            expects so.
+        timeout: Give up after so many seconds.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("paper", None, {"strict": strict, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+def certify(
+    problem: Problem,
+    method: str | None = None,
+    *,
+    order: int | tuple[int, ...] | str | None = None,
+    amplitude: Literal["initial", "first-harmonic"] | None = None,
+    small: str | None = None,
+    about: Values | None = None,
+    taylor: int | None = None,
+    hbar: Value | None = None,
+    cycle: int | None = None,
+    resonance: tuple[int, int] | str | None = None,
+    omega_only: bool = False,
+    jobs: int | None = None,
+    range: tuple[Value, Value] | str | None = None,
+    no_formula: bool = False,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Certificate | DampedCertificateDocument:
+    """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
+
+    Args:
+        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
+            input.
+        method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
+            iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
+            amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
+            pade, hermite-pade, multiple-scales or exact.
+        order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
+            balance; degrees L,M of pade, P,Q,R of hermite-pade.
+        amplitude: What the amplitude measures.
+        small: The small parameter; A for the amplitude.
+        about: The equilibrium to swing about, x=1 say: a stable one, without this the nearest
+            to zero, or an unstable one between two wells for motions over both.
+        taylor: Degree of the Taylor polynomial that homotopy perturbation puts for the force.
+        hbar: The convergence-control parameter of homotopy-analysis, exact; without it the best
+            one is chosen at the values.
+        cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
+            without it the smallest that attracts.
+        resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the
+            one nearest to the values, or 1:1.
+        omega_only: The frequency without the motion, of lindstedt-poincare: orders up to 2000,
+            in less time.
+        jobs: Threads of a long expansion; all cores without it. The result is the same for any
+            number.
+        range: Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is
+            proved to be within the tolerance, for every amplitude.
+        no_formula: Prove the motion alone, and judge no formula: where that has no real value,
+            say.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds.
+        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("certify", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def check(
+    problem: Problem,
+    *,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    progress: Progress | None = None,
+) -> Certificate | DampedCertificateDocument:
+    """Check a certificate that `certify` wrote, in exact arithmetic.
+
+    Args:
+        problem: A certificate, as `certify` writes it; - for standard input.
+        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
+            0.01 without it).
+        timeout: Give up after so many seconds, 60 without it: a certificate may come from
+            anybody.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("check", problem, {"tolerance": tolerance, "timeout": timeout}, {}, progress)  # type: ignore[no-any-return]
+
+
+class EquationCommands:
+    """The commands of an equation as methods."""
+
+    problem: Problem
+
+    def derive(
+        self,
+        method: str | None = None,
+        *,
+        order: int | tuple[int, ...] | str | None = None,
+        amplitude: Literal["initial", "first-harmonic"] | None = None,
+        small: str | None = None,
+        about: Values | None = None,
+        taylor: int | None = None,
+        hbar: Value | None = None,
+        cycle: int | None = None,
+        resonance: tuple[int, int] | str | None = None,
+        omega_only: bool = False,
+        jobs: int | None = None,
+        steps: bool = False,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Law:
+        """Derive the frequency law and the motion of an oscillator, to an order.
+
+        Args:
+            method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
+                iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-
+                min, amplitude-frequency, hamiltonian, variational-iteration, frequency-formula,
+                averaging, pade, hermite-pade, multiple-scales or exact.
+            order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
+                balance; degrees L,M of pade, P,Q,R of hermite-pade.
+            amplitude: What the amplitude measures.
+            small: The small parameter; A for the amplitude.
+            about: The equilibrium to swing about, x=1 say: a stable one, without this the
+                nearest to zero, or an unstable one between two wells for motions over both.
+            taylor: Degree of the Taylor polynomial that homotopy perturbation puts for the
+                force.
+            hbar: The convergence-control parameter of homotopy-analysis, exact; without it the
+                best one is chosen at the values.
+            cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
+                without it the smallest that attracts.
+            resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it
+                the one nearest to the values, or 1:1.
+            omega_only: The frequency without the motion, of lindstedt-poincare: orders up to
+                2000, in less time.
+            jobs: Threads of a long expansion; all cores without it. The result is the same for
+                any number.
+            steps: Print the derivation, order by order, before the result; in JSON as
+                `derivation`, in a program as a comment.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("derive", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+    def compare(
+        self,
+        *,
+        small: str | None = None,
+        about: Values | None = None,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Comparison:
+        """Every method of the field on one equation, in one table, judged against the true motion.
+
+        Args:
+            small: The small parameter; A for the amplitude.
+            about: The equilibrium to swing about, x=1 say: a stable one, without this the
+                nearest to zero, or an unstable one between two wells for motions over both.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("compare", self.problem, {"small": small, "about": about, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+    def simulate(
+        self,
+        *,
+        from_: Values | None = None,
+        until: float | None = None,
+        step_limit: int | None = None,
+        every: Value | None = None,
+        section: str | None = None,
+        after: float | None = None,
+        sample: Sequence[float] | None = None,
+        integrator: Literal["taylor", "runge-kutta", "both"] | None = None,
+        chain: bool = False,
+        sweep: Values | None = None,
+        baseline: bool = False,
+        jobs: int | None = None,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep:
+        """The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism.
+
+        Args:
+            from_: Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"):
+                what is left out is 0.
+            until: How long it is followed; 50 without it.
+            step_limit: Steps of the integrator after which it ends; 250 000 without it.
+            every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
+                section): 2*pi/Omega.
+            section: Look at it where an expression of its coordinates, velocities and the time
+                grows through zero: x', "x - 0.1".
+            after: Look at it from this time on, when it has settled.
+            sample: Report the state at this time (repeatable).
+            integrator: The method: power series with the contact in a variable in which it is
+                analytic; Runge-Kutta, one smooth phase at a time; or both, and how far they differ.
+            chain: Do not integrate: swing and contact in closed form, impact after impact to
+                rest, each with its formula, and its error against the integration; a sweep is not
+                judged.
+            sweep: Follow many motions: a parameter over a range by equal steps, by equal ratios
+                (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
+                combination.
+            baseline: In a sweep: beside each rest time those without a barrier and with one
+                that loses nothing.
+            jobs: Threads of a sweep; all cores without it. The result is the same for any
+                number.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("simulate", self.problem, {"from_": from_, "until": until, "step_limit": step_limit, "every": every, "section": section, "after": after, "sample": sample, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+    def response(
+        self,
+        method: str | None = None,
+        *,
+        vary: Values | None = None,
+        order: int | None = None,
+        periods: int | None = None,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Response:
+        """Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone.
+
+        Args:
+            method: harmonic-balance; or multiple-scales or averaging, their steady motions
+                beside the branches of harmonic balance, which judge them.
+            vary: The parameter that varies, and from where to where: Omega=0.5:1.5.
+            order: The highest harmonic kept; without it as many as bring the error below a
+                tenth of the tolerance, 64 at most; of multiple-scales its order.
+            periods: Periods of the drive in a period of the motion: 2 for motions after a
+                period doubling, 3 for a third of the frequency.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("response", self.problem, {"method": method, "vary": vary, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+    def stability(
+        self,
+        *,
+        order: int | tuple[int, ...] | str | None = None,
+        tongues: int | None = None,
+        for_: str | None = None,
+        small: Sequence[str] | None = None,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Stability:
+        """Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable.
+
+        Args:
+            order: Highest power of the small parameters, all together, that is kept; 6 without
+                it.
+            tongues: The tongues 0 to N; 3 without it.
+            for_: What the curves give: a letter of the mean stiffness, or the frequency.
+            small: A small parameter (repeatable); without it eps, and letters that alone stand
+                before a wave or the velocity.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("stability", self.problem, {"order": order, "tongues": tongues, "for_": for_, "small": small, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+    def certify(
+        self,
+        method: str | None = None,
+        *,
+        order: int | tuple[int, ...] | str | None = None,
+        amplitude: Literal["initial", "first-harmonic"] | None = None,
+        small: str | None = None,
+        about: Values | None = None,
+        taylor: int | None = None,
+        hbar: Value | None = None,
+        cycle: int | None = None,
+        resonance: tuple[int, int] | str | None = None,
+        omega_only: bool = False,
+        jobs: int | None = None,
+        range: tuple[Value, Value] | str | None = None,
+        no_formula: bool = False,
+        tolerance: float | None = None,
+        timeout: float | None = None,
+        at: Values | None = None,
+        progress: Progress | None = None,
+        **values: Value,
+    ) -> Certificate | DampedCertificateDocument:
+        """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
+
+        Args:
+            method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
+                iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-
+                min, amplitude-frequency, hamiltonian, variational-iteration, frequency-formula,
+                averaging, pade, hermite-pade, multiple-scales or exact.
+            order: Highest power of the small parameter kept, inclusive; harmonics of harmonic-
+                balance; degrees L,M of pade, P,Q,R of hermite-pade.
+            amplitude: What the amplitude measures.
+            small: The small parameter; A for the amplitude.
+            about: The equilibrium to swing about, x=1 say: a stable one, without this the
+                nearest to zero, or an unstable one between two wells for motions over both.
+            taylor: Degree of the Taylor polynomial that homotopy perturbation puts for the
+                force.
+            hbar: The convergence-control parameter of homotopy-analysis, exact; without it the
+                best one is chosen at the values.
+            cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
+                without it the smallest that attracts.
+            resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it
+                the one nearest to the values, or 1:1.
+            omega_only: The frequency without the motion, of lindstedt-poincare: orders up to
+                2000, in less time.
+            jobs: Threads of a long expansion; all cores without it. The result is the same for
+                any number.
+            range: Positive amplitudes, 1/10:3 say: how far from the first of them on the
+                formula is proved to be within the tolerance, for every amplitude.
+            no_formula: Prove the motion alone, and judge no formula: where that has no real
+                value, say.
+            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
+                use 0.01 without it).
+            timeout: Give up after so many seconds.
+            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            progress: Is called with the parts done and all of them; an exception ends the work.
+            **values: The values of symbols, exact where they are text or fractions.
+
+        Raises:
+            Refused: The problem is refused, with the term and a way forward.
+            UsageError: An option has a value that it cannot have.
+        """
+        return ask("certify", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]

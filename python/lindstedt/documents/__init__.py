@@ -1,0 +1,27 @@
+"""The documents as frozen dataclasses, one module a kind.
+
+Made by `python/generate.py` from the JSON schemas: change those.
+"""
+
+#: The module and the classes of each kind, by what stands under `schema`.
+KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "lindstedt/audit/1": ("audit", ("Audit",)),
+    "lindstedt/catalog/1": ("catalog", ("Catalog",)),
+    "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument",)),
+    "lindstedt/comparison/1": ("comparison", ("Comparison",)),
+    "lindstedt/friction/1": ("friction", ("Friction",)),
+    "lindstedt/impact-comparison/1": ("impact_comparison", ("ImpactComparison",)),
+    "lindstedt/impact/1": ("impact", ("Impact",)),
+    "lindstedt/lagrangian/1": ("lagrangian", ("Lagrangian",)),
+    "lindstedt/materials/1": ("materials", ("Materials",)),
+    "lindstedt/motion-sweep/1": ("motion_sweep", ("MotionSweep",)),
+    "lindstedt/motion/1": ("motion", ("Motion",)),
+    "lindstedt/optimization/1": ("optimization", ("Optimization",)),
+    "lindstedt/primary-sweep/1": ("primary_sweep", ("PrimarySweep",)),
+    "lindstedt/primary/1": ("primary", ("Primary",)),
+    "lindstedt/response/1": ("response", ("Response",)),
+    "lindstedt/simulation/1": ("simulation", ("Simulation",)),
+    "lindstedt/solution/1": ("solution", ("Solution",)),
+    "lindstedt/stability/1": ("stability", ("Stability",)),
+    "lindstedt/sweep/1": ("sweep", ("Sweep",)),
+}

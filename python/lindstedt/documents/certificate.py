@@ -1,0 +1,300 @@
+"""Made by `python/generate.py` from the JSON schemas: change those."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from .._answer import Answer
+from .._document import Document, frozen, several
+
+
+#: A force.
+CertificateForce: TypeAlias = tuple[str, ...] | str
+
+
+@dataclass(frozen=True)
+class CertificateLetters(Document):
+    """The letters of an answer in its law.
+
+    Attributes:
+        amplitude: That of the amplitude, whose value is x(0) less a place of rest.
+        frequency: That of the frequency, on the left side of the law.
+    """
+
+    amplitude: str
+    frequency: str
+
+
+CertificateLetters.FIELDS = (
+    ("amplitude", "amplitude", None),
+    ("frequency", "frequency", None),
+)
+
+
+@dataclass(frozen=True)
+class CertificateFormula(Document):
+    """A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
+    and from above.
+
+    Attributes:
+        law: The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of
+            letters behind commas, which has to give `omega` at `values` to its last digits. What
+            is of another form is words: nothing is checked against them.
+        letters: The letters of the answer in the law, where the equation has the usual ones, `A`
+            or `omega`, for something of its own.
+        values: The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less
+            a place of rest.
+        omega: omega~, an integer times 2^-bits.
+        c: The cosine coefficients of X~, likewise.
+        phase_error: max |X - X~|, both at the same phase, in the unit of x.
+        frequency_error: |omega - omega~|.
+        drift: max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t.
+    """
+
+    law: str
+    letters: CertificateLetters | None
+    values: str | None
+    omega: str
+    c: tuple[str, ...]
+    phase_error: tuple[str, str]
+    frequency_error: tuple[str, str]
+    drift: tuple[str, str]
+
+
+CertificateFormula.FIELDS = (
+    ("law", "law", None),
+    ("letters", "letters", CertificateLetters.from_json),
+    ("values", "values", None),
+    ("omega", "omega", None),
+    ("c", "c", tuple),
+    ("phase_error", "phase_error", tuple),
+    ("frequency_error", "frequency_error", tuple),
+    ("drift", "drift", tuple),
+)
+
+
+@dataclass(frozen=True, repr=False)
+class CertificateDocument(Answer):
+    """Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is
+    off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equation that f belongs to.
+        f: The force: the coefficients of a polynomial by rising power of x, or an expression in
+            x.
+        initial_displacement: x(0), a fraction, exact; x'(0) = 0.
+        odd: Whether f is odd: then the motion has odd harmonics alone, and so has the block.
+        bits: `mu`, `c` and the numbers of the formula are integers times 2^-bits; at most 224.
+        mu: The approximate 1/omega^2.
+        c: The approximate cosine coefficients c_0, c_1, ... of the motion.
+        highest_harmonic: The last harmonic of the block; at most 400.
+        inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+        inverse: The approximate inverse of the derivative on mu and the c_k of the block, row by
+            row; the first row is that of mu, the first column that of the condition x(0) =
+            initial_displacement.
+        sigma_log2: The norm is sigma |mu| + sum |c_k|, sigma = 2^sigma_log2.
+        nu: The weight of a harmonic from one to the next; 1.
+        claim_r: The radius that is claimed: the true mu and c are so near in the norm.
+        formula: The formula that is judged; null where none is.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["x''+f(x)=0"]
+    f: CertificateForce
+    initial_displacement: Fraction
+    odd: bool
+    bits: int
+    mu: str
+    c: tuple[str, ...]
+    highest_harmonic: int
+    inverse_bits: int
+    inverse: tuple[tuple[str, ...], ...]
+    sigma_log2: int
+    nu: Literal["1"]
+    claim_r: str
+    formula: CertificateFormula | None
+
+
+CertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("f", "f", frozen),
+    ("initial_displacement", "initial_displacement", Fraction),
+    ("odd", "odd", None),
+    ("bits", "bits", None),
+    ("mu", "mu", None),
+    ("c", "c", tuple),
+    ("highest_harmonic", "highest_harmonic", None),
+    ("inverse_bits", "inverse_bits", None),
+    ("inverse", "inverse", several(tuple)),
+    ("sigma_log2", "sigma_log2", None),
+    ("nu", "nu", None),
+    ("claim_r", "claim_r", None),
+    ("formula", "formula", CertificateFormula.from_json),
+)
+CertificateDocument.CONSTANTS = {'ode': "x''+f(x)=0", 'nu': '1'}
+
+
+@dataclass(frozen=True)
+class CertificateDrive(Document):
+    """What drives a motion.
+
+    Attributes:
+        driving_frequency: The driving frequency Omega, a positive fraction, exact.
+        n: How many periods of the drive the motion takes: x(t) = X(Omega t/n).
+        harmonic: The harmonic of the motion whose amplitude the formula is about.
+    """
+
+    driving_frequency: Fraction
+    n: int
+    harmonic: int
+
+
+CertificateDrive.FIELDS = (
+    ("driving_frequency", "driving_frequency", Fraction),
+    ("n", "n", None),
+    ("harmonic", "harmonic", None),
+)
+
+
+@dataclass(frozen=True)
+class CertificateFormulaOfCycle(Document):
+    """A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
+    and from above.
+
+    Attributes:
+        law: The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive
+            `x = ...` in t, with definitions of letters behind commas; it has to give `omega`,
+            with a drive `c` and `s`, at `values` to the last digits. What is of another form is
+            words: nothing is checked against them.
+        letters: The letters of the answer in the law, where the equation has the usual ones, `A`
+            or `omega`, for something of its own.
+        values: The values of the letters in the law.
+        omega: omega~, an integer times 2^-bits; not there with a drive.
+        c: The cosine coefficients of X~, that of the constant first, likewise.
+        s: Its sine coefficients by harmonic, likewise.
+        phase_error: max |X - X~|, in the unit of x, X~ of a limit cycle turned until its first
+            harmonic is a positive cosine; of the nearest of the motions that follow from X by
+            symmetries of the equation: with a drive any number of its periods later, of an
+            equation that is its own mirror image -X too.
+        frequency_error: |omega - omega~|; not there with a drive.
+        drift: max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t,
+            both with this phase at t = 0; not there with a drive.
+        amplitude_error: |a - a~|, the amplitudes of the drive's harmonic; not there for a limit
+            cycle.
+    """
+
+    law: str
+    letters: CertificateLetters | None
+    values: str | None
+    omega: str | None
+    c: tuple[str, ...]
+    s: tuple[str, ...]
+    phase_error: tuple[str, str]
+    frequency_error: tuple[str, str] | None
+    drift: tuple[str, str] | None
+    amplitude_error: tuple[str, str] | None
+
+
+CertificateFormulaOfCycle.FIELDS = (
+    ("law", "law", None),
+    ("letters", "letters", CertificateLetters.from_json),
+    ("values", "values", None),
+    ("omega", "omega", None),
+    ("c", "c", tuple),
+    ("s", "s", tuple),
+    ("phase_error", "phase_error", tuple),
+    ("frequency_error", "frequency_error", tuple),
+    ("drift", "drift", tuple),
+    ("amplitude_error", "amplitude_error", tuple),
+)
+
+
+@dataclass(frozen=True, repr=False)
+class DampedCertificateDocument(Answer):
+    """Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady
+    motion with a drive in h, and how far a formula for it is off. All numbers are text:
+    integers, fractions such as `-1/6`, decimals such as `2.5e-33`. The first harmonic of a
+    cycle has no sine.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equation that g and h belong to.
+        g: The damping by velocity: the coefficients of a polynomial by rising power of x, or an
+            expression in x.
+        h: The restoring force, likewise; with a drive an expression in x, c = cos(Omega t) and s
+            = sin(Omega t).
+        drive: What drives the motion; not there for a limit cycle.
+        odd: Whether g is even, h odd and the motion of odd harmonics alone, and so the block, and
+            the only one within claim_r among those; with a drive h is odd in x and in what of c
+            and s changes its sign after half a period of the motion.
+        bits: `p`, `c`, `s` and the numbers of the formula are integers times 2^-bits; at most
+            224.
+        p: The approximate 1/omega; not there with a drive, n/Omega exactly.
+        c: The approximate cosine coefficients of the motion, that of the constant first; of a
+            limit cycle that of the first harmonic is positive.
+        s: The approximate sine coefficients by harmonic; that of the constant is 0, and of a
+            limit cycle that of the first harmonic too.
+        highest_harmonic: The last harmonic of the block; at most 400, and the block has at most
+            401 unknowns.
+        inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+        inverse: The approximate inverse of the derivative on the block, row by row. The columns
+            are those of the equations: the sine of the first harmonic, then cosine and sine of
+            each harmonic, the others; the rows those of the unknowns: p, then the same. With a
+            drive both are cosine and sine of each harmonic.
+        sigma_log2: The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a
+            drive, where there is no p.
+        nu: The weight of a harmonic from one to the next; 1.
+        claim_r: The radius that is claimed: there is exactly one motion whose p, c and s are so
+            near in the norm, where `odd` exactly one of odd harmonics.
+        formula: The formula that is judged, of a limit cycle turned until its first harmonic is a
+            positive cosine; null where none is.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"]
+    g: CertificateForce
+    h: CertificateForce
+    drive: CertificateDrive | None
+    odd: bool
+    bits: int
+    p: str | None
+    c: tuple[str, ...]
+    s: tuple[str, ...]
+    highest_harmonic: int
+    inverse_bits: int
+    inverse: tuple[tuple[str, ...], ...]
+    sigma_log2: int
+    nu: Literal["1"]
+    claim_r: str
+    formula: CertificateFormulaOfCycle | None
+
+
+DampedCertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("g", "g", frozen),
+    ("h", "h", frozen),
+    ("drive", "drive", CertificateDrive.from_json),
+    ("odd", "odd", None),
+    ("bits", "bits", None),
+    ("p", "p", None),
+    ("c", "c", tuple),
+    ("s", "s", tuple),
+    ("highest_harmonic", "highest_harmonic", None),
+    ("inverse_bits", "inverse_bits", None),
+    ("inverse", "inverse", several(tuple)),
+    ("sigma_log2", "sigma_log2", None),
+    ("nu", "nu", None),
+    ("claim_r", "claim_r", None),
+    ("formula", "formula", CertificateFormulaOfCycle.from_json),
+)
+DampedCertificateDocument.CONSTANTS = {'nu': '1'}
+
+
+#: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative
+#: motion, or a limit cycle.
+Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument

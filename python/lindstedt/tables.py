@@ -1,0 +1,68 @@
+"""Rows of a result as columns, frames and arrays of several axes."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any, Generic, TypeVar
+
+from ._optional import optional
+
+R = TypeVar("R")
+
+
+class Table(tuple[R, ...], Generic[R]):
+    """Rows of a result, dataclasses of one kind.
+
+    >>> import lindstedt as ls
+    >>> catalog = ls.catalog.entries
+    >>> Table(catalog).column("name")[:2].tolist()
+    ['pendulum', 'cubic-pendulum']
+    """
+
+    __slots__ = ()
+
+    def column(self, name: str) -> Any:
+        """Returns an attribute of all rows as an array; what is missing in numbers is NaN."""
+        numpy = optional("numpy", "a column")
+        values = [getattr(row, name) for row in self]
+        if any(isinstance(value, (int, float)) for value in values):
+            values = [numpy.nan if value is None else value for value in values]
+        return numpy.array(values)
+
+    def to_pandas(self) -> Any:
+        """Returns the rows as a `pandas.DataFrame`.
+
+        Raises:
+            MissingPackage: pandas is not installed.
+        """
+        rows = [asdict(row) for row in self]  # type: ignore[call-overload]
+        return optional("pandas", "a frame").DataFrame(rows)
+
+
+def columns_of(text: str) -> dict[str, Any]:
+    """The columns of a table of comma-separated values as arrays, numbers where all are."""
+    numpy = optional("numpy", "a column")
+    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+    names, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
+
+    def array(values: list[str]) -> Any:
+        try:
+            return numpy.array([float(value) if value else numpy.nan for value in values])
+        except ValueError:
+            return numpy.array(values)
+
+    return {name: array([row[place] for row in rows]) for place, name in enumerate(names)}
+
+
+def to_xarray(frame: Any, axes: list[str]) -> Any:
+    """The rows of a sweep as an `xarray.Dataset` whose dimensions are the axes.
+
+    Raises:
+        MissingPackage: pandas or xarray is not installed.
+    """
+    xarray = optional("xarray", "a data set of several axes")
+    dataset = xarray.Dataset.from_dataframe(frame.set_index(axes))
+    for name, unit in frame.attrs.get("units", {}).items():
+        if name in dataset.variables:
+            dataset[name].attrs["units"] = unit
+    return dataset

@@ -214,6 +214,9 @@ class Module:
             for key, value in schema["properties"].items()
             if "const" in value and key != "schema"
         }
+        optional = sorted(set(schema["properties"]) - set(schema.get("required", [])))
+        if optional:
+            lines.append(f"{name}.OPTIONAL = frozenset({optional!r})")
         if constants:
             lines.append(f"{name}.CONSTANTS = {constants!r}")
         self.blocks.append("\n".join(lines).replace("\\", "\\\\") + "\n")
@@ -391,7 +394,7 @@ def command_text(command: dict[str, Any], of_equation: bool) -> str:
         signature.append("*")
     if takes_values:
         signature.append("at: Values | None = None")
-        told.append("at: Values of symbols that are no words of Python, `{\"x'\": 1}`.")
+        told.append('at: Values of symbols whose names are options or no words, `{"small": 1}`.')
     signature.append("progress: Progress | None = None")
     told.append("progress: Is called with the parts done and all of them; an exception ends the work.")
     if takes_values:

@@ -112,15 +112,18 @@ class Answer(Document):
         """
         pandas = optional("pandas", "a frame")
         text = self.csv()
-        units: dict[str, str] = {}
+        told: list[str] = []
         while text.startswith("#"):
             line, _, text = text.partition("\n")
-            named = line.removeprefix("# units: ")
-            if named != line:
-                pairs = (pair.rsplit(" ", 1) for pair in named.split(", ") if " " in pair)
-                units.update((name, unit) for name, unit in pairs)
+            if line.startswith("# units: "):
+                told = line.removeprefix("# units: ").split(", ")
         frame = pandas.read_csv(io.StringIO(text))
-        frame.attrs["units"] = units
+        frame.attrs["units"] = {
+            name: pair.removeprefix(name + " ")
+            for name in frame.columns
+            for pair in told
+            if pair.startswith(name + " ")
+        }
         return frame
 
     def __str__(self) -> str:

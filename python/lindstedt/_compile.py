@@ -123,12 +123,8 @@ def of_arrays(function: ast.FunctionDef, known: set[str]) -> ast.FunctionDef:
         valid = " & ".join(f"(_valid_{number})" for number in range(checks))
         value = ast.unparse(body[-1].value)
         body[-1] = ast.parse(f"def f():\n return where({valid}, {value}, nan)").body[0].body[0]  # type: ignore[attr-defined]
-    made = ast.FunctionDef(
-        function.name, function.args, [function.body[0], *body], [], None, None, type_params=[]
-    ) if "type_params" in ast.FunctionDef._fields else ast.FunctionDef(
-        function.name, function.args, [function.body[0], *body], [], None, None
-    )
-    return made
+    function.body, function.decorator_list = [function.body[0], *body], []
+    return function
 
 
 def map_arguments(call: ast.Call) -> list[ast.AST]:
@@ -234,7 +230,7 @@ def numba_functions(program: str) -> dict[str, Function]:
     """The functions of a program, compiled by numba; they broadcast as ufuncs do."""
     numba = optional("numba", 'lambdify("numba")')
     tree = ast.parse(program)
-    kept = []
+    kept: list[ast.stmt] = []
     for part in tree.body:
         if isinstance(part, ast.FunctionDef) and part.name != "elementwise":
             part.decorator_list = [ast.Name("njit", ast.Load())]
@@ -244,7 +240,7 @@ def numba_functions(program: str) -> dict[str, Function]:
         elif isinstance(part, ast.ImportFrom) and part.module == "math":
             kept.append(part)
     space: dict[str, Any] = {"njit": numba.njit, "nan": math.nan}
-    body = ast.fix_missing_locations(ast.Module(list(kept), []))
+    body = ast.fix_missing_locations(ast.Module(kept, []))
     exec(compile(body, "<lindstedt>", "exec"), space)
     found: dict[str, Function] = {}
     for name in NAMES:

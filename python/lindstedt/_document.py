@@ -23,6 +23,9 @@ class Document:
     #: The keys that have the same value in every object of this kind.
     CONSTANTS: ClassVar[dict[str, Any]] = {}
 
+    #: The keys that are left out where they have no value.
+    OPTIONAL: ClassVar[frozenset[str]] = frozenset()
+
     @classmethod
     def from_json(cls: type[D], data: dict[str, Any]) -> D:
         """Makes the dataclass of a JSON object.
@@ -38,8 +41,13 @@ class Document:
         return made
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the JSON object again, with every key."""
-        return {key: plain(getattr(self, name)) for name, key, _ in self.FIELDS}
+        """Returns the JSON object again."""
+        values = ((key, getattr(self, name)) for name, key, _ in self.FIELDS)
+        return {
+            key: plain(value)
+            for key, value in values
+            if value is not None or key not in self.OPTIONAL
+        }
 
 
 def plain(value: Any) -> Any:

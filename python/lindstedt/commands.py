@@ -46,8 +46,8 @@ def derive(
     """Derive the frequency law and the motion of an oscillator, to an order.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
             iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
             amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
@@ -69,12 +69,10 @@ def derive(
             in less time.
         jobs: Threads of a long expansion; all cores without it. The result is the same for any
             number.
-        steps: Print the derivation, order by order, before the result; in JSON as `derivation`,
-            in a program as a comment.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        steps: Whether the derivation is kept, line by line.
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -99,15 +97,14 @@ def compare(
     """Every method of the field on one equation, in one table, judged against the true motion.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         small: The small parameter; A for the amplitude.
         about: The equilibrium to swing about, x=1 say: a stable one, without this the nearest
             to zero, or an unstable one between two wells for motions over both.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -138,8 +135,8 @@ def impact(
     """The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input; without it the paper's swing.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         method: How the swing of the derived phases is derived, by a method of `lindstedt
             derive`; without it the first that passes.
         order: The order of the law; without it 2 for the paper's reading, for the derived
@@ -153,10 +150,9 @@ def impact(
         compare: Every method in one table, each at its lowest order that passes.
         certify: Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how
             far each closed form is off.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -191,8 +187,8 @@ def simulate(
     """The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism.
 
     Args:
-        problem: A TOML file, - for standard input, an equation in quotes or a name of the
-            catalogue; without it the paper's pendulum and barrier.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         from_: Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"):
             what is left out is 0.
         until: How long it is followed; 50 without it.
@@ -213,10 +209,9 @@ def simulate(
         baseline: In a sweep: beside each rest time those without a barrier and with one that
             loses nothing.
         jobs: Threads of a sweep; all cores without it. The result is the same for any number.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -243,8 +238,8 @@ def response(
     """Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         method: harmonic-balance; or multiple-scales or averaging, their steady motions beside
             the branches of harmonic balance, which judge them.
         vary: The parameter that varies, and from where to where: Omega=0.5:1.5.
@@ -252,10 +247,9 @@ def response(
             the tolerance, 64 at most; of multiple-scales its order.
         periods: Periods of the drive in a period of the motion: 2 for motions after a period
             doubling, 3 for a third of the frequency.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -301,10 +295,9 @@ def lagrange(
     """Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes.
 
     Args:
-        problem: A TOML file with [lagrangian], or - for standard input; without it the paper's
-            pendulum, its equations (1) to (8) beside what follows.
+        problem: The path of a file, or the tables of a problem file.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -326,8 +319,7 @@ def materials(
     """The same swing against barriers of several materials: contact, rest time, and what is held fixed.
 
     Args:
-        problem: A TOML file, or - for standard input; without it the paper's design and the
-            materials of its Table 2.
+        problem: The path of a file, or the tables of a problem file.
         only_own: Only the materials of the file, without those of the paper's Table 2.
         chain: Do not integrate: every motion as a chain of closed forms, good to a percent
             where damping is light and dry friction alpha no more than 0.02 of the amplitude.
@@ -356,8 +348,7 @@ def optimize(
     """The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes.
 
     Args:
-        problem: A TOML file, or - for standard input; without it the paper's study: its Table 4
-            searched for the least rest time.
+        problem: The path of a file, or the tables of a problem file.
         seed: Seed of all random numbers, in place of that of the file.
         runs: How often to run the search, in place of the number in the file.
         jobs: Threads; all cores without it. The result is the same for any number.
@@ -392,17 +383,16 @@ def stability(
     """Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         order: Highest power of the small parameters, all together, that is kept; 6 without it.
         tongues: The tongues 0 to N; 3 without it.
         for_: What the curves give: a letter of the mean stiffness, or the frequency.
         small: A small parameter (repeatable); without it eps, and letters that alone stand
             before a wave or the velocity.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -423,9 +413,8 @@ def audit(
     """Claims of a publication from a file, each computed again, with a verdict.
 
     Args:
-        problem: A TOML file of claims, or - for standard input.
-        strict: Exit with code 3 for every claim that is not reproduced, also where the file
-            expects so.
+        problem: The path of a file, or the tables of a problem file.
+        strict: Whether a claim that is not reproduced fails also where the file expects so.
         timeout: Give up after so many seconds.
         progress: Is called with the parts done and all of them; an exception ends the work.
 
@@ -445,8 +434,7 @@ def paper(
     """Every number, equation, table and figure of the paper, computed again, with a verdict.
 
     Args:
-        strict: Exit with code 3 for every claim that is not reproduced, also where the file
-            expects so.
+        strict: Whether a claim that is not reproduced fails also where the file expects so.
         timeout: Give up after so many seconds.
         progress: Is called with the parts done and all of them; an exception ends the work.
 
@@ -482,8 +470,8 @@ def certify(
     """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
     Args:
-        problem: An equation in quotes, a TOML file, a name of the catalogue, or - for standard
-            input.
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
         method: How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
             iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
             amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging,
@@ -509,10 +497,9 @@ def certify(
             proved to be within the tolerance, for every amplitude.
         no_formula: Prove the motion alone, and judge no formula: where that has no real value,
             say.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
-        at: Values of symbols that are no words of Python, `{"x'": 1}`.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
         progress: Is called with the parts done and all of them; an exception ends the work.
         **values: The values of symbols, exact where they are text or fractions.
 
@@ -533,9 +520,8 @@ def check(
     """Check a certificate that `certify` wrote, in exact arithmetic.
 
     Args:
-        problem: A certificate, as `certify` writes it; - for standard input.
-        tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts use
-            0.01 without it).
+        problem: The path of a file, or the tables of a problem file.
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds, 60 without it: a certificate may come from
             anybody.
         progress: Is called with the parts done and all of them; an exception ends the work.
@@ -598,12 +584,10 @@ class EquationCommands:
                 2000, in less time.
             jobs: Threads of a long expansion; all cores without it. The result is the same for
                 any number.
-            steps: Print the derivation, order by order, before the result; in JSON as
-                `derivation`, in a program as a comment.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            steps: Whether the derivation is kept, line by line.
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 
@@ -630,10 +614,9 @@ class EquationCommands:
             small: The small parameter; A for the amplitude.
             about: The equilibrium to swing about, x=1 say: a stable one, without this the
                 nearest to zero, or an unstable one between two wells for motions over both.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 
@@ -689,10 +672,9 @@ class EquationCommands:
                 that loses nothing.
             jobs: Threads of a sweep; all cores without it. The result is the same for any
                 number.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 
@@ -725,10 +707,9 @@ class EquationCommands:
                 tenth of the tolerance, 64 at most; of multiple-scales its order.
             periods: Periods of the drive in a period of the motion: 2 for motions after a
                 period doubling, 3 for a third of the frequency.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 
@@ -760,10 +741,9 @@ class EquationCommands:
             for_: What the curves give: a letter of the mean stiffness, or the frequency.
             small: A small parameter (repeatable); without it eps, and letters that alone stand
                 before a wave or the velocity.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 
@@ -824,10 +804,9 @@ class EquationCommands:
                 formula is proved to be within the tolerance, for every amplitude.
             no_formula: Prove the motion alone, and judge no formula: where that has no real
                 value, say.
-            tolerance: Exit with code 3 if a verdict is worse than this relative error (verdicts
-                use 0.01 without it).
+            tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
-            at: Values of symbols that are no words of Python, `{"x'": 1}`.
+            at: Values of symbols whose names are options or no words, `{"small": 1}`.
             progress: Is called with the parts done and all of them; an exception ends the work.
             **values: The values of symbols, exact where they are text or fractions.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from types import CodeType
 from typing import Any, Literal
 
 from ._call import Call, Value, Values, answer, number, option
@@ -52,7 +53,7 @@ class Law(Solution):
     @property
     def symbols(self) -> tuple[str, ...]:
         """The arguments of `omega`, in their order; a word of Python has an underscore behind it."""
-        code = self.omega.__code__
+        code: CodeType = self.omega.__code__
         return code.co_varnames[: code.co_argcount]
 
     @cached_property
@@ -72,16 +73,21 @@ class Law(Solution):
         >>> ls.derive("pendulum").omega(A=[0.5, 1.0]).round(4)
         array([0.9844, 0.9378])
         """
-        return self._functions["angular_frequency"]
+        return self._function("angular_frequency", "frequency")
 
     @cached_property
     def _displacement(self) -> Any:
-        return self._functions["displacement"]
+        return self._function("displacement", "motion")
 
     @cached_property
     def velocity(self) -> Any:
         """The velocity as a function of the time and the symbols."""
-        return self._functions["velocity"]
+        return self._function("velocity", "motion")
+
+    def _function(self, name: str, what: str) -> Callable[..., Any]:
+        if name not in self._functions:
+            raise Refused(f"the program of this law has no {what}", "law")
+        return self._functions[name]
 
     def __call__(self, t: Any, *amounts: Any, **symbols: Any) -> Any:
         """Returns the displacement at the time t, the equilibrium included; everything broadcasts."""
@@ -130,7 +136,10 @@ class Law(Solution):
             known = ", ".join([*makers, *LANGUAGES])
             raise ValueError(f"{target}: choose one of {known}")
         names = {"omega": "angular_frequency"}
-        return makers[target](self.program("python"))[names.get(of, of)]
+        found = makers[target](self.program("python"))
+        if names.get(of, of) not in found:
+            raise Refused(f"the program of this law has no {of}", "law")
+        return found[names.get(of, of)]
 
     def _again(self, command: str, words: list[str]) -> Any:
         name, *rest = self.call.words

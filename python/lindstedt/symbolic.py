@@ -185,9 +185,9 @@ def written(value: Any) -> str:
     >>> written(sympy.sqrt(sympy.Symbol("x")) * sympy.Rational(1, 3))
     'sqrt(x)/3'
     """
-    from sympy.printing.str import StrPrinter
+    printer = optional("sympy.printing.str", "an exact expression").StrPrinter
 
-    class Printer(StrPrinter):  # type: ignore[misc]
+    class Printer(printer):  # type: ignore[misc, valid-type]
         """Prints the names of the grammar."""
 
         def _print_Function(self, function: Any) -> str:

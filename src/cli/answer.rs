@@ -86,7 +86,12 @@ pub(super) fn page(
         Ok(picture) => Ok(picture.as_str()),
         Err(reason) => Err(reason.as_str()),
     });
-    let words = session::current().words();
+    let session = session::current();
+    // Inside another process the format is the caller's, not the user's.
+    let words = match session.is_call() {
+        true => what_is_asked(&session.words()),
+        false => session.words(),
+    };
     write(&HtmlPage {
         title: &command(&what_is_asked(&words)),
         picture,

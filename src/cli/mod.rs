@@ -706,6 +706,11 @@ fn within_limits(
         let outcome = std::panic::catch_unwind(|| work.run());
         let _ = sender.send(Message::Done(outcome.ok()));
     });
+    // A caller that ends a work has no use for a part of it.
+    let after_interrupt: fn(&Session) -> Duration = match watch {
+        Some(_) => |_| Duration::ZERO,
+        None => patience,
+    };
     let first = match watch {
         None => receive(&receiver, limit),
         Some(watch) => loop {
@@ -727,7 +732,7 @@ fn within_limits(
     let found = match first {
         Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
         Ok(Message::Interrupt) => (
-            wait_for_part(&receiver, session, patience(session)),
+            wait_for_part(&receiver, session, after_interrupt(session)),
             Some((INTERRUPTED, "interrupted without a result".to_owned())),
         ),
         Ok(Message::Done(_)) | Err(_) => {

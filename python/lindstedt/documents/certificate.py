@@ -73,6 +73,7 @@ CertificateFormula.FIELDS = (
     ("frequency_error", "frequency_error", tuple),
     ("drift", "drift", tuple),
 )
+CertificateFormula.OPTIONAL = frozenset(['letters', 'values'])
 
 
 @dataclass(frozen=True, repr=False)
@@ -211,6 +212,7 @@ CertificateFormulaOfCycle.FIELDS = (
     ("drift", "drift", tuple),
     ("amplitude_error", "amplitude_error", tuple),
 )
+CertificateFormulaOfCycle.OPTIONAL = frozenset(['amplitude_error', 'drift', 'frequency_error', 'letters', 'omega', 'values'])
 
 
 @dataclass(frozen=True, repr=False)
@@ -292,6 +294,7 @@ DampedCertificateDocument.FIELDS = (
     ("claim_r", "claim_r", None),
     ("formula", "formula", CertificateFormulaOfCycle.from_json),
 )
+DampedCertificateDocument.OPTIONAL = frozenset(['drive', 'p'])
 DampedCertificateDocument.CONSTANTS = {'nu': '1'}
 
 

@@ -479,6 +479,7 @@ Response.FIELDS = (
     ("rates", "rates", several(Polynomial.from_json)),
     ("relation", "relation", Polynomial.from_json),
 )
+Response.OPTIONAL = frozenset(['parts'])
 
 
 @dataclass(frozen=True)
@@ -761,6 +762,7 @@ Verification.FIELDS = (
     ("values", "values", dict),
     ("verdict", "verdict", None),
 )
+Verification.OPTIONAL = frozenset(['no_deviation', 'spurious'])
 
 
 @dataclass(frozen=True)
@@ -828,6 +830,7 @@ ContactDissipation.FIELDS = (
     ("stated_restitution", "stated_restitution", None),
     ("touch_speed", "touch_speed", None),
 )
+ContactDissipation.OPTIONAL = frozenset(['at_speed_si'])
 
 
 @dataclass(frozen=True)

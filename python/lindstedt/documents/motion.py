@@ -102,3 +102,4 @@ Motion.FIELDS = (
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
+Motion.OPTIONAL = frozenset(['known_until'])

@@ -132,6 +132,7 @@ ContactForm.FIELDS = (
     ("at_speed", "at_speed", None),
     ("speed_unit", "speed_unit", None),
 )
+ContactForm.OPTIONAL = frozenset(['speed_unit'])
 
 
 @dataclass(frozen=True)

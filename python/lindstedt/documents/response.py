@@ -197,6 +197,7 @@ SlowResponse.FIELDS = (
     ("spurious", "spurious", None),
     ("verdict", "verdict", None),
 )
+SlowResponse.OPTIONAL = frozenset(['spurious'])
 
 
 @dataclass(frozen=True)
@@ -361,3 +362,4 @@ Response.FIELDS = (
     ("verification", "verification", ResponseVerification.from_json),
     ("complete", "complete", None),
 )
+Response.OPTIONAL = frozenset(['ripple'])

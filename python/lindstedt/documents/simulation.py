@@ -484,3 +484,4 @@ Simulation.FIELDS = (
     ("judge", "judge", Judge.from_json),
     ("notes", "notes", tuple),
 )
+Simulation.OPTIONAL = frozenset(['known_until'])

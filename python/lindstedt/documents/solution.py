@@ -126,3 +126,4 @@ Solution.FIELDS = (
     ("derivation", "derivation", tuple),
     ("verification", "verification", Verification.from_json),
 )
+Solution.OPTIONAL = frozenset(['closed_motion', 'convergence', 'derivation'])

@@ -1,0 +1,194 @@
+"""Every command in process: the document is that of the program, errors are exceptions."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import lindstedt as ls
+import pytest
+from lindstedt import _lindstedt, errors
+from lindstedt._call import Call, answer
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+#: A call of every command that has a document, and of every kind of document.
+CALLS = {
+    "derive": lambda: ls.derive("pendulum", A="3/2"),
+    "damped": lambda: ls.derive("damped-pendulum"),
+    "driven": lambda: ls.derive("forced-duffing"),
+    "cycle": lambda: ls.derive("van-der-pol"),
+    "balance": lambda: ls.derive("duffing", "harmonic-balance", order=2),
+    "compare": lambda: ls.compare("pendulum", A=1),
+    "impact": lambda: ls.impact(EXAMPLES / "impact-paper.toml"),
+    "impact-comparison": lambda: ls.impact(compare=True),
+    "simulation": lambda: ls.simulate(),
+    "chain": lambda: ls.simulate(chain=True),
+    "sweep": lambda: ls.simulate(sweep={"zeta": (0.01, 0.03, 3)}),
+    "motion": lambda: ls.simulate("duffing", x=1, eps=0.1, until=5),
+    "motion-sweep": lambda: ls.simulate("duffing", x=1, until=5, sweep={"eps": [0.1, 0.2]}),
+    "response": lambda: ls.response(
+        "x'' + x'/10 + x + x^3/10 = F*cos(W*t)", vary={"W": (0.8, 1.2)}, F="1/10"
+    ),
+    "friction": lambda: ls.friction(),
+    "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
+    "certify": lambda: ls.certify("pendulum", A=1),
+    "certified cycle": lambda: ls.certify("van-der-pol", mu="1/10"),
+    "paper": lambda: ls.paper(),
+    "materials": lambda: ls.materials(only_own=False),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_a_document_comes_back_whole(name):
+    result = CALLS[name]()
+    text = json.loads(result.json())
+    assert result.to_json() == text
+    assert pickle.loads(pickle.dumps(result)) == result
+    assert result.text() and result.html().startswith("<!")
+    assert repr(result).startswith("<")
+    bundle = result._repr_mimebundle_()
+    assert "text/plain" in bundle and "iframe" in bundle["text/html"]
+
+
+@pytest.mark.parametrize("name", ["derive", "compare", "motion", "response"])
+def test_the_document_is_that_of_the_program(name):
+    result = CALLS[name]()
+    words = result.call.worded("json", "--quiet")
+    program = subprocess.run(
+        [sys.executable, "-m", "lindstedt", *words], capture_output=True, text=True, check=True
+    )
+    assert program.stdout == result.json()
+
+
+def test_the_program_comes_with_the_package():
+    program = [sys.executable, "-m", "lindstedt"]
+    derived = subprocess.run([*program, "derive", "pendulum"], capture_output=True, text=True)
+    assert derived.returncode == 0 and "omega^2 = 1 - A^2/8" in derived.stdout
+    wrong = subprocess.run([*program, "derive"], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "Usage" in wrong.stderr
+
+
+def test_a_refusal_names_the_term_and_a_way_forward():
+    with pytest.raises(ls.Refused) as caught:
+        ls.derive("x'' + 2*zeta*x' + sin(x) = 0", "lindstedt-poincare")
+    why = caught.value
+    assert (why.kind, why.term) == ("refusal", "2*zeta*x'")
+    assert 'method="averaging"' in why.help and "help:" not in why.message
+    copy = pickle.loads(pickle.dumps(why))
+    assert (copy.term, copy.help, str(copy)) == (why.term, why.help, str(why))
+    with pytest.raises(ls.Refused) as caught:
+        ls.Oscillator("x'' + sin(x")
+    assert caught.value.kind == "oscillator"
+
+
+def test_wrong_options_are_usage_errors():
+    with pytest.raises(ls.UsageError) as caught:
+        ls.derive("pendulum", "lindstet-poincare")
+    assert "lindstedt-poincare" in caught.value.help
+    with pytest.raises(ls.UsageError):
+        ls.derive("pendulum", A="3/")
+    with pytest.raises(TypeError):
+        ls.friction(unheard_of=1)
+
+
+def test_a_time_limit():
+    with pytest.raises(ls.TimeLimit):
+        ls.audit(EXAMPLES / "audit" / "paper.toml", timeout=1e-9)
+
+
+def test_tables_of_a_file():
+    tables = {"equation": "x'' + x + eps*x^3 = 0", "order": 2, "values": {"A": 1, "eps": "1/10"}}
+    law = ls.derive(tables)
+    assert law.verification.passed and law.order == 2
+    assert ls.Oscillator(tables).parameters == ("eps",)
+
+
+def test_progress_is_told_and_may_end_the_work():
+    told = []
+
+    def watch(done, all_parts):
+        told.append((done, all_parts))
+        if len(told) == 3:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        ls.derive("x'' + x + eps*x^3 = 0", order=2000, omega_only=True, progress=watch)
+    assert len(told) == 3
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_an_interrupt_ends_the_work():
+    began = time.monotonic()
+    timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        ls.optimize(runs=10000)
+    assert time.monotonic() - began < 60
+    # What was interrupted leaves nothing behind.
+    assert ls.derive("pendulum").order == 4
+
+
+def test_forms_are_the_same_whether_they_were_kept_or_made_again():
+    study = ls.materials()
+    again = Call(study.call.words)
+    for form in ("csv", "text", "html"):
+        assert study.call.form(form) == again.form(form)
+    pytest.importorskip("pandas")
+    frame = study.to_pandas()
+    assert len(frame) == len(study.materials)
+    assert frame.attrs["units"]
+
+
+def test_certificates_are_written_and_checked(tmp_path):
+    certificate = ls.derive("pendulum").certify(A="3/2")
+    certificate.save(tmp_path / "pendulum.json")
+    checked = ls.check(tmp_path / "pendulum.json")
+    assert checked.passed and checked == certificate
+    low, high = certificate.omega_bounds
+    # The exact frequency: pi/2 over the complete elliptic integral, by the mean.
+    from math import cos, sqrt
+
+    a, b = 1.0, cos(0.75)
+    for _ in range(8):
+        a, b = (a + b) / 2, sqrt(a * b)
+    assert float(low) == pytest.approx(a, rel=1e-15) and low < high
+
+
+def test_files_of_every_ending(tmp_path):
+    law = ls.derive("duffing", A=1, eps="1/10")
+    for ending, begin in (
+        ("json", "{"), ("tex", "%"), ("html", "<!"), ("svg", "<"), ("txt", "x''"), ("py", "#"),
+        ("jl", "#"), ("m", "%"), ("rs", "/"), ("c", "/"),
+    ):
+        law.save(tmp_path / f"law.{ending}")
+        assert (tmp_path / f"law.{ending}").read_text().startswith(begin), ending
+
+
+def test_an_audit_with_its_claims():
+    audit = ls.audit(EXAMPLES / "audit" / "frequencies.toml", strict=True)
+    assert audit.counts.reproduced > 0 and audit.passed is not None
+
+
+def test_every_exit_code_has_an_exception():
+    assert isinstance(errors.from_failure(130, "interrupted", "", None), KeyboardInterrupt)
+    assert isinstance(errors.from_failure(70, "internal", "", None), ls.InternalError)
+    with pytest.raises(ls.UsageError):
+        answer(Call(("unheard-of",)))
+
+
+def test_every_command_with_a_document_is_a_function():
+    commands = {command["name"] for command in json.loads(_lindstedt.commands())}
+    assert commands - set(ls.__all__) == {"schema", "completions", "man"}
+
+
+def test_a_missing_package_says_how_to_get_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ls.MissingPackage, match="pip install pandas") as caught:
+        ls.compare("pendulum", A=1).to_pandas()
+    assert caught.value.help == "pip install pandas"

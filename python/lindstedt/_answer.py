@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html as markup
-import io
 import os
 from typing import TYPE_CHECKING, Any
 
@@ -110,14 +109,17 @@ class Answer(Document):
             MissingPackage: pandas is not installed.
             UsageError: This kind of result has no table.
         """
+        from .tables import columns_of
+
         pandas = optional("pandas", "a frame")
         text = self.csv()
-        told: list[str] = []
-        while text.startswith("#"):
-            line, _, text = text.partition("\n")
-            if line.startswith("# units: "):
-                told = line.removeprefix("# units: ").split(", ")
-        frame = pandas.read_csv(io.StringIO(text))
+        told = [
+            pair
+            for line in text.splitlines()
+            if line.startswith("# units: ")
+            for pair in line.removeprefix("# units: ").split(", ")
+        ]
+        frame = pandas.DataFrame(columns_of(text))
         frame.attrs["units"] = {
             name: pair.removeprefix(name + " ")
             for name in frame.columns

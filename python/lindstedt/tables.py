@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from dataclasses import asdict
 from typing import Any, Generic, TypeVar
 
@@ -40,16 +41,25 @@ class Table(tuple[R, ...], Generic[R]):
 
 
 def columns_of(text: str) -> dict[str, Any]:
-    """The columns of a table of comma-separated values as arrays, numbers where all are."""
+    """The columns of a table of comma-separated values as arrays: whole numbers, numbers with NaN for
+    what is missing, truth values, or texts with `None` for what is missing.
+
+    >>> columns_of("n,x,name\\n1,0.5,a\\n2,,b\\n")["x"]
+    array([0.5, nan])
+    """
     numpy = optional("numpy", "a column")
-    lines = [line for line in text.splitlines() if line and not line.startswith("#")]
-    names, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
+    lines = (line for line in text.splitlines() if line and not line.startswith("#"))
+    names, *rows = csv.reader(lines)
 
     def array(values: list[str]) -> Any:
-        try:
-            return numpy.array([float(value) if value else numpy.nan for value in values])
-        except ValueError:
-            return numpy.array(values)
+        if values and all(value in ("true", "false") for value in values):
+            return numpy.array([value == "true" for value in values])
+        for kind in (int, float):
+            try:
+                return numpy.array([kind(value or "nan") for value in values], dtype=kind)
+            except ValueError:
+                continue
+        return numpy.array([value or None for value in values], dtype=object)
 
     return {name: array([row[place] for row in rows]) for place, name in enumerate(names)}
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 from ._optional import optional
@@ -76,7 +77,42 @@ class Powers(ast.NodeTransformer):
                 exponent > 1
             ):
                 return ast.Name(self.power(symbol, exponent), ast.Load())
+            case ast.BinOp(_, ast.Mult() | ast.Div(), _):
+                return self.product(node)
         return self.generic_visit(node)
+
+    def product(self, node: ast.BinOp) -> ast.expr:
+        """A product with its numbers as one factor, and that first: an array is gone through once for
+        each other factor."""
+        number, above, below = Fraction(1), list[ast.expr](), list[ast.expr]()
+
+        def take(part: ast.expr, inverse: bool) -> None:
+            nonlocal number
+            match part:
+                case ast.BinOp(left, ast.Mult(), right):
+                    take(left, inverse)
+                    take(right, inverse)
+                case ast.BinOp(left, ast.Div(), right):
+                    take(left, inverse)
+                    take(right, not inverse)
+                case ast.UnaryOp(ast.USub(), inner):
+                    number = -number
+                    take(inner, inverse)
+                case ast.Constant(int(value)) if value:
+                    number = number / value if inverse else number * value
+                case _:
+                    (below if inverse else above).append(self.visit(part))
+
+        take(node, False)
+        try:
+            made: ast.expr | None = None if number == 1 else ast.Constant(float(number))
+        except OverflowError:
+            return ast.BinOp(self.visit(node.left), node.op, self.visit(node.right))
+        for factor in above:
+            made = factor if made is None else ast.BinOp(made, ast.Mult(), factor)
+        for factor in below:
+            made = ast.BinOp(made or ast.Constant(1.0), ast.Div(), factor)
+        return made or ast.Constant(1.0)
 
     def forget(self, symbols: list[str]) -> None:
         """Forgets the powers of symbols that have another value from here on."""
@@ -169,8 +205,30 @@ def {name}({parameters}):
 {coercions}
     if {are_numbers}:
         return scalar({arguments})
+    if {are_long}:
+        return by_blocks(array, ({arguments},))
     return array({arguments})
 '''
+
+#: The number of elements that are gone through at a time, so that what is computed of them stays in
+#: the cache.
+BLOCK = 8192
+
+
+def by_blocks(function: Function, arguments: tuple[Any, ...]) -> Any:
+    """The function of long arrays, block by block; arrays of several shapes at once."""
+    numpy = optional("numpy", "an array")
+    arrays = [value for value in arguments if isinstance(value, numpy.ndarray)]
+    others = [value for value in arguments if value.__class__ is not float]
+    shape = arrays[0].shape
+    if len(others) != len(arrays) or any(array.shape != shape for array in arrays):
+        return function(*arguments)
+    flat: list[Any] = [v if v.__class__ is float else v.reshape(-1) for v in arguments]
+    result = numpy.empty(arrays[0].size)
+    for begin in range(0, result.size, BLOCK):
+        part = slice(begin, begin + BLOCK)
+        result[part] = function(*(v if v.__class__ is float else v[part] for v in flat))
+    return result.reshape(shape)
 
 
 def numpy_functions(program: str) -> dict[str, Function]:
@@ -196,6 +254,10 @@ def numpy_functions(program: str) -> dict[str, Function]:
             parameters=", ".join(parameters),
             arguments=", ".join(parameters),
             are_numbers=numbers,
+            are_long=" or ".join(
+                f"{p}.__class__ is ndarray and {p}.size > {4 * BLOCK}" for p in parameters
+            )
+            or "False",
             coercions="\n".join(
                 f"    if {p}.__class__ is not ndarray: {p} = coerced({p})" for p in parameters
             )
@@ -204,6 +266,7 @@ def numpy_functions(program: str) -> dict[str, Function]:
         space = {
             "scalar": scalar,
             "array": arrays(name),
+            "by_blocks": by_blocks,
             "coerced": coerced,
             "ndarray": optional("numpy", "an array").ndarray,
         }

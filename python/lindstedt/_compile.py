@@ -189,9 +189,12 @@ def array_space(program: str, module: Any) -> dict[str, Any]:
 
 
 def coerced(value: Any) -> Any:
-    """A number or an array of what is given: lists become arrays, fractions become doubles."""
+    """A number or an array of what is given: lists become arrays, fractions and whole numbers
+    doubles."""
     if hasattr(value, "__array_ufunc__") or hasattr(value, "__jax_array__"):
-        return value
+        # Powers of whole numbers would overflow.
+        is_whole = getattr(getattr(value, "dtype", None), "kind", "f") in "iub"
+        return value.astype(float) if is_whole else value
     if isinstance(value, (list, tuple)):
         return optional("numpy", "an array").asarray(value, dtype=float)
     return float(value)
@@ -259,7 +262,8 @@ def numpy_functions(program: str) -> dict[str, Function]:
             )
             or "False",
             coercions="\n".join(
-                f"    if {p}.__class__ is not ndarray: {p} = coerced({p})" for p in parameters
+                f'    if {p}.__class__ is not ndarray or {p}.dtype.kind != "f": {p} = coerced({p})'
+                for p in parameters
             )
             or "    pass",
         )

@@ -151,3 +151,27 @@ def test_frames_and_labelled_arrays_pass_through():
     )
     assert set(array.dims) == {"A", "eps"}
     assert float(array.isel(A=1, eps=0)) == series["q"]
+
+
+def test_whole_numbers_are_doubles():
+    law = ls.derive("duffing", order=8)
+    amplitude = np.array([1, 2000])
+    assert law.omega_squared(A=amplitude.astype(float), eps=1e-9) == pytest.approx(
+        law.omega(A=amplitude, eps=1e-9) ** 2, rel=1e-13
+    )
+    assert law.omega(A=np.int64(2), eps=0) == 1
+    assert law.omega(A=Fraction(1, 2), eps=Fraction(1, 10)) == law.omega(0.5, 0.1)
+    assert law.omega(A=[1, 2], eps=0.1) == pytest.approx(law.omega(A=[1.0, 2.0], eps=0.1))
+
+
+def test_long_arrays_are_those_of_their_parts():
+    law = ls.derive("toda")
+    amplitude = np.linspace(0.01, 0.5, 50_000)
+    whole = law.omega(A=amplitude)
+    assert (whole[::997] == law.omega(A=amplitude[::997])).all()
+    square = law.omega(A=amplitude.reshape(250, 200))
+    assert (square.ravel() == whole).all()
+    t = np.linspace(0, 5, 40_000)
+    motion = law(t, A=0.2)
+    assert (motion[::991] == law(t[::991], A=0.2)).all()
+    assert law(t[:200], A=amplitude[:200, None]).shape == (200, 200)

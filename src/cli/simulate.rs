@@ -461,8 +461,11 @@ fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome
     })
 }
 
+/// Writes the rows of a sweep one after the other.
+type RowWriter = fn(&SweepReport, &mut dyn Write) -> std::io::Result<()>;
+
 /// The writer of the rows of a sweep in a format; `None` for a format that is made as a whole.
-fn row_writer(format: Format) -> Option<fn(&SweepReport, &mut dyn Write) -> std::io::Result<()>> {
+fn row_writer(format: Format) -> Option<RowWriter> {
     match format {
         Format::Csv => Some(sweep_csv),
         Format::Json => Some(json::sweep),

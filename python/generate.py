@@ -205,8 +205,7 @@ class Module:
                 )
             )
         heading = textwrap.fill(schema.get("description", ""), 95, subsequent_indent="    ")
-        shown = ", repr=False" if bases == "Answer" else ""
-        lines = [f"@dataclass(frozen=True{shown})", f"class {name}({bases}):", f'    """{heading}', "", "    Attributes:"]
+        lines = ["@dataclass(frozen=True, eq=False, repr=False)", f"class {name}({bases}):", f'    """{heading}', "", "    Attributes:"]
         lines += [*told, '    """', "", *fields, "", "", f"{name}.FIELDS = ("]
         lines += [line[4:] for line in readers] + [")"]
         constants = {
@@ -424,15 +423,22 @@ def command_text(command: dict[str, Any], of_equation: bool) -> str:
 
 def commands_text(commands: list[dict[str, Any]]) -> str:
     """The module of the commands."""
-    own = {"Law", "Comparison", "Motion", "MotionSweep", "Optimization", "Response", "Simulation"}
-    own |= {"Sweep", "Certificate"}
-    classes = sorted({name for result in RESULTS.values() for name in result.split(" | ")} - own)
+    from lindstedt._call import OWN
+
+    own: dict[str, set[str]] = {}
+    for module, name in OWN.values():
+        own.setdefault(module, set()).add(name)
+    named = {name for result in RESULTS.values() for name in result.split(" | ")}
+    classes = sorted(named - {name for names in own.values() for name in names})
     kinds = {class_name(path.stem): path.stem for path in SCHEMAS.glob("*.json")}
     kinds["DampedCertificateDocument"] = "certificate"
     imports = [
         f"    from .documents.{kinds[name].replace('-', '_')} import {name}" for name in classes
     ]
-    imports.append(f"    from .results import {', '.join(sorted(own))}")
+    imports += [
+        f"    from .{module} import {', '.join(sorted(names))}" for module, names in own.items()
+    ]
+    imports.sort()
     head = [
         '"""The commands of the program as functions. Made by `python/generate.py` from its help."""',
         "",

@@ -48,13 +48,13 @@ if TYPE_CHECKING:
     from .errors import TimeLimit as TimeLimit
     from .errors import UsageError as UsageError
     from .oscillator import Oscillator as Oscillator
-    from .results import Law as Law
+    from .law import Law as Law
     from .symbolic import from_sympy as from_sympy
 
 #: The module of each name, which is imported when the name is used.
 PLACES = {
     "catalog": "catalog",
-    "Law": "results",
+    "Law": "law",
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",
     **dict.fromkeys(

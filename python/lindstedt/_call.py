@@ -22,17 +22,17 @@ Problem = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 #: Takes the parts done and all of them; an exception ends the work.
 Progress = Callable[[int, int], object]
 
-#: The classes of the package in the place of those of the schemas.
+#: The classes of the package in the place of those of the schemas, each with its module.
 OWN = {
-    "CertificateDocument": "Certificate",
-    "Comparison": "Comparison",
-    "Motion": "Motion",
-    "MotionSweep": "MotionSweep",
-    "Optimization": "Optimization",
-    "Response": "Response",
-    "Simulation": "Simulation",
-    "Solution": "Law",
-    "Sweep": "Sweep",
+    "CertificateDocument": ("certificates", "Certificate"),
+    "Comparison": ("comparison", "Comparison"),
+    "Motion": ("motions", "Motion"),
+    "MotionSweep": ("motions", "MotionSweep"),
+    "Optimization": ("designs", "Optimization"),
+    "Response": ("branches", "Response"),
+    "Simulation": ("motions", "Simulation"),
+    "Solution": ("law", "Law"),
+    "Sweep": ("motions", "Sweep"),
 }
 
 
@@ -229,10 +229,9 @@ def answer(call: Call, progress: Progress | None = None) -> Any:
 def class_of(data: dict[str, Any]) -> Any:
     """The class of a document: that of the package where there is one, else that of the schema."""
     module, names = KINDS[data["schema"]]
-    own = importlib.import_module("lindstedt.results")
-    documents = importlib.import_module(f"lindstedt.documents.{module}")
     for name in names:
-        found = getattr(own, OWN.get(name, ""), None) or getattr(documents, name)
+        place, own = OWN.get(name, (f"documents.{module}", name))
+        found = getattr(importlib.import_module(f"lindstedt.{place}"), own)
         if {key for _, key, _ in found.FIELDS} >= data.keys():
             return found
     raise TypeError(f"no document of the kind {data['schema']}")

@@ -40,6 +40,19 @@ class Document:
             values[name] = value if read is None or value is None else read(value)
         return made
 
+    # Written once here, and not for every class anew: that is what importing them takes long for.
+    def __eq__(self, other: object) -> bool:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name, _, _ in self.FIELDS)
+
+    def __hash__(self) -> int:
+        return hash(tuple(getattr(self, name) for name, _, _ in self.FIELDS))
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={getattr(self, name)!r}" for name, _, _ in self.FIELDS)
+        return f"{type(self).__name__}({values})"
+
     def to_json(self) -> dict[str, Any]:
         """Returns the JSON object again."""
         values = ((key, getattr(self, name)) for name, key, _ in self.FIELDS)

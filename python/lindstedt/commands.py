@@ -9,6 +9,10 @@ from typing import TYPE_CHECKING, Literal
 from ._call import Problem, Progress, Value, Values, ask
 
 if TYPE_CHECKING:
+    from .branches import Response
+    from .certificates import Certificate
+    from .comparison import Comparison
+    from .designs import Optimization
     from .documents.audit import Audit
     from .documents.certificate import DampedCertificateDocument
     from .documents.friction import Friction
@@ -19,7 +23,8 @@ if TYPE_CHECKING:
     from .documents.primary import Primary
     from .documents.primary_sweep import PrimarySweep
     from .documents.stability import Stability
-    from .results import Certificate, Comparison, Law, Motion, MotionSweep, Optimization, Response, Simulation, Sweep
+    from .law import Law
+    from .motions import Motion, MotionSweep, Simulation, Sweep
 
 
 def derive(

@@ -9,7 +9,7 @@ from .._answer import Answer
 from .._document import Document, several
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditCounts(Document):
     """How many claims have each verdict.
 
@@ -34,7 +34,7 @@ AuditCounts.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditEntry(Document):
     """One thing that is printed.
 
@@ -60,7 +60,7 @@ AuditEntry.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditTried(Document):
     """The claim under some suppositions.
 
@@ -82,7 +82,7 @@ AuditTried.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditUnknown(Document):
     """What a claim asks of a number that is not printed.
 
@@ -110,7 +110,7 @@ AuditUnknown.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class AuditClaim(Document):
     """One claim.
 
@@ -172,7 +172,7 @@ AuditClaim.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Audit(Answer):
     """Claims of a publication, computed again, with a verdict each.
 

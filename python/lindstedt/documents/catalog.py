@@ -9,7 +9,7 @@ from .._answer import Answer
 from .._document import Document, several
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Applicability(Document):
     """Whether a method applies to an oscillator.
 
@@ -31,7 +31,7 @@ Applicability.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Entry(Document):
     """A classical oscillator.
 
@@ -63,7 +63,7 @@ Entry.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Catalog(Answer):
     """The classical oscillators that the program knows by name.
 

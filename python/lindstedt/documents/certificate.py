@@ -14,7 +14,7 @@ from .._document import Document, frozen, several
 CertificateForce: TypeAlias = tuple[str, ...] | str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CertificateLetters(Document):
     """The letters of an answer in its law.
 
@@ -33,7 +33,7 @@ CertificateLetters.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CertificateFormula(Document):
     """A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
     and from above.
@@ -76,7 +76,7 @@ CertificateFormula.FIELDS = (
 CertificateFormula.OPTIONAL = frozenset(['letters', 'values'])
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CertificateDocument(Answer):
     """Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is
     off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`.
@@ -139,7 +139,7 @@ CertificateDocument.FIELDS = (
 CertificateDocument.CONSTANTS = {'ode': "x''+f(x)=0", 'nu': '1'}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CertificateDrive(Document):
     """What drives a motion.
 
@@ -161,7 +161,7 @@ CertificateDrive.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CertificateFormulaOfCycle(Document):
     """A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
     and from above.
@@ -215,7 +215,7 @@ CertificateFormulaOfCycle.FIELDS = (
 CertificateFormulaOfCycle.OPTIONAL = frozenset(['amplitude_error', 'drift', 'frequency_error', 'letters', 'omega', 'values'])
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DampedCertificateDocument(Answer):
     """Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady
     motion with a drive in h, and how far a formula for it is off. All numbers are text:

@@ -10,7 +10,7 @@ from .._document import Document, fraction_or_text, mapped, several
 from .._polynomial import ConstantMethods, PolynomialMethods, VerificationMethods
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Constant(ConstantMethods, Document):
     """An exact constant beside its decimal value.
 
@@ -31,7 +31,7 @@ Constant.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Parameters(Document):
     """The numbers of an impact.
 
@@ -93,7 +93,7 @@ Parameters.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Judged(Document):
     """A number and its error.
 
@@ -112,7 +112,7 @@ Judged.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Term(Document):
     """A term: its coefficient times a product of powers.
 
@@ -136,7 +136,7 @@ Term.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Polynomial(PolynomialMethods, Document):
     """A polynomial: the sum of its terms, lowest order in the small parameters first; zero where
     there is none.
@@ -153,7 +153,7 @@ Polynomial.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class System(Document):
     """Algebraic equations for omega and the coefficients of the motion.
 
@@ -173,7 +173,7 @@ System.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Harmonic(Document):
     """One harmonic of a motion with symbols in it.
 
@@ -195,7 +195,7 @@ Harmonic.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Displacement(Document):
     """A motion as a Fourier series with symbols in it.
 
@@ -218,7 +218,7 @@ Displacement.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cycle(Document):
     """A limit cycle to leading order.
 
@@ -241,7 +241,7 @@ Cycle.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class LimitCycle(Document):
     """The limit cycle that is expanded, among those of its equation.
 
@@ -267,7 +267,7 @@ LimitCycle.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Release(Document):
     """Amplitude and phase at t = 0 of a motion with x = A from the equilibrium and x' = 0 there.
 
@@ -286,7 +286,7 @@ Release.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Resonance(Document):
     """A driving frequency near a multiple of the linear one: times_driving * driving_frequency =
     times_linear * omega0 + detuning.
@@ -315,7 +315,7 @@ Resonance.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Transient(Document):
     """A motion from its start in closed form.
 
@@ -341,7 +341,7 @@ Transient.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Modulation(Document):
     """The slow equations of amplitude and phase, in time derivatives: the motion is `displacement`
     with theta = phase, or for a driven motion theta = (times_driving * driving_frequency * t -
@@ -387,7 +387,7 @@ Modulation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branches(Document):
     """detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
 
@@ -406,7 +406,7 @@ Branches.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClosedRelation(Document):
     """The frequency-response equation of a force that is no polynomial, expressions in the amplitude
     and the detuning.
@@ -429,7 +429,7 @@ ClosedRelation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response(Document):
     """What is known of the steady motions of a driven equation. All formulas are in the amplitude and
     the detuning of `modulation`, the parameters and the definitions.
@@ -482,7 +482,7 @@ Response.FIELDS = (
 Response.OPTIONAL = frozenset(['parts'])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Estimate(Document):
     """A number that was estimated.
 
@@ -504,7 +504,7 @@ Estimate.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Convergence(Document):
     """The nearest singularity of a series, or a pair of conjugate ones, in the complex plane of its
     variable.
@@ -542,7 +542,7 @@ Convergence.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Followed(Document):
     """A motion that is not periodic, followed from its release at rest at x = A. Frequencies are
     those of its crossings of the equilibrium: pi over the mean time between successive ones;
@@ -586,7 +586,7 @@ Followed.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class HarmonicValue(Document):
     """One harmonic of a motion in numbers.
 
@@ -608,7 +608,7 @@ HarmonicValue.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Range(Document):
     """A place where the formula stops to hold, or another remark on its range.
 
@@ -627,7 +627,7 @@ Range.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SteadyState(Document):
     """A steady motion in numbers, by the slow equations and in truth.
 
@@ -669,7 +669,7 @@ SteadyState.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Verification(VerificationMethods, Document):
     """A formula at given values, beside the true motion of the equation as it was typed.
 
@@ -765,7 +765,7 @@ Verification.FIELDS = (
 Verification.OPTIONAL = frozenset(['no_deviation', 'spurious'])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Barrier(Document):
     """The places of the barriers.
 
@@ -784,7 +784,7 @@ Barrier.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactDissipation(Document):
     """The damping of a contact, in every form.
 
@@ -833,7 +833,7 @@ ContactDissipation.FIELDS = (
 ContactDissipation.OPTIONAL = frozenset(['at_speed_si'])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FrictionDissipation(Document):
     """A dry friction, in every form.
 
@@ -855,7 +855,7 @@ FrictionDissipation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ViscousDissipation(Document):
     """A viscous damping, in every form.
 
@@ -878,7 +878,7 @@ ViscousDissipation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Dissipation(Document):
     """What damps, each damping in every form.
 
@@ -900,7 +900,7 @@ Dissipation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionSample(Document):
     """A state.
 
@@ -919,7 +919,7 @@ MotionSample.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Section(Document):
     """Poincare's section.
 
@@ -949,7 +949,7 @@ Section.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Axis(Document):
     """A parameter and its values.
 
@@ -981,7 +981,7 @@ Axis.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class State(Document):
     """A state at the end of a run.
 

@@ -10,7 +10,7 @@ from .._document import Document, mapped, one_of, several
 from .common import Constant
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Reach(Document):
     """How far a formula is good.
 
@@ -36,7 +36,7 @@ Reach.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ApplyingRow(Document):
     """A method that applies.
 
@@ -93,7 +93,7 @@ ApplyingRow.FIELDS = (
 ApplyingRow.CONSTANTS = {'applies': True}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RefusedRow(Document):
     """A method that does not apply.
 
@@ -141,7 +141,7 @@ RefusedRow.CONSTANTS = {'applies': False}
 MethodRow: TypeAlias = ApplyingRow | RefusedRow
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Answer):
     """Every method on one equation at given values, beside the true motion of the equation as it was
     typed.

@@ -9,7 +9,7 @@ from .._answer import Answer
 from .._document import Document, several
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Printed(Document):
     """A number that the paper prints, and how its digits come out with the best value of pi.
 
@@ -31,7 +31,7 @@ Printed.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Speed(Document):
     """The two laws at one speed.
 
@@ -62,7 +62,7 @@ Speed.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PiReading(Document):
     """How many of the printed entries come out with one value of pi.
 
@@ -97,7 +97,7 @@ PiReading.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FirstCycle(Document):
     """The first cycle by the arctangent.
 
@@ -130,7 +130,7 @@ FirstCycle.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Stop(Document):
     """Where Coulomb's law stops the swing for good.
 
@@ -158,7 +158,7 @@ Stop.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class CreepSample(Document):
     """A state after the stop.
 
@@ -180,7 +180,7 @@ CreepSample.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Creep(Document):
     """The motion by the arctangent near rest.
 
@@ -213,7 +213,7 @@ Creep.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RestTime(Document):
     """Rest times by either law, in units of time.
 
@@ -241,7 +241,7 @@ RestTime.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Friction(Answer):
     """The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law:
     Table 1 of the paper, and a swing near rest. Angles are in radians, time is in units of

@@ -11,7 +11,7 @@ from .common import Judged, Parameters
 from .solution import Solution
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class DerivedLaw(Document):
     """The law of the derived phases.
 
@@ -36,7 +36,7 @@ DerivedLaw.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Cosine(Document):
     """x = amplitude cos(frequency s + phase), s = t - start.
 
@@ -58,7 +58,7 @@ Cosine.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Amplitude(Document):
     """A complex amplitude.
 
@@ -77,7 +77,7 @@ Amplitude.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Oscillation(Document):
     """x = centre + re cos(frequency s) - im sin(frequency s), s = t - start.
 
@@ -103,7 +103,7 @@ Oscillation.FIELDS = (
 Coefficients: TypeAlias = Oscillation | Cosine
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PhaseHarmonic(Document):
     """A harmonic of a phase, in numbers.
 
@@ -125,7 +125,7 @@ PhaseHarmonic.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PhaseDisplacement(Document):
     """x = centre + parabola * s * (duration - s) + the sum of cos * cos(harmonic * frequency * s) +
     sin * sin(harmonic * frequency * s), with s = t - clock.
@@ -160,7 +160,7 @@ PhaseDisplacement.FIELDS = (
 PhaseName: TypeAlias = Literal["approach", "contact", "return"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class State(Document):
     """A state of the pendulum.
 
@@ -179,7 +179,7 @@ State.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Phase(Document):
     """One phase of the motion. Its closed form counts the time s = t - clock.
 
@@ -221,7 +221,7 @@ Phase.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Quantity(Document):
     """One number by each closed form and by Runge-Kutta; null for a reading that does not apply.
 
@@ -255,7 +255,7 @@ Quantity.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Contact(Document):
     """The numbers of the contact.
 
@@ -277,7 +277,7 @@ Contact.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactDamping(Document):
     """A contact that loses energy: its force is gamma F(d) (1 + lambda d').
 
@@ -312,7 +312,7 @@ ContactDamping.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactLawRow(Document):
     """One law of the contact.
 
@@ -349,7 +349,7 @@ ContactLawRow.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Line(Document):
     """The line slope * x + constant that replaces (x - barrier)^(3/2), per unit of gamma.
 
@@ -368,7 +368,7 @@ Line.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Column(Document):
     """The judgement of three phases.
 
@@ -402,7 +402,7 @@ Column.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImpactVerification(Document):
     """The closed forms beside the true motion.
 
@@ -435,7 +435,7 @@ ImpactVerification.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class OverPrinted(Document):
     """A contact time over the printed one.
 
@@ -454,7 +454,7 @@ OverPrinted.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrintedContactTime(Document):
     """The contact time that the paper prints, compared with and never computed from.
 
@@ -482,7 +482,7 @@ PrintedContactTime.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class YieldLimit(Document):
     """A yield limit that is stated.
 
@@ -508,7 +508,7 @@ YieldLimit.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Si(Document):
     """The numbers of an impact in SI units: m L^2 x'' + m g L sin x + k L (L (x - x_c))^(3/2) = 0.
 
@@ -588,7 +588,7 @@ Si.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Impact(Answer):
     """A swing released from rest that hits an elastic barrier: approach, contact and return in closed
     form, beside Runge-Kutta on the original equation. For the pendulum angles are in radians

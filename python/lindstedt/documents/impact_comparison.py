@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Judged, Parameters
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TrueNumbers(Document):
     """The numbers of the true motion.
 
@@ -38,7 +38,7 @@ TrueNumbers.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImpactMethodRow(Document):
     """A row of the table.
 
@@ -92,7 +92,7 @@ ImpactMethodRow.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImpactComparison(Answer):
     """Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a
     document of kind `impact`.

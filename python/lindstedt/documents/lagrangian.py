@@ -9,7 +9,7 @@ from .._answer import Answer
 from .._document import Document, several
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Group(Document):
     """A dimensionless number.
 
@@ -34,7 +34,7 @@ Group.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium(Document):
     """A place of rest.
 
@@ -58,7 +58,7 @@ Equilibrium.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mode(Document):
     """A mode.
 
@@ -81,7 +81,7 @@ Mode.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Finding(Document):
     """An equation of the paper.
 
@@ -106,7 +106,7 @@ Finding.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Lagrangian(Answer):
     """A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless
     groups on which its motion depends. Formulas are text of the grammar; `q'` is the velocity

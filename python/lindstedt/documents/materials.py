@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Barrier, Dissipation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MaterialsParameters(Document):
     """The pendulum and the run.
 
@@ -62,7 +62,7 @@ MaterialsParameters.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FirstContact(Document):
     """The first contact of a barrier.
 
@@ -94,7 +94,7 @@ FirstContact.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MaterialYieldCheck(Document):
     """A stated yield limit.
 
@@ -120,7 +120,7 @@ MaterialYieldCheck.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RestTime(Document):
     """A rest time, or why there is none.
 
@@ -142,7 +142,7 @@ RestTime.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MaterialRow(Document):
     """A material.
 
@@ -189,7 +189,7 @@ MaterialRow.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class HeldFixed(Document):
     """The materials under one form of the damping of the contact.
 
@@ -229,7 +229,7 @@ HeldFixed.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Materials(Answer):
     """The same swing against barriers of several materials. Angles are in radians, time is in units
     of 1/omega of small swings, sqrt(L/g), energies in units of m g L, unless another unit is

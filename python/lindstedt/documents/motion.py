@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import MotionSample, Section
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class EnergyAccount(Document):
     """h = sum q' dL/dq' - L, the energy where nothing depends on the time.
 
@@ -39,7 +39,7 @@ EnergyAccount.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Answer):
     """A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
     are those of the values given.

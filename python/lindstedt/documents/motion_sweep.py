@@ -10,7 +10,7 @@ from .._document import Document, mapped, several
 from .common import MotionSample, Section
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SweptMotion(Document):
     """One of many motions.
 
@@ -41,7 +41,7 @@ SweptMotion.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionSweep(Answer):
     """Many motions of one equation or mechanism, over every combination of the values of some
     parameters or starts.

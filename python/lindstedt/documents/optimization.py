@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Barrier
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Genetic(Document):
     """The genetic algorithm; with several objectives NSGA-II, which has only population, generations
     and budget of it.
@@ -80,7 +80,7 @@ Genetic.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class MainMass(Document):
     """A main mass on spring and dashpot that carries the pendulum.
 
@@ -108,7 +108,7 @@ MainMass.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactForm(Document):
     """A damping of the contact in the form in which it is given.
 
@@ -135,7 +135,7 @@ ContactForm.FIELDS = (
 ContactForm.OPTIONAL = frozenset(['speed_unit'])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SearchHeldFixed(Document):
     """What is held fixed; null where it varies or is not given.
 
@@ -194,7 +194,7 @@ SearchHeldFixed.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SearchLimit(Document):
     """What must not be larger.
 
@@ -216,7 +216,7 @@ SearchLimit.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SearchMaterial(Document):
     """A material that is tried.
 
@@ -241,7 +241,7 @@ SearchMaterial.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SearchVariable(Document):
     """A number of the design that varies.
 
@@ -266,7 +266,7 @@ SearchVariable.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Asked(Document):
     """What was asked.
 
@@ -336,7 +336,7 @@ Asked.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Found(Document):
     """A design that a run found, as the search has it: by closed forms, by integration where there
     are none.
@@ -356,7 +356,7 @@ Found.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SearchRun(Document):
     """A run.
 
@@ -393,7 +393,7 @@ SearchRun.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Search(Document):
     """The best values of the runs of one search.
 
@@ -430,7 +430,7 @@ Search.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Design(Document):
     """A design that was followed until it rests.
 
@@ -481,7 +481,7 @@ Design.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Finalist(Document):
     """A design that was judged again.
 
@@ -509,7 +509,7 @@ Finalist.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sensitivity(Document):
     """A variable moved alone.
 
@@ -543,7 +543,7 @@ Sensitivity.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Unit(Document):
     """What the unit of the rest time does.
 
@@ -569,7 +569,7 @@ Unit.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Decision(Document):
     """What decides the best design.
 
@@ -606,7 +606,7 @@ Decision.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Optimization(Answer):
     """A search for the best damper. Angles are in radians, everything else in SI units, unless
     another unit is given; units of time are 1/omega of small swings, sqrt(L/g).

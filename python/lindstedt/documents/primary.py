@@ -9,7 +9,7 @@ from .._answer import Answer
 from .._document import Document, several
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimaryParameters(Document):
     """The numbers of main mass and pendulum, dimensionless.
 
@@ -58,7 +58,7 @@ PrimaryParameters.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimarySample(Document):
     """Both bodies at a time.
 
@@ -86,7 +86,7 @@ PrimarySample.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimaryImpact(Document):
     """An impact.
 
@@ -121,7 +121,7 @@ PrimaryImpact.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimaryEnergyDocument(Document):
     """The account of the energy.
 
@@ -158,7 +158,7 @@ PrimaryEnergyDocument.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Alone(Document):
     """A main mass alone, in closed form.
 
@@ -184,7 +184,7 @@ Alone.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Primary(Answer):
     """A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of
     1/omega, omega^2 = g/L, displacements of the main mass are over L, energies in units of m g

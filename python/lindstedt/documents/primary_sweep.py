@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Axis
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimarySweepRow(Document):
     """One run of a main mass.
 
@@ -67,7 +67,7 @@ PrimarySweepRow.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PrimarySweep(Answer):
     """Many runs of a main mass with its pendulum, over every combination of the values of some
     parameters. Units as in kind `primary`.

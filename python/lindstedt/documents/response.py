@@ -10,7 +10,7 @@ from .._document import Document, mapped, several
 from .common import Constant
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ResponsePoint(Document):
     """A steady state.
 
@@ -54,7 +54,7 @@ ResponsePoint.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ResponseBifurcation(Document):
     """A place where a branch changes.
 
@@ -87,7 +87,7 @@ ResponseBifurcation.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ResponseRipple(Document):
     """Folds of the balance alone.
 
@@ -106,7 +106,7 @@ ResponseRipple.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class BackbonePoint(Document):
     """A free motion without damping.
 
@@ -126,7 +126,7 @@ BackbonePoint.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SlowPoint(Document):
     """A steady motion by slow equations.
 
@@ -151,7 +151,7 @@ SlowPoint.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SlowResponse(Document):
     """Steady motions by slow equations.
 
@@ -200,7 +200,7 @@ SlowResponse.FIELDS = (
 SlowResponse.OPTIONAL = frozenset(['spurious'])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SimulatedPoint(Document):
     """A simulation that has settled.
 
@@ -229,7 +229,7 @@ SimulatedPoint.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ElsewherePoint(Document):
     """A simulation that has settled elsewhere.
 
@@ -249,7 +249,7 @@ ElsewherePoint.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ResponseVerification(Document):
     """How far the branches are from true motions.
 
@@ -275,7 +275,7 @@ ResponseVerification.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response(Answer):
     """Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those
     of the equation and the values given.

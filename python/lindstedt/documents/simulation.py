@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Barrier, Dissipation, State
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Parameters(Document):
     """The numbers of a run: dimensionless unless another unit is given.
 
@@ -68,7 +68,7 @@ Parameters.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactForm(Document):
     """x(t) = barrier + the sum over j from 1 of sines_j sin(j pi t/duration).
 
@@ -90,7 +90,7 @@ ContactForm.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class SwingForm(Document):
     """x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the
     parameter k^2.
@@ -122,7 +122,7 @@ SwingForm.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChainPhase(Document):
     """A phase of a chain: a stretch of time with one formula.
 
@@ -155,7 +155,7 @@ ChainPhase.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sample(Document):
     """A state that was asked for.
 
@@ -177,7 +177,7 @@ Sample.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ImpactError(Document):
     """How far a contact of a chain is from the same one by integration.
 
@@ -207,7 +207,7 @@ ImpactError.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Impact(Document):
     """One contact with a barrier.
 
@@ -252,7 +252,7 @@ Impact.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Geometry(Document):
     """By how much sooner a swing cut at the barrier rests under viscous damping:
     ln(first_swing/at_rest)/(2 zeta).
@@ -276,7 +276,7 @@ Geometry.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Baseline(Document):
     """Rest times of the same swing, in units of time; null where it does not come to rest in four
     times the duration of the run.
@@ -303,7 +303,7 @@ Baseline.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Energy(Document):
     """Energies and works over the run, in units of m g L.
 
@@ -334,7 +334,7 @@ Energy.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Difference(Document):
     """The largest differences of two motions at the same times.
 
@@ -356,7 +356,7 @@ Difference.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Judge(Document):
     """The same run by the other integrator.
 
@@ -388,7 +388,7 @@ Judge.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Simulation(Answer):
     """One run of the paper's equation (7), event by event. Angles are in radians, time is in units of
     1/omega of small swings, sqrt(L/g), energies in units of m g L.

@@ -9,7 +9,7 @@ from .._answer import Answer
 from .common import Constant, Convergence, Displacement, LimitCycle, Modulation, Polynomial, Response, System, Verification
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Solution(Answer):
     """A formula for the frequency and the motion of an oscillator. Of the laws of the frequency take
     the first that is not null: `frequency_squared`, `relation`, `closed_form`, `frequency`,

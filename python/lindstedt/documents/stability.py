@@ -10,7 +10,7 @@ from .._document import Document, mapped, several
 from .common import Constant, Polynomial
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class TransitionCurve(Document):
     """A transition curve: `curve + sign*sqrt(under_root)`.
 
@@ -43,7 +43,7 @@ TransitionCurve.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class JudgedCurve(Document):
     """A curve at the values.
 
@@ -72,7 +72,7 @@ JudgedCurve.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class StabilityVerification(Document):
     """The curves at values.
 
@@ -97,7 +97,7 @@ StabilityVerification.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Stability(Answer):
     """The curves on which a linear equation with periodic coefficients changes between stable and
     unstable.

@@ -10,7 +10,7 @@ from .._document import Document, several
 from .common import Axis, State
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Column(Document):
     """What one number, text or truth value of a row means.
 
@@ -34,7 +34,7 @@ Column.FIELDS = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Row(Document):
     """What is kept of one run.
 
@@ -84,7 +84,7 @@ Row.FIELDS = (
 )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Answer):
     """Many runs of the paper's equation (7), over every combination of the values of some parameters;
     units as in a document of kind `simulation`.

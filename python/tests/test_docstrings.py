@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import pkgutil
+from pathlib import Path
 
 import lindstedt
 import pytest
@@ -20,6 +21,14 @@ def test_examples(name):
         pytest.importorskip("sympy")
     found = doctest.testmod(importlib.import_module(name))
     assert found.failed == 0
+
+
+def test_the_page_on_python():
+    for package in ("pandas", "xarray"):
+        pytest.importorskip(package)
+    page = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+    found = doctest.testfile(str(page), module_relative=False)
+    assert found.failed == 0 and found.attempted > 10
 
 
 def test_there_are_examples():

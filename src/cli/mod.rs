@@ -884,6 +884,8 @@ fn tolerance(common: &Common) -> f64 {
 /// A document as text of several lines.
 fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     match serde_json::to_string_pretty(document) {
+        // Of ASCII JSON escapes what steers a terminal, but for DEL: most documents need no second look.
+        Ok(text) if text.is_ascii() && !text.contains('\u{7f}') => Ok(text + "\n"),
         // JSON leaves some characters as they are that steer a terminal; they are in strings alone.
         Ok(text) if text.chars().any(|letter| letter != '\n' && is_invisible(letter)) => {
             let escaped = text.chars().map(|letter| match letter != '\n' && is_invisible(letter) {

@@ -26,7 +26,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .catalog import catalog as catalog
+    from .catalogue import catalog as catalog
     from .commands import audit as audit
     from .commands import certify as certify
     from .commands import check as check
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
 #: The module of each name, which is imported when the name is used.
 PLACES = {
-    "catalog": "catalog",
+    "catalog": "catalogue",
     "Law": "law",
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",

@@ -24,6 +24,7 @@ Progress = Callable[[int, int], object]
 
 #: The classes of the package in the place of those of the schemas, each with its module.
 OWN = {
+    "Audit": ("audits", "Audit"),
     "CertificateDocument": ("certificates", "Certificate"),
     "Comparison": ("comparison", "Comparison"),
     "Motion": ("motions", "Motion"),

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 from ._call import Problem, Progress, Value, Values, ask
 
 if TYPE_CHECKING:
+    from .audits import Audit
     from .branches import Response
     from .certificates import Certificate
     from .comparison import Comparison
     from .designs import Optimization
-    from .documents.audit import Audit
     from .documents.certificate import DampedCertificateDocument
     from .documents.friction import Friction
     from .documents.impact import Impact

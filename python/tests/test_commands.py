@@ -1,5 +1,6 @@
 """Every command in process: the document is that of the program, errors are exceptions."""
 
+import functools
 import json
 import os
 import pickle
@@ -14,6 +15,7 @@ import lindstedt as ls
 import pytest
 from lindstedt import _lindstedt, errors
 from lindstedt._call import Call, answer
+from lindstedt.documents import KINDS
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -40,13 +42,29 @@ CALLS = {
     "certify": lambda: ls.certify("pendulum", A=1),
     "certified cycle": lambda: ls.certify("van-der-pol", mu="1/10"),
     "paper": lambda: ls.paper(),
-    "materials": lambda: ls.materials(only_own=False),
+    "materials": lambda: ls.materials(),
+    "lagrange": lambda: ls.lagrange(EXAMPLES / "lagrange" / "pendulum.toml"),
+    "optimize": lambda: ls.optimize(runs=2, budget=2000, seed=7),
+    "primary": lambda: ls.simulate(EXAMPLES / "primary" / "stick-slip.toml"),
+    "primary sweep": lambda: ls.simulate(
+        EXAMPLES / "primary" / "stick-slip.toml", sweep={"displacement": [0.01, 0.0163]}
+    ),
+    "catalog": lambda: answer(Call(("catalog",))),
 }
+
+
+@functools.cache
+def result_of(name):
+    return CALLS[name]()
+
+
+def test_every_kind_of_document_is_among_them():
+    assert {result_of(name).schema for name in CALLS} == set(KINDS)
 
 
 @pytest.mark.parametrize("name", CALLS)
 def test_a_document_comes_back_whole(name):
-    result = CALLS[name]()
+    result = result_of(name)
     text = json.loads(result.json())
     assert result.to_json() == text
     assert pickle.loads(pickle.dumps(result)) == result
@@ -58,7 +76,7 @@ def test_a_document_comes_back_whole(name):
 
 @pytest.mark.parametrize("name", ["derive", "compare", "motion", "response"])
 def test_the_document_is_that_of_the_program(name):
-    result = CALLS[name]()
+    result = result_of(name)
     words = result.call.worded("json", "--quiet")
     program = subprocess.run(
         [sys.executable, "-m", "lindstedt", *words], capture_output=True, text=True, check=True
@@ -170,9 +188,18 @@ def test_files_of_every_ending(tmp_path):
         assert (tmp_path / f"law.{ending}").read_text().startswith(begin), ending
 
 
+def test_the_front_of_a_search():
+    front = result_of("optimize").front
+    assert len(front) and front[0].design is result_of("optimize").best
+    pytest.importorskip("pandas")
+    assert len(front.to_pandas()) == len(front)
+
+
 def test_an_audit_with_its_claims():
     audit = ls.audit(EXAMPLES / "audit" / "frequencies.toml", strict=True)
     assert audit.counts.reproduced > 0 and audit.passed is not None
+    pytest.importorskip("pandas")
+    assert list(audit.to_pandas()["verdict"]).count("reproduced") == audit.counts.reproduced
 
 
 def test_every_exit_code_has_an_exception():

@@ -467,7 +467,9 @@ def commands_text(commands: list[dict[str, Any]]) -> str:
 
 def main(arguments: list[str]) -> int:
     """Writes the modules, or compares them."""
-    sys.path.append(str(ROOT / "python"))
+    # The package that is installed comes before its sources, which have no extension.
+    sources = str(ROOT / "python")
+    sys.path[:] = [path for path in sys.path if path != sources] + [sources]
     from lindstedt._lindstedt import commands
 
     texts = {f"documents/{name}": text for name, text in modules().items()}

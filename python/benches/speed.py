@@ -1,4 +1,4 @@
-"""How long things take in process: `python python/speed.py` prints medians of processor time.
+"""How long things take in process: `python python/benches/speed.py` prints medians of processor time.
 
 Each law is called beside the same formula, as the program writes it, in NumPy.
 """

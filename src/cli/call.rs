@@ -27,7 +27,8 @@ pub struct CallResult {
 }
 
 /// The failure of a command.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
 pub struct CallFailure {
     /// The exit code that the program has for it: 1 refused, 2 wrong usage, 70 an internal error,
     /// 130 interrupted.

@@ -266,7 +266,7 @@ impl ReconstructedIntegers {
 
 /// Returns numerator and denominator of the fraction with this residue modulo `modulus`, by Wang's
 /// algorithm; the residue may be negative. Far from the end some eighteen divisions of Euclid's
-/// algorithm are made at once ([`lehmer_step`]), so that the cost is `n^2/30` word products for `n`
+/// algorithm are made at once (`lehmer_step`), so that the cost is `n^2/30` word products for `n`
 /// bits. Numerator and denominator together have at least 24 bits
 /// fewer than the modulus, so that another such fraction would be a coincidence; `None` if there is
 /// none.

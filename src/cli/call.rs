@@ -17,8 +17,8 @@ pub struct CallResult {
     pub text: String,
     /// Notes and warnings on it, each a sentence or a few.
     pub notes: Vec<String>,
-    /// Where the work took long: the result in the other formats that it has, each with its name, so
-    /// that it need not be done again for them.
+    /// The result in the other formats that it has, each with its name, where the work took so long
+    /// that it should not be done again for them.
     pub forms: Vec<(&'static str, String)>,
     /// Whether the verdict is a pass; `None` where there is no verdict.
     pub passed: Option<bool>,
@@ -192,7 +192,7 @@ pub struct EquationRead {
 /// The text `input` stands for the file `-`.
 ///
 /// # Errors
-/// What no oscillator is made of, and a file without an equation.
+/// The problem has no equation, or its equation is that of no oscillator.
 pub fn read_equation(problem: &str, input: Option<String>) -> Result<EquationRead, CallFailure> {
     let session = Session::of_call(vec![problem.to_owned()], input);
     session.enter();

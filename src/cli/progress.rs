@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::session::{self, Session};
 use crate::Progress;
 
-/// What stands beside the bar of a sweep.
+/// The template of the bar of a sweep.
 pub(super) const MOTIONS: &str = "{bar:40} {pos}/{len} motions, {eta} left";
 
 /// A bar that shows the parts of a work, and counts them in the session.

@@ -26,7 +26,7 @@ pub(super) struct Session {
     asked: Mutex<Asked>,
 }
 
-/// What is asked in a session, and the notes on it.
+/// The request of a session, and the notes on its answer.
 #[derive(Default)]
 struct Asked {
     words: Vec<String>,

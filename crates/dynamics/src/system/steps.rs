@@ -27,7 +27,7 @@ pub(super) struct TaylorSteps {
     coefficients: Vec<f64>,
     /// The points of expansion, step by step.
     points: Vec<f64>,
-    /// What the coefficients are computed from once more; `None` if all are kept.
+    /// The recurrences that compute missing coefficients once more; `None` if all are kept.
     recurrences: Option<SideRecurrences>,
 }
 

@@ -4,7 +4,7 @@
 //! of it), and what stands beside the runs.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use lindstedt::genetic::{generator, search};
+use lindstedt::genetic::{generator, one_by_one, search};
 use lindstedt::optimize::{OptimizationProblem, Route, StudyObserver, optimize};
 
 fn benches(criterion: &mut Criterion) {
@@ -28,7 +28,13 @@ fn benches(criterion: &mut Criterion) {
                 Ok(design) => question.evaluation(&design),
                 Err(_) => lindstedt::genetic::Evaluation::unconstrained(f64::INFINITY),
             };
-            search(&space, evaluate, &question.genetic, &mut generator(1, 0), &mut |_| true)
+            search(
+                &space,
+                one_by_one(evaluate),
+                &question.genetic,
+                &mut generator(1, 0),
+                &mut |_| true,
+            )
         });
     });
     slow.bench_function("a study of two runs", |bencher| {

@@ -64,7 +64,7 @@ fn workloads(criterion: &mut Criterion) {
         [("conservative", conservative()), ("damped", damped()), ("to rest", to_rest())]
     {
         criterion.bench_function(&format!("{name}, several at a time"), |bencher| {
-            bencher.iter(|| simulate_many(&motions, &options));
+            bencher.iter(|| simulate_many(&motions, Integrator::Taylor, &options));
         });
         for (method, integrator) in [
             ("Taylor", Integrator::Taylor),

@@ -80,7 +80,7 @@ fn measure(name: &str, motions: &[(Model, Start)], options: &Settings) {
         .collect();
     let one_by_one = begin.elapsed().as_secs_f64();
     let begin = Instant::now();
-    let runs = simulate_many(motions, options).expect("motions");
+    let runs = simulate_many(motions, Integrator::Taylor, options).expect("motions");
     let together = begin.elapsed().as_secs_f64();
     let impacts: usize = runs.iter().map(|run| run.impacts.len()).sum();
     let steps: usize = runs.iter().map(|run| run.steps).sum();

@@ -282,10 +282,16 @@ fn searches() {
     }
     for evaluations in [0, 1, 3] {
         for every in [0, 1, usize::MAX] {
-            random_search(&space, |_| worth(&[]), (evaluations, every), 0.1, &mut random);
+            random_search(
+                &space,
+                one_by_one(|_| worth(&[])),
+                (evaluations, every),
+                0.1,
+                &mut random,
+            );
             differential_evolution(
                 &space,
-                |_| worth(&[f64::NAN]),
+                one_by_one(|_| worth(&[f64::NAN])),
                 (evaluations, every),
                 f64::NAN,
                 0,
@@ -305,13 +311,19 @@ fn searches() {
                 };
                 options.most_evaluations();
                 for values in lists {
-                    search(&space, |_| worth(values), &options, &mut random, &mut |_| true);
+                    search(
+                        &space,
+                        one_by_one(|_| worth(values)),
+                        &options,
+                        &mut random,
+                        &mut |_| true,
+                    );
                     let mut count = 0;
                     let shorter = |_: &[f64]| {
                         count += 1;
                         worth(&values[..count % (values.len() + 1)])
                     };
-                    search_front(&space, shorter, &options, &mut random, &mut |_| true);
+                    search_front(&space, one_by_one(shorter), &options, &mut random, &mut |_| true);
                 }
             }
         }

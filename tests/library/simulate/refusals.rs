@@ -27,7 +27,7 @@ fn what_is_no_motion_is_refused() {
         assert!(refuse(model, REST, options).contains("tolerance"));
     }
     let second = [(model, REST), (Model { mu: -1.0, ..model }, REST)];
-    assert_eq!(simulate_many(&second, &usual).expect_err("refused").0, 1);
+    assert_eq!(simulate_many(&second, Integrator::Taylor, &usual).expect_err("refused").0, 1);
 }
 
 #[test]

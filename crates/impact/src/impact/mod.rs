@@ -80,6 +80,7 @@ mod form;
 pub mod friction;
 pub mod hertz;
 mod judge;
+mod lanes;
 mod linearisation;
 mod materials;
 mod model;
@@ -126,6 +127,7 @@ pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, ImpactProblem, MotionPhase, ThreePhases, three_phases};
 pub use setup::{ContactLoss, ImpactSymbols, Setup};
 pub use si::{SiImpact, YieldCheck};
+pub(crate) use simulate::simulate_each;
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
     ClosedForm, ContactDeviation, ContactRecord, EnergyBook, EnergyPoint, Integrator,

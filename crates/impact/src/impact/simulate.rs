@@ -16,7 +16,7 @@
 
 use thiserror::Error;
 
-use super::chain::{ChainError, chain};
+use super::chain::{ChainError, chain, chains};
 use super::model::{Model, ModelError, Start};
 use super::simulation::{Integrator, Settings, Simulation, SimulationStop, size};
 use super::{judge, taylor};
@@ -127,36 +127,61 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     Some(first.checked_sub(1).map_or(0.0, |last| places[last].0))
 }
 
-/// Many motions on one core, by Taylor series, several at a time: each exactly as by [`simulate`].
+/// Many motions on one core, by Taylor series and by the chain several at a time: each exactly as by
+/// [`simulate`].
 ///
 /// # Errors
 /// As [`simulate`], for the first that cannot begin, with its number.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{Model, Settings, Start, simulate_many};
+/// use lindstedt::impact::{Integrator, Model, Settings, Start, simulate_many};
 ///
 /// let start = Start { x: -1.5, velocity: 0.0 };
 /// let motions = [0.0, 0.1].map(|zeta| (Model { zeta, ..Model::default() }, start));
-/// let found = simulate_many(&motions, &Settings::default()).map_err(|(_, error)| error)?;
+/// let found = simulate_many(&motions, Integrator::Taylor, &Settings::default()).map_err(|(_, error)| error)?;
 /// assert!(found[1].impacts[0].speed_in < found[0].impacts[0].speed_in);
 /// # Ok::<(), lindstedt::impact::SimulationError>(())
 /// ```
 pub fn simulate_many(
     motions: &[(Model, Start)],
+    integrator: Integrator,
     settings: &Settings,
 ) -> Result<Vec<Simulation>, (usize, SimulationError)> {
-    for (number, (model, start)) in motions.iter().enumerate() {
-        check(model, *start, settings).map_err(|error| (number, error))?;
-    }
-    let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
-    let runs = motions.iter().map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
-    taylor::follow(runs, |number, runner| {
-        if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
-            *place = Some(runner.finish(*start));
+    let numbered = simulate_each(motions, integrator, settings).into_iter().enumerate();
+    numbered.map(|(number, motion)| motion.map_err(|error| (number, error))).collect()
+}
+
+/// [`simulate_many`], with the errors of all.
+pub(crate) fn simulate_each(
+    motions: &[(Model, Start)],
+    integrator: Integrator,
+    settings: &Settings,
+) -> Vec<Result<Simulation, SimulationError>> {
+    let checked = |(model, start): &(Model, Start)| check(model, *start, settings);
+    let mut results: Vec<Option<Result<Simulation, SimulationError>>> =
+        motions.iter().map(|motion| checked(motion).err().map(Err)).collect();
+    let begins: Vec<usize> = (0..motions.len()).filter(|index| results[*index].is_none()).collect();
+    let motions: Vec<(Model, Start)> = begins.iter().map(|index| motions[*index]).collect();
+    let mut done = |number: usize, motion| results[begins[number]] = Some(motion);
+    match integrator {
+        Integrator::Taylor => {
+            let runs =
+                motions.iter().map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
+            taylor::follow(runs, |number, runner| {
+                done(number, Ok(runner.finish(motions[number].1)));
+            });
         }
-    });
-    Ok(results.into_iter().flatten().collect())
+        Integrator::Chain => chains(&motions, settings, |number, motion| {
+            done(number, motion.map_err(SimulationError::from));
+        }),
+        Integrator::RungeKutta => {
+            for (number, (model, start)) in motions.iter().enumerate() {
+                done(number, judge::follow(model, *start, settings).map_err(SimulationError::from));
+            }
+        }
+    }
+    results.into_iter().flatten().collect()
 }
 
 fn check(model: &Model, start: Start, settings: &Settings) -> Result<(), SimulationError> {

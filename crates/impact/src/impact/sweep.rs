@@ -25,7 +25,7 @@ use thiserror::Error;
 pub use axis::{Axis, AxisError, Spacing};
 
 use super::model::{Model, Start};
-use super::simulate::{SimulationError, simulate, simulate_many};
+use super::simulate::{SimulationError, simulate_many};
 use super::simulation::{ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop};
 use crate::parallel::par_map;
 
@@ -180,10 +180,10 @@ pub fn sweep(
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
     let settings = Settings { keep_path: false, ..*settings };
     let run = |(chunk, motions): &(usize, &[(Model, Start)])| {
-        let found = summaries(motions, integrator, &settings)
+        let found = simulate_many(motions, integrator, &settings)
             .map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
-        Ok(found)
+        Ok(found.iter().map(Summary::from_motion).collect::<Vec<_>>())
     };
     let chunks: Vec<_> = motions.chunks(CHUNK).enumerate().collect();
     let mut summaries = Vec::with_capacity(motions.len());
@@ -191,23 +191,6 @@ pub fn sweep(
         summaries.extend(part?);
     }
     Ok(summaries)
-}
-
-/// Summarises motions: by Taylor series several in one instruction stream.
-fn summaries(
-    motions: &[(Model, Start)],
-    integrator: Integrator,
-    settings: &Settings,
-) -> Result<Vec<Summary>, (usize, SimulationError)> {
-    if integrator == Integrator::Taylor {
-        let runs = simulate_many(motions, settings)?;
-        return Ok(runs.iter().map(Summary::from_motion).collect());
-    }
-    let one = |(number, (model, start)): (usize, &(Model, Start))| {
-        let run = simulate(model, *start, integrator, settings).map_err(|error| (number, error))?;
-        Ok(Summary::from_motion(&run))
-    };
-    motions.iter().enumerate().map(one).collect()
 }
 
 /// The sweep on this number of threads.

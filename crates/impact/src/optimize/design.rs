@@ -9,7 +9,7 @@ use crate::impact::contact::hunt_crossley::{peak_force, restitution};
 use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
     Case, ContactRecord, Integrator, Model, MotionToRest, NoRest, Parameter, Settings, Simulation,
-    SimulationError, Start, Units, course, hertz, simulate,
+    SimulationError, Start, Units, hertz, simulate, simulate_each,
 };
 
 /// The way in which a design is evaluated.
@@ -126,6 +126,49 @@ impl OptimizationProblem {
         route: Route,
         contact: bool,
     ) -> Result<EvaluatedDesign, String> {
+        match route {
+            Route::Integration => self.follow_motion(point, route, None, contact),
+            Route::Chain => {
+                let mut all = self.follow_by_chain(&[point.to_vec()], contact);
+                all.pop().unwrap_or_else(|| Err("no design".to_owned()))
+            }
+        }
+    }
+
+    /// Follows designs by the chain of closed forms, several side by side; those without one are
+    /// integrated.
+    pub(super) fn follow_by_chain(
+        &self,
+        points: &[Vec<f64>],
+        contact: bool,
+    ) -> Vec<Result<EvaluatedDesign, String>> {
+        let motions: Vec<Option<(Model, Start)>> = match self.main_mass {
+            Some(_) => vec![None; points.len()],
+            None => points.iter().map(|point| self.motion_of(point)).collect(),
+        };
+        let begun: Vec<(Model, Start)> = motions.iter().flatten().copied().collect();
+        let mut chains =
+            simulate_each(&begun, Integrator::Chain, &self.settings_to_rest()).into_iter();
+        let follow = |(point, motion): (&Vec<f64>, Option<(Model, Start)>)| {
+            let chain = motion.and_then(|_| chains.next());
+            self.follow_motion(point, Route::Chain, chain, contact)
+        };
+        points.iter().zip(motions).map(follow).collect()
+    }
+
+    /// The settings of a motion that is followed until it rests.
+    fn settings_to_rest(&self) -> Settings {
+        Settings { stop_at_rest: true, keep_path: false, ..self.settings }
+    }
+
+    /// Follows a design by integration, unless its chain is given.
+    fn follow_motion(
+        &self,
+        point: &[f64],
+        route: Route,
+        chain: Option<Result<Simulation, SimulationError>>,
+        contact: bool,
+    ) -> Result<EvaluatedDesign, String> {
         let (case, material) = self.case_of(point);
         let (model, start) = case.motion().map_err(|error| error.to_string())?;
         let units = Units {
@@ -140,7 +183,7 @@ impl OptimizationProblem {
         let motion = DesignMotion { question: self, model, start, units, route, contact };
         let followed = match self.main_mass {
             Some(main_mass) => motion.on_main_mass(&main_mass)?,
-            None => motion.on_fixed_pivot().map_err(|error| error.to_string())?,
+            None => motion.on_fixed_pivot(chain).map_err(|error| error.to_string())?,
         };
         Ok(EvaluatedDesign {
             point: point.to_vec(),
@@ -193,14 +236,15 @@ struct SimulatedMotion {
 }
 
 impl DesignMotion<'_> {
-    fn on_fixed_pivot(&self) -> Result<SimulatedMotion, SimulationError> {
-        let settings = Settings { stop_at_rest: true, keep_path: false, ..self.question.settings };
-        let by_chain = match self.route {
-            Route::Integration => None,
-            Route::Chain => match course(&self.model, self.start, Integrator::Chain, &settings) {
-                Err(SimulationError::Chain(_)) => None,
-                found => Some(found?),
-            },
+    /// The pendulum alone, by its chain if there is one.
+    fn on_fixed_pivot(
+        &self,
+        chain: Option<Result<Simulation, SimulationError>>,
+    ) -> Result<SimulatedMotion, SimulationError> {
+        let settings = self.question.settings_to_rest();
+        let by_chain = match chain {
+            None | Some(Err(SimulationError::Chain(_))) => None,
+            Some(found) => Some(MotionToRest::from(&found?)),
         };
         let integrated = by_chain.is_none();
         let (course, hardest) = match by_chain {

@@ -10,7 +10,8 @@ use super::question::{LARGEST_EXCESS, OptimizationProblem, OptimizeError};
 use crate::decimal::significant;
 use crate::genetic::{
     Evaluation, GeneticOptions, GeneticRun, GeneticStop, Individual, Penalty, Space, crowding,
-    differential_evolution, generator, non_dominated, random_search, search, search_front,
+    differential_evolution, generator, non_dominated, one_by_one, random_search, search,
+    search_front,
 };
 use crate::impact::hertz;
 use crate::parallel::par_map;
@@ -194,8 +195,20 @@ impl OptimizationProblem {
         best: f64,
         integrated: &mut usize,
     ) -> Evaluation {
-        let follow = |route| match self.follow(point, route, self.needs_contact()) {
-            Ok(design) => (self.evaluation(&design), design.integrated),
+        let by_chain = self.follow(point, Route::Chain, self.needs_contact());
+        self.evaluation_of(&by_chain, point, best, integrated)
+    }
+
+    /// [`Self::bounded_evaluation`] of a design that was followed by its chain.
+    fn evaluation_of(
+        &self,
+        by_chain: &Result<EvaluatedDesign, String>,
+        point: &[f64],
+        best: f64,
+        integrated: &mut usize,
+    ) -> Evaluation {
+        let evaluated = |found: &Result<EvaluatedDesign, String>| match found {
+            Ok(design) => (self.evaluation(design), design.integrated),
             Err(_) => {
                 let none = Evaluation {
                     objectives: vec![f64::INFINITY; self.objectives.len()],
@@ -208,7 +221,7 @@ impl OptimizationProblem {
                 (none, false)
             }
         };
-        let (evaluation, is_integrated) = follow(Route::Chain);
+        let (evaluation, is_integrated) = evaluated(by_chain);
         let closest = evaluation.inequalities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let tolerance = self.genetic.constraint_tolerance;
         let counts = self.objectives.len() > 1 || evaluation.value() < best;
@@ -216,7 +229,8 @@ impl OptimizationProblem {
             counts && closest > -MOST_OFF && !is_integrated && evaluation.is_feasible(tolerance);
         *integrated += usize::from(is_integrated || decides);
         if decides {
-            let judged = follow(Route::Integration).0;
+            let (judged, _) =
+                evaluated(&self.follow(point, Route::Integration, self.needs_contact()));
             if !judged.is_feasible(tolerance) {
                 return judged;
             }
@@ -224,16 +238,23 @@ impl OptimizationProblem {
         evaluation
     }
 
-    /// The function that a search minimises; it remembers the best value so far, and counts the
-    /// designs that were integrated.
-    fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
+    /// The function that a search minimises, of many points at once; it remembers the best value so
+    /// far, and counts the designs that were integrated.
+    fn evaluate<'a>(
+        &'a self,
+        integrated: &'a mut usize,
+    ) -> impl FnMut(&[Vec<f64>]) -> Vec<Evaluation> + 'a {
         let mut best = f64::INFINITY;
-        move |point| {
-            let evaluation = self.bounded_evaluation(point, best, integrated);
-            if evaluation.is_feasible(self.genetic.constraint_tolerance) {
-                best = best.min(evaluation.value());
-            }
-            evaluation
+        move |points| {
+            let followed = self.follow_by_chain(points, self.needs_contact());
+            let evaluate = |(point, by_chain): (&Vec<f64>, &Result<EvaluatedDesign, String>)| {
+                let evaluation = self.evaluation_of(by_chain, point, best, integrated);
+                if evaluation.is_feasible(self.genetic.constraint_tolerance) {
+                    best = best.min(evaluation.value());
+                }
+                evaluation
+            };
+            points.iter().zip(&followed).map(evaluate).collect()
         }
     }
 
@@ -406,10 +427,13 @@ fn no_design_error(
         options.population = options.population.max(ENOUGH[0]);
         options.generations = options.generations.max(ENOUGH[1]);
     }
-    let run =
-        search(space, evaluate, &options, &mut generator(question.seed, u64::MAX - 1), &mut |_| {
-            !(watch.stop)()
-        });
+    let run = search(
+        space,
+        one_by_one(evaluate),
+        &options,
+        &mut generator(question.seed, u64::MAX - 1),
+        &mut |_| !(watch.stop)(),
+    );
     let design =
         run.best.and_then(|best| question.follow(&best.point, Route::Integration, true).ok());
     let broken = design.as_ref().map(|design| question.broken(design));

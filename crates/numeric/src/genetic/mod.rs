@@ -30,11 +30,11 @@
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
-//! use lindstedt::genetic::{Evaluation, GeneticOptions, Space, generator, search};
+//! use lindstedt::genetic::{Evaluation, GeneticOptions, Space, generator, one_by_one, search};
 //!
 //! let space = Space::new(vec![[-1.0, 2.0], [-1.0, 2.0]])?;
 //! let paraboloid = |point: &[f64]| Evaluation::unconstrained(point.iter().map(|x| x * x).sum());
-//! let run = search(&space, paraboloid, &GeneticOptions::default(), &mut generator(1, 0), &mut |_| true);
+//! let run = search(&space, one_by_one(paraboloid), &GeneticOptions::default(), &mut generator(1, 0), &mut |_| true);
 //! assert!(run.best.is_some_and(|best| best.evaluation.objectives[0] < 1e-6));
 //! # Ok::<(), lindstedt::genetic::SearchError>(())
 //! ```
@@ -58,7 +58,7 @@ pub use mutation::{Mutation, SMALLEST_STEP, adaptive_feasible, bit_flips, next_s
 pub use nsga::{polynomial_mutation, search_front, simulated_binary};
 pub use pareto::{crowding, dominates, non_dominated, ranks};
 pub use penalty::{Multipliers, Penalty, scores};
-pub use population::{GeneticOptions, GeneticRun, Individual, SearchError, search};
+pub use population::{GeneticOptions, GeneticRun, Individual, SearchError, one_by_one, search};
 pub use rivals::{differential_evolution, random_search};
 pub use scaling::rank_scaling;
 pub use selection::stochastic_uniform;

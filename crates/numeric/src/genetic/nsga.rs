@@ -66,23 +66,24 @@ pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl R
 
 /// Runs NSGA-II and returns the feasible individuals of its last front, and the record of the run.
 ///
-/// Of the options only the population, the generations, the budget and the tolerance of constraints
+/// `evaluate` takes all new points of a generation at once. Of the options only the population, the generations, the budget and the tolerance of constraints
 /// are used. The curve is the number of feasible individuals in the front, generation by
 /// generation.
 pub fn search_front(
     space: &Space,
-    mut evaluate: impl FnMut(&[f64]) -> Evaluation,
+    mut evaluate: impl FnMut(&[Vec<f64>]) -> Vec<Evaluation>,
     options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> (Vec<Individual>, GeneticRun) {
     let (size, tolerance) = (options.population, options.constraint_tolerance);
     let mut evaluations = 0;
-    let mut born = |point: Vec<f64>| {
-        let evaluation = evaluate(&point);
-        Individual { point, evaluation }
+    let mut born = |points: Vec<Vec<f64>>| {
+        let evaluations = evaluate(&points);
+        let born = points.into_iter().zip(evaluations);
+        born.map(|(point, evaluation)| Individual { point, evaluation }).collect::<Vec<_>>()
     };
-    let mut population: Vec<Individual> = (0..size).map(|_| born(space.draw(generator))).collect();
+    let mut population = born((0..size).map(|_| space.draw(generator)).collect());
     evaluations += size;
     let (mut standing, mut loneliness) = ranks_and_crowding(&population, tolerance);
     let mut curve = vec![front_size(&population, &standing, tolerance)];
@@ -114,7 +115,7 @@ pub fn search_front(
             };
             children.push(polynomial_mutation(&child, space, generator));
         }
-        population.extend(children.into_iter().map(&mut born));
+        population.extend(born(children));
         evaluations += size;
         let (all, lonely) = ranks_and_crowding(&population, tolerance);
         let mut order: Vec<usize> = (0..population.len()).collect();
@@ -169,6 +170,7 @@ fn front_size(population: &[Individual], ranks: &[usize], tolerance: f64) -> f64
 #[cfg(test)]
 mod tests {
     use super::super::generator;
+    use super::super::population::one_by_one;
     use super::*;
     use proptest::prelude::*;
 
@@ -196,7 +198,9 @@ mod tests {
         };
         let options = GeneticOptions { generations: 60, ..GeneticOptions::default() };
         let (front, run) =
-            search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
+            search_front(&space, one_by_one(schaffer), &options, &mut generator(1, 0), &mut |_| {
+                true
+            });
         assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());
         let mut places: Vec<f64> = front.iter().map(|member| member.point[0]).collect();
         places.sort_by(f64::total_cmp);

@@ -280,23 +280,29 @@ struct Member {
     individual: Individual,
 }
 
+/// The function of many points from that of one.
+pub fn one_by_one(
+    mut evaluate: impl FnMut(&[f64]) -> Evaluation,
+) -> impl FnMut(&[Vec<f64>]) -> Vec<Evaluation> {
+    move |points| points.iter().map(|point| evaluate(point)).collect()
+}
+
 /// Minimises the first objective under the constraints by one run of the genetic algorithm.
 ///
+/// `evaluate` takes all new points of a generation at once, so that it may work on them side by side.
 /// `go_on` is called with the number of each generation before it begins; the run ends there if it
 /// returns `false`.
 pub fn search(
     space: &Space,
-    mut evaluate: impl FnMut(&[f64]) -> Evaluation,
+    mut evaluate: impl FnMut(&[Vec<f64>]) -> Vec<Evaluation>,
     options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> GeneticRun {
     let mut nursery =
         PopulationBuilder { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
-    let mut population = Vec::with_capacity(options.population);
-    for _ in 0..options.population {
-        population.push(nursery.evaluate_genes(options.coding.draw(space, generator)));
-    }
+    let drawn = (0..options.population).map(|_| options.coding.draw(space, generator)).collect();
+    let mut population = nursery.evaluate_genes(drawn);
     let mut multipliers = match (options.penalty, population.first()) {
         (Penalty::AugmentedLagrangian { initial, .. }, Some(first)) => {
             Some(Multipliers::new(initial, &first.individual.evaluation))
@@ -326,7 +332,7 @@ pub fn search(
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
         let elite = order.iter().take(options.elite);
         population = elite.filter_map(|index| places[*index].take()).collect();
-        population.extend(children.into_iter().map(|genes| nursery.evaluate_genes(genes)));
+        population.extend(nursery.evaluate_genes(children));
         let before = order.first().map_or(f64::INFINITY, |index| scored[*index]);
         let now = score(&population, multipliers.as_ref());
         let leader = (0..now.len()).min_by(|one, other| now[*one].total_cmp(&now[*other]));
@@ -361,19 +367,24 @@ struct PopulationBuilder<'a, E> {
     evaluations: usize,
 }
 
-impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
-    fn evaluate_genes(&mut self, genes: Vec<f64>) -> Member {
-        let point = self.options.coding.point(&genes, self.space);
-        let evaluation = (self.evaluate)(&point);
-        self.evaluations += 1;
-        let individual = Individual { point, evaluation };
-        let better = individual.evaluation.value() < self.value();
-        let first = self.best.is_none();
-        if individual.evaluation.is_feasible(self.options.constraint_tolerance) && (first || better)
-        {
-            self.best = Some(individual.clone());
+impl<E: FnMut(&[Vec<f64>]) -> Vec<Evaluation>> PopulationBuilder<'_, E> {
+    fn evaluate_genes(&mut self, all: Vec<Vec<f64>>) -> Vec<Member> {
+        let points: Vec<Vec<f64>> =
+            all.iter().map(|genes| self.options.coding.point(genes, self.space)).collect();
+        let evaluations = (self.evaluate)(&points);
+        let mut members = Vec::with_capacity(all.len());
+        for ((genes, point), evaluation) in all.into_iter().zip(points).zip(evaluations) {
+            self.evaluations += 1;
+            let individual = Individual { point, evaluation };
+            let better = individual.evaluation.value() < self.value();
+            let first = self.best.is_none();
+            let tolerance = self.options.constraint_tolerance;
+            if individual.evaluation.is_feasible(tolerance) && (first || better) {
+                self.best = Some(individual.clone());
+            }
+            members.push(Member { genes, individual });
         }
-        Member { genes, individual }
+        members
     }
 
     /// Returns the best value so far; infinite while there is none.
@@ -452,7 +463,7 @@ mod tests {
         stream: u64,
     ) -> GeneticRun {
         let space = Space::new(vec![bounds; 2]).unwrap();
-        search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
+        search(&space, one_by_one(evaluate), options, &mut generator(7, stream), &mut |_| true)
     }
 
     #[test]
@@ -512,7 +523,8 @@ mod tests {
             let evaluate = |point: &[f64]| {
                 if equality { on_a_line(point) } else { beyond(point) }
             };
-            let run = search(&space, evaluate, &options, &mut generator(1, 0), &mut |_| true);
+            let run =
+                search(&space, one_by_one(evaluate), &options, &mut generator(1, 0), &mut |_| true);
             let best = run.best.expect("a point that keeps them");
             assert!(best.evaluation.is_feasible(options.constraint_tolerance));
             let expected = if equality { [0.75, 0.25] } else { [0.75, 0.0] };
@@ -533,8 +545,13 @@ mod tests {
         assert_eq!((ended.stop, ended.evaluations), (GeneticStop::Budget, 100 + 3 * 98));
         let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
         let mut until = |generation| generation <= 4;
-        let ended =
-            search(&space, rastrigin, &GeneticOptions::default(), &mut generator(7, 0), &mut until);
+        let ended = search(
+            &space,
+            one_by_one(rastrigin),
+            &GeneticOptions::default(),
+            &mut generator(7, 0),
+            &mut until,
+        );
         assert_eq!((ended.stop, ended.generations), (GeneticStop::Interrupted, 4));
         let whole = run_of(&GeneticOptions::default());
         assert_eq!(ended.curve[..], whole.curve[..5]);

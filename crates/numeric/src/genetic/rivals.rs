@@ -27,22 +27,25 @@ struct BestTracker<F> {
     count: usize,
 }
 
-impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
+impl<F: FnMut(&[Vec<f64>]) -> Vec<Evaluation>> BestTracker<F> {
     fn new(evaluate: F, tolerance: f64, every: usize) -> Self {
         Self { evaluate, tolerance, every, best: None, curve: vec![], count: 0 }
     }
 
-    fn evaluate_point(&mut self, point: &[f64]) -> Evaluation {
-        let evaluation = (self.evaluate)(point);
-        self.count += 1;
-        let better = |best: &Individual| evaluation.value() < best.evaluation.value();
-        if evaluation.is_feasible(self.tolerance) && self.best.as_ref().is_none_or(better) {
-            self.best = Some(Individual { point: point.to_vec(), evaluation: evaluation.clone() });
+    fn evaluate_points(&mut self, points: &[Vec<f64>]) -> Vec<Evaluation> {
+        let evaluations = (self.evaluate)(points);
+        for (point, evaluation) in points.iter().zip(&evaluations) {
+            self.count += 1;
+            let better = |best: &Individual| evaluation.value() < best.evaluation.value();
+            if evaluation.is_feasible(self.tolerance) && self.best.as_ref().is_none_or(better) {
+                self.best =
+                    Some(Individual { point: point.clone(), evaluation: evaluation.clone() });
+            }
+            if self.count.is_multiple_of(self.every) {
+                self.curve.push(self.value());
+            }
         }
-        if self.count.is_multiple_of(self.every) {
-            self.curve.push(self.value());
-        }
-        evaluation
+        evaluations
     }
 
     fn value(&self) -> f64 {
@@ -60,18 +63,23 @@ impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
     }
 }
 
-/// Draws `evaluations` points evenly from the box; the curve has the best value after every `every`
-/// of them.
+/// Draws `evaluations` points evenly from the box, and evaluates `every` of them at once; the curve
+/// has the best value after each time.
 pub fn random_search(
     space: &Space,
-    evaluate: impl FnMut(&[f64]) -> Evaluation,
+    evaluate: impl FnMut(&[Vec<f64>]) -> Vec<Evaluation>,
     (evaluations, every): (usize, usize),
     tolerance: f64,
     generator: &mut impl Rng,
 ) -> GeneticRun {
-    let mut watch = BestTracker::new(evaluate, tolerance, every.max(1));
-    for _ in 0..evaluations {
-        watch.evaluate_point(&space.draw(generator));
+    let every = every.max(1);
+    let mut watch = BestTracker::new(evaluate, tolerance, every);
+    let mut left = evaluations;
+    while left > 0 {
+        let count = left.min(every);
+        let points: Vec<Vec<f64>> = (0..count).map(|_| space.draw(generator)).collect();
+        watch.evaluate_points(&points);
+        left -= count;
     }
     watch.finish(GeneticStop::Budget)
 }
@@ -95,7 +103,7 @@ impl<F> Constraints for &Boxed<F> {
 /// and finite.
 const BROKEN: f64 = 1e100;
 
-impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
+impl<F: FnMut(&[Vec<f64>]) -> Vec<Evaluation>> CostFunction for &Boxed<F> {
     type Param = Vec<f64>;
     type Output = f64;
     type Error = Infallible;
@@ -103,10 +111,11 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     fn cost(&self, point: &Vec<f64>) -> Result<f64, Infallible> {
         let mut watch = self.watch.borrow_mut();
         let tolerance = watch.tolerance;
-        let evaluation = watch.evaluate_point(point);
-        Ok(match evaluation.violation(tolerance) {
-            0.0 if evaluation.value().is_finite() => evaluation.value().clamp(-BROKEN, BROKEN),
-            violation => BROKEN * (1.0 + violation.min(1e6)),
+        let found = watch.evaluate_points(std::slice::from_ref(point));
+        Ok(match found.first().map(|own| (own.violation(tolerance), own.value())) {
+            Some((0.0, value)) if value.is_finite() => value.clamp(-BROKEN, BROKEN),
+            Some((violation, _)) => BROKEN * (1.0 + violation.min(1e6)),
+            None => BROKEN,
         })
     }
 }
@@ -115,7 +124,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
 /// The curve has the best value after every `every` evaluations.
 pub fn differential_evolution(
     space: &Space,
-    evaluate: impl FnMut(&[f64]) -> Evaluation,
+    evaluate: impl FnMut(&[Vec<f64>]) -> Vec<Evaluation>,
     (evaluations, every): (usize, usize),
     tolerance: f64,
     seed: u64,
@@ -143,6 +152,7 @@ pub fn differential_evolution(
 #[cfg(test)]
 mod tests {
     use super::super::generator;
+    use super::super::population::one_by_one;
     use super::*;
 
     #[test]
@@ -151,9 +161,10 @@ mod tests {
         let bowl = |point: &[f64]| {
             Evaluation::unconstrained(point.iter().map(|x| (x - 1.0).powi(2)).sum())
         };
-        let drawn = random_search(&space, bowl, (4000, 100), 1e-3, &mut generator(1, 0));
+        let drawn =
+            random_search(&space, one_by_one(bowl), (4000, 100), 1e-3, &mut generator(1, 0));
         assert_eq!((drawn.evaluations, drawn.curve.len()), (4000, 40));
-        let evolved = differential_evolution(&space, bowl, (4000, 100), 1e-3, 1);
+        let evolved = differential_evolution(&space, one_by_one(bowl), (4000, 100), 1e-3, 1);
         assert_eq!((evolved.evaluations, evolved.curve.len()), (4000, 40));
         let [drawn, evolved] =
             [drawn, evolved].map(|run| run.best.expect("a point").evaluation.value());
@@ -170,11 +181,14 @@ mod tests {
         };
         let never = |_: &[f64]| Evaluation::unconstrained(f64::INFINITY);
         for best in [
-            random_search(&space, beyond, (500, 100), 1e-3, &mut generator(1, 0)).best,
-            differential_evolution(&space, beyond, (500, 100), 1e-3, 1).best,
+            random_search(&space, one_by_one(beyond), (500, 100), 1e-3, &mut generator(1, 0)).best,
+            differential_evolution(&space, one_by_one(beyond), (500, 100), 1e-3, 1).best,
         ] {
             assert!(best.expect("a point").point[0] >= 0.5);
         }
-        assert_eq!(differential_evolution(&space, never, (500, 100), 1e-3, 1).best, None);
+        assert_eq!(
+            differential_evolution(&space, one_by_one(never), (500, 100), 1e-3, 1).best,
+            None
+        );
     }
 }

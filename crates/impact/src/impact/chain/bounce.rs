@@ -27,6 +27,7 @@ use spec_math::cephes64::gamma;
 use super::swing::SwingAngle;
 use crate::impact::contact::hunt_crossley;
 use crate::impact::hertz;
+use crate::impact::lanes::{Lanes, Mask};
 use crate::impact::model::{Model, Side};
 
 /// Numbers of the law d^(3/2) that are the same for every contact.
@@ -76,15 +77,7 @@ pub(super) struct ChainBarrier {
     pub side: Side,
     /// Its angle from the bottom, positive on its own side.
     pub spot: SwingAngle,
-    gamma: f64,
-    /// gamma^(-2/5).
-    softness: f64,
-    /// lambda = mu/gamma.
-    damping: f64,
-    /// The force of the swing there, against the motion inwards.
-    push: f64,
-    zeta: f64,
-    alpha: f64,
+    contact: Contacts<1>,
 }
 
 /// The change of the motion by one contact.
@@ -103,61 +96,117 @@ impl ChainBarrier {
     pub fn from_model(model: &Model, side: Side) -> Option<Self> {
         let x = model.barrier(side).filter(|_| model.gamma > 0.0)?;
         let spot = SwingAngle::new(side.sign() * x);
-        Some(Self {
-            side,
-            spot,
-            gamma: model.gamma,
-            softness: model.gamma.powf(-0.4),
-            damping: model.mu / model.gamma,
-            push: spot.x.sin(),
-            zeta: model.zeta,
-            alpha: model.alpha,
-        })
+        let contact = Contacts {
+            gamma: Lanes([model.gamma]),
+            damping: Lanes([model.mu / model.gamma]),
+            push: Lanes([spot.x.sin()]),
+            zeta: Lanes([model.zeta]),
+            alpha: Lanes([model.alpha]),
+        };
+        Some(Self { side, spot, contact })
     }
 
     /// The contact that begins with this speed, positive; `None` if the pendulum leans on the
     /// barrier rather than leaves it, or goes deep.
     pub fn bounce(&self, speed: f64) -> Option<Bounce> {
-        let product = self.damping * speed;
-        let excess = hunt_crossley::excess(product);
-        let work = 0.5 * speed * speed * (1.0 + excess);
-        let depth = self.depth(work);
-        let share = self.push * depth / work;
-        if share.is_nan() || share < LEANS || depth > DEEPEST {
-            return None;
+        self.contact.bounces(Lanes([speed])).lane(0)
+    }
+}
+
+/// The numbers of several barriers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contacts<const L: usize> {
+    gamma: Lanes<L>,
+    /// lambda = mu/gamma.
+    damping: Lanes<L>,
+    /// The force of the swing there, against the motion inwards.
+    push: Lanes<L>,
+    /// The viscous damping.
+    pub zeta: Lanes<L>,
+    /// The dry friction.
+    pub alpha: Lanes<L>,
+}
+
+/// Several contacts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounces<const L: usize> {
+    depth: Lanes<L>,
+    duration: Lanes<L>,
+    speed_out: Lanes<L>,
+    /// Where the pendulum leaves the barrier and does not go deep.
+    is_bounce: Mask<L>,
+}
+
+impl<const L: usize> Bounces<L> {
+    /// One of them; `None` if it is no bounce.
+    pub fn lane(&self, lane: usize) -> Option<Bounce> {
+        let Self { depth, duration, speed_out, is_bounce } = self;
+        is_bounce.0[lane].then(|| Bounce {
+            depth: depth.0[lane],
+            duration: duration.0[lane],
+            speed_out: speed_out.0[lane],
+        })
+    }
+}
+
+impl<const L: usize> Contacts<L> {
+    /// The contacts of these barriers, lane by lane.
+    pub fn of(barriers: [&ChainBarrier; L]) -> Self {
+        let gathered = |number: fn(&Contacts<1>) -> Lanes<1>| {
+            Lanes(barriers.map(|barrier| number(&barrier.contact).0[0]))
+        };
+        Self {
+            gamma: gathered(|own| own.gamma),
+            damping: gathered(|own| own.damping),
+            push: gathered(|own| own.push),
+            zeta: gathered(|own| own.zeta),
+            alpha: gathered(|own| own.alpha),
         }
+    }
+
+    /// The contacts that begin with these speeds.
+    #[inline(always)]
+    pub fn bounces(&self, speed: Lanes<L>) -> Bounces<L> {
+        let product = self.damping * speed;
+        let excess = hunt_crossley::excesses(product);
+        let work = 0.5 * speed * speed * (1.0 + excess);
+        let depth = self.depths(work);
+        let share = self.push * depth / work;
         let ContactConstants { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
         // lambda v counts in proportion to the work of the damping, which is less if the force of
         // the swing takes a share.
-        let loss = hunt_crossley::loss(
+        let loss = hunt_crossley::losses(
             product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),
         );
-        let duration =
-            depth / (speed * (1.0 + excess).sqrt()) * (zeroth + share * (first + share * second));
-        let area = area + share * (AREA_OF_A_FALL - area);
+        let duration = depth / (speed * (1.0 + excess).sqrt())
+            * (*zeroth + share * (*first + share * *second));
+        let area = *area + share * (AREA_OF_A_FALL - area);
         let taken =
             (2.0 - loss) * self.zeta * 2.0 * area * speed * depth + 2.0 * self.alpha * depth;
         let released = (1.0 - loss) * speed;
-        Some(Bounce {
+        let leans = share.is_at_least(LEANS).not();
+        Bounces {
             depth,
             duration,
-            speed_out: (released * released - 2.0 * taken).max(0.0).sqrt(),
-        })
+            speed_out: (released * released - 2.0 * taken).at_least(0.0).sqrt(),
+            is_bounce: leans.or(depth.is_above(Lanes::all(DEEPEST))).not(),
+        }
     }
 
-    /// The depth at which the barrier and the force of the swing have done this work.
-    fn depth(&self, work: f64) -> f64 {
+    /// The depths at which the barriers and the force of the swing have done this work.
+    #[inline(always)]
+    fn depths(&self, work: Lanes<L>) -> Lanes<L> {
         // The start neglects the force of the swing; the function is convex, so that Newton's steps
         // then descend to the root.
-        let mut depth = self.softness * (2.5 * work).powf(0.4);
-        if self.push == 0.0 {
-            return depth;
-        }
+        let root = (2.5 * work / self.gamma).fifth_root();
+        let mut depth = root * root;
+        let mut is_open = Mask([true; L]);
         for _ in 0..MOST_STEPS {
             let force = self.gamma * depth * depth.sqrt();
             let step = (0.4 * force * depth + self.push * depth - work) / (force + self.push);
-            depth -= step;
-            if step.abs() <= 1e-7 * depth {
+            depth = is_open.select(depth - step, depth);
+            is_open = is_open.and(step.abs().is_above(1e-7 * depth));
+            if !is_open.any() {
                 break;
             }
         }

@@ -22,6 +22,7 @@
 //! its way, no closed form exists: from there on the motion is integrated, and the result says so.
 
 mod bounce;
+mod cycle;
 mod swing;
 
 use thiserror::Error;
@@ -33,7 +34,9 @@ use super::simulation::{
 };
 use super::taylor;
 use crate::decimal::decimal;
-use bounce::ChainBarrier;
+use crate::impact::lanes::Lanes;
+use bounce::{Bounce, ChainBarrier};
+use cycle::{Cycle, CycleStart, LANES, cycles, later};
 use swing::{Stretch, SwingAngle, UndampedSwing};
 
 /// The reason why a motion has no chain of closed forms.
@@ -95,54 +98,56 @@ pub const MOST_DAMPING: f64 = 0.5;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulation, ChainError> {
-    if model.beta != 0.0 {
-        return Err(ChainError::Driven(model.beta));
+    let mut found = Err(ChainError::Upright(start.x));
+    chains(&[(*model, start)], settings, |_, motion| found = motion);
+    found
+}
+
+/// [`chain`] for many motions, several side by side; each is passed on with its number as it ends,
+/// bit for bit as alone.
+pub(super) fn chains(
+    motions: &[(Model, Start)],
+    settings: &Settings,
+    mut done: impl FnMut(usize, Result<Simulation, ChainError>),
+) {
+    let mut waiting = motions.iter().enumerate();
+    // Each of them stands at the start of a cycle.
+    let mut active: Vec<(usize, Chain)> = Vec::with_capacity(LANES);
+    loop {
+        while active.len() < LANES
+            && let Some((number, (model, start))) = waiting.next()
+        {
+            match Chain::new(model, *start, settings) {
+                Ok(mut chain) => match chain.reaches_cycle() {
+                    true => active.push((number, chain)),
+                    false => done(number, Ok(chain.finish())),
+                },
+                Err(error) => done(number, Err(error)),
+            }
+        }
+        if active.is_empty() {
+            break;
+        }
+        let start = |lane: usize| active.get(lane).and_then(|(_, chain)| chain.cycle_start());
+        let found = cycles(&std::array::from_fn(start));
+        for ((_, chain), cycle) in active.iter_mut().zip(found) {
+            chain.follow_cycle(cycle);
+        }
+        active.retain_mut(|(number, chain)| {
+            let goes_on = chain.reaches_cycle();
+            if !goes_on {
+                done(*number, Ok(chain.finish()));
+            }
+            goes_on
+        });
     }
-    if model.friction == Friction::Arctangent && model.alpha > 0.0 {
-        return Err(ChainError::Arctangent);
-    }
-    if model.zeta >= MOST_DAMPING {
-        return Err(ChainError::Overdamped(model.zeta));
-    }
-    let energy = model.swing_energy(start.x, start.velocity);
-    if start.x.abs() >= std::f64::consts::PI {
-        return Err(ChainError::Upright(start.x));
-    }
-    if energy >= 2.0 {
-        return Err(ChainError::TurnsOver(energy));
-    }
-    if let Some((side, _)) = model.depth(start.x) {
-        return Err(ChainError::Inside(side));
-    }
-    let barriers = [Side::Left, Side::Right].map(|side| ChainBarrier::from_model(model, side));
-    let mut chain = Chain {
-        model,
-        settings,
-        barriers: &barriers,
-        t: 0.0,
-        state: [start.x, start.velocity],
-        count: 0,
-        remembered: [EnergyRatio { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
-            2],
-        impacts: Vec::with_capacity(MANY),
-        turns: Vec::with_capacity(2 * MANY),
-        path: SimulationPath::new(),
-        stop: None,
-        level: REST_FRACTION * first_swing(model, start),
-        integrated: None,
-    };
-    chain.run(start);
-    let mut motion = chain.finish(start);
-    motion.fall = taylor::time_of_fall_by_series(&motion);
-    Ok(motion)
 }
 
 /// The state at the start of the next stretch.
 #[derive(Debug, Clone, Copy)]
 enum StretchStart {
-    /// Rest on this side at this angle; the swing and its stretch to the barrier ahead, if they are
-    /// known.
-    Turn(Side, SwingAngle, Option<(UndampedSwing, Stretch)>),
+    /// Rest on this side at this angle.
+    Turn(Side, SwingAngle),
     /// Passage of this angle, counted towards this side, with this energy.
     Leaving(Side, SwingAngle, f64),
 }
@@ -161,10 +166,30 @@ struct Leg {
     phase: (f64, f64),
 }
 
+/// Delay by dry friction of the passage of an angle with this energy on the way from a turning point
+/// (direction 1), or its advance on the way to one (-1), relative to the free swing of this energy.
+/// Friction shifts the centre of a linear swing of amplitude a by alpha against the motion, so with
+/// x = a sin phi there and the speed a cos phi it is arctan((x + alpha)/x') - arctan(x/x'); for the
+/// pendulum 1/a is [`slowness`].
+fn rub_lag(alpha: f64, spot: &SwingAngle, energy: f64, direction: f64) -> f64 {
+    if alpha == 0.0 {
+        return 0.0;
+    }
+    let (sine, cosine) = spot.phase(energy);
+    let shift = alpha * slowness(energy);
+    (shift * cosine).atan2(1.0 + direction * shift * sine)
+}
+
 impl Leg {
     /// A leg of the free swing without friction, with this time and area.
     fn free(time: f64, area: f64) -> Self {
         Self { time, area, length: 0.0, lag: 0.0, rubbed: 0.0, phase: (0.0, 1.0) }
+    }
+
+    /// Delay of the passage of an angle with another energy, compared with the swing at its phase.
+    fn later(&self, swing: &UndampedSwing, spot: &SwingAngle, energy: f64) -> f64 {
+        let phase = (Lanes([self.phase.0]), Lanes([self.phase.1]));
+        later(Lanes([swing.energy]), phase, Lanes([spot.half_sine()]), Lanes([energy])).0[0]
     }
 }
 
@@ -185,13 +210,15 @@ struct EnergyRatio {
     guessed: bool,
 }
 
-struct Chain<'a> {
-    model: &'a Model,
-    settings: &'a Settings,
-    barriers: &'a [Option<ChainBarrier>; 2],
+struct Chain {
+    model: Model,
+    start: Start,
+    settings: Settings,
+    barriers: [Option<ChainBarrier>; 2],
     t: f64,
     /// x and x' now.
     state: [f64; 2],
+    place: StretchStart,
     count: usize,
     remembered: [EnergyRatio; 2],
     impacts: Vec<ContactRecord>,
@@ -204,45 +231,161 @@ struct Chain<'a> {
     integrated: Option<Simulation>,
 }
 
-impl<'a> Chain<'a> {
-    fn run(&mut self, start: Start) {
-        let Start { x, velocity } = start;
-        let energy = self.model.swing_energy(x, velocity);
-        let mut place = if velocity == 0.0 {
+impl Chain {
+    /// A motion at its start.
+    ///
+    /// # Errors
+    /// As [`chain`].
+    fn new(model: &Model, start: Start, settings: &Settings) -> Result<Self, ChainError> {
+        if model.beta != 0.0 {
+            return Err(ChainError::Driven(model.beta));
+        }
+        if model.friction == Friction::Arctangent && model.alpha > 0.0 {
+            return Err(ChainError::Arctangent);
+        }
+        if model.zeta >= MOST_DAMPING {
+            return Err(ChainError::Overdamped(model.zeta));
+        }
+        let energy = model.swing_energy(start.x, start.velocity);
+        if start.x.abs() >= std::f64::consts::PI {
+            return Err(ChainError::Upright(start.x));
+        }
+        if energy >= 2.0 {
+            return Err(ChainError::TurnsOver(energy));
+        }
+        if let Some((side, _)) = model.depth(start.x) {
+            return Err(ChainError::Inside(side));
+        }
+        let guess = EnergyRatio { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
+        let to = if start.velocity > 0.0 { Side::Right } else { Side::Left };
+        let spot = SwingAngle::new(to.sign() * start.x);
+        let mut chain = Self {
+            model: *model,
+            start,
+            settings: *settings,
+            barriers: [Side::Left, Side::Right].map(|side| ChainBarrier::from_model(model, side)),
+            t: 0.0,
+            state: [start.x, start.velocity],
+            place: StretchStart::Leaving(to, spot, energy),
+            count: 0,
+            remembered: [guess; 2],
+            impacts: Vec::with_capacity(MANY),
+            turns: Vec::with_capacity(2 * MANY),
+            path: SimulationPath::new(),
+            stop: None,
+            level: REST_FRACTION * first_swing(model, start),
+            integrated: None,
+        };
+        chain.begin(to, spot);
+        Ok(chain)
+    }
+
+    /// Sets the place at which the motion begins.
+    fn begin(&mut self, to: Side, spot: SwingAngle) {
+        let Start { x, velocity } = self.start;
+        let next = if velocity == 0.0 {
             self.turns.push(TurningPoint { t: 0.0, x });
             if x == 0.0 || self.sticks(x) {
                 return self.hold_at_rest(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
-            StretchStart::Turn(side, SwingAngle::new(x.abs()), None)
+            Some(StretchStart::Turn(side, SwingAngle::new(x.abs())))
         } else {
-            let to = if velocity > 0.0 { Side::Right } else { Side::Left };
-            let spot = SwingAngle::new(to.sign() * x);
-            let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
-            let place = StretchStart::Leaving(to, spot, energy);
-            touched
-                .map_or(Some(place), |barrier| self.contact(barrier, velocity.abs()))
-                .unwrap_or(place)
+            let touched = self.barrier(to).filter(|barrier| barrier.spot == spot).copied();
+            touched.and_then(|barrier| {
+                self.contact(&barrier, velocity.abs(), barrier.bounce(velocity.abs()))
+            })
         };
-        while self.stop.is_none() {
-            self.count += 1;
-            if self.count > self.settings.maximum_steps {
-                self.stop = Some(SimulationStop::Steps { t: self.t });
-            } else if self.settings.interrupt.is_requested() {
-                self.stop = Some(SimulationStop::Interrupted { t: self.t });
-            } else if self.t >= self.settings.duration {
-                self.stop = Some(SimulationStop::Duration);
-            } else {
-                let next = match place {
-                    StretchStart::Turn(side, turn, known) => self.after_turn(side, turn, known),
-                    StretchStart::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
-                };
-                place = next.unwrap_or(place);
-            }
-        }
+        self.place = next.unwrap_or(self.place);
     }
 
-    fn barrier(&self, side: Side) -> Option<&'a ChainBarrier> {
+    /// Goes on until the motion leaves a barrier from which it swings back to it; returns whether it
+    /// does before it ends.
+    fn reaches_cycle(&mut self) -> bool {
+        while self.may_go_on() {
+            if self.cycle_start().is_some() {
+                return true;
+            }
+            let next = match self.place {
+                StretchStart::Turn(side, turn) => self.after_turn(side, turn),
+                StretchStart::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
+            };
+            self.place = next.unwrap_or(self.place);
+        }
+        false
+    }
+
+    /// Counts a stretch; returns whether the motion goes on.
+    fn may_go_on(&mut self) -> bool {
+        if self.stop.is_some() {
+            return false;
+        }
+        self.count += 1;
+        if self.count > self.settings.maximum_steps {
+            self.stop = Some(SimulationStop::Steps { t: self.t });
+        } else if self.settings.interrupt.is_requested() {
+            self.stop = Some(SimulationStop::Interrupted { t: self.t });
+        } else if self.t >= self.settings.duration {
+            self.stop = Some(SimulationStop::Duration);
+        }
+        self.stop.is_none()
+    }
+
+    /// The cycle that begins here; `None` if the motion does not leave a barrier, or reaches another.
+    fn cycle_start(&self) -> Option<CycleStart<'_>> {
+        let StretchStart::Leaving(to, spot, energy) = self.place else { return None };
+        let barrier = self.barrier(to.opposite()).filter(|own| own.spot == spot.mirrored())?;
+        if self.barrier(to).is_some_and(|ahead| energy > ahead.spot.energy) {
+            return None;
+        }
+        let last = self.remembered[StretchKind::FromPlace as usize];
+        Some(CycleStart { barrier, energy, reference: energy * (last.ratio + last.change) })
+    }
+
+    /// Follows the swing from a barrier and back, and the contact there.
+    fn follow_cycle(&mut self, cycle: Option<Cycle>) {
+        let StretchStart::Leaving(to, spot, energy) = self.place else { return };
+        let Some(cycle) = cycle else {
+            self.integrate();
+            return;
+        };
+        self.remember(StretchKind::FromPlace, cycle.reference / energy);
+        let turn = SwingAngle::at_turn(cycle.turn, cycle.reference);
+        let beyond = |ahead: &ChainBarrier| turn.x > ahead.spot.x;
+        if self.barrier(to).is_some_and(beyond) || turn.x < spot.x {
+            self.integrate();
+            return;
+        }
+        let [out, back] = cycle.times;
+        self.swing([energy, turn.energy], out, to, [spot.x, turn.x]);
+        let Some(place) = self.rest_at_turning_point(to, turn) else { return };
+        self.place = place;
+        if !self.may_go_on() {
+            return;
+        }
+        let from = to.opposite();
+        let Some(barrier) = self.barrier(from).copied() else { return };
+        let next = if turn.energy > barrier.spot.energy && cycle.arrived > barrier.spot.energy {
+            self.swing([turn.energy, cycle.arrived], back, from, [-turn.x, barrier.spot.x]);
+            self.contact(
+                &barrier,
+                (2.0 * (cycle.arrived - barrier.spot.energy)).sqrt(),
+                cycle.bounce,
+            )
+        } else {
+            self.free(to, turn)
+        };
+        self.place = next.unwrap_or(self.place);
+    }
+
+    /// Remembers the ratio of the last two reference energies of a kind of stretch.
+    fn remember(&mut self, kind: StretchKind, ratio: f64) {
+        let last = &mut self.remembered[kind as usize];
+        let change = if last.guessed { 0.0 } else { ratio - last.ratio };
+        *last = EnergyRatio { ratio, change, guessed: false };
+    }
+
+    fn barrier(&self, side: Side) -> Option<&ChainBarrier> {
         match side {
             Side::Left => self.barriers[0].as_ref(),
             Side::Right => self.barriers[1].as_ref(),
@@ -256,7 +399,7 @@ impl<'a> Chain<'a> {
 
     /// E_before - E of a leg, and its derivative with respect to E.
     fn above(&self, leg: &Leg, swing: &UndampedSwing) -> (f64, f64) {
-        let Model { zeta, alpha, .. } = *self.model;
+        let Model { zeta, alpha, .. } = self.model;
         let growth = (2.0 * zeta * (leg.time - leg.lag)).exp_m1();
         let loss = leg.area / leg.time * growth;
         match alpha == 0.0 || leg.length == 0.0 {
@@ -306,71 +449,33 @@ impl<'a> Chain<'a> {
                 swing.energy = reference;
                 swing.quarter.area -= swing.quarter.time * step;
                 leg.area -= leg.time * step;
-                let ratio = reference / energy;
-                self.remembered[kind as usize] = EnergyRatio {
-                    ratio,
-                    change: if last.guessed { 0.0 } else { ratio - last.ratio },
-                    guessed: false,
-                };
+                self.remember(kind, reference / energy);
                 return Some((swing, leg));
             }
         }
         None
     }
 
-    /// Delay of the passage of an angle with another energy, compared with the swing of the
-    /// reference energy at the given phase.
-    fn later(
-        swing: &UndampedSwing,
-        (sine, cosine): (f64, f64),
-        spot: &SwingAngle,
-        energy: f64,
-    ) -> f64 {
-        let (own_sine, own_cosine) = spot.phase(energy);
-        let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
-        change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
-    }
-
-    /// Delay by dry friction of the passage of an angle with this energy on the way from a turning
-    /// point (direction 1), or its advance on the way to one (-1), relative to the free swing of
-    /// this energy. Friction shifts the centre of a linear swing of amplitude a by alpha against
-    /// the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x + alpha)/x')
-    /// - arctan(x/x'); for the pendulum 1/a is [`slowness`].
-    fn rub_lag(&self, spot: &SwingAngle, energy: f64, direction: f64) -> f64 {
-        if self.model.alpha == 0.0 {
-            return 0.0;
-        }
-        let (sine, cosine) = spot.phase(energy);
-        let shift = self.model.alpha * slowness(energy);
-        (shift * cosine).atan2(1.0 + direction * shift * sine)
-    }
-
     /// Continues from a turning point to the barrier ahead, or to the next turning point.
-    fn after_turn(
-        &mut self,
-        side: Side,
-        turn: SwingAngle,
-        known: Option<(UndampedSwing, Stretch)>,
-    ) -> Option<StretchStart> {
+    fn after_turn(&mut self, side: Side, turn: SwingAngle) -> Option<StretchStart> {
         let (to, energy) = (side.opposite(), turn.energy);
-        if let Some(ahead) = self.barrier(to)
+        if let Some(ahead) = self.barrier(to).copied()
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
         {
-            let (swing, reach) = known.unwrap_or_else(|| {
-                let swing = UndampedSwing::new(energy);
-                (swing, swing.stretch_to(&ahead.spot))
-            });
-            let leg = leg(self.model, &swing, &ahead.spot, reach);
+            let swing = UndampedSwing::new(energy);
+            let leg = leg(&self.model, &swing, &ahead.spot, swing.stretch_to(&ahead.spot));
             if !is_positive(leg.time) {
                 // The pendulum rests on the barrier and is pressed into it.
                 return self.integrate();
             }
             let arrived = energy - self.below(&leg);
             if arrived > ahead.spot.energy {
-                let lag = leg.lag - leg.rubbed + self.rub_lag(&ahead.spot, arrived, 1.0);
-                let time = leg.time + lag + Self::later(&swing, leg.phase, &ahead.spot, arrived);
+                let lag =
+                    leg.lag - leg.rubbed + rub_lag(self.model.alpha, &ahead.spot, arrived, 1.0);
+                let time = leg.time + lag + leg.later(&swing, &ahead.spot, arrived);
                 self.swing([energy, arrived], time, to, [-turn.x, ahead.spot.x]);
-                return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
+                let speed = (2.0 * (arrived - ahead.spot.energy)).sqrt();
+                return self.contact(&ahead, speed, ahead.bounce(speed));
             }
         }
         self.free(side, turn)
@@ -412,12 +517,12 @@ impl<'a> Chain<'a> {
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
             self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
-            self.rest_at_turning_point(side, turn, None)?;
+            self.rest_at_turning_point(side, turn)?;
             if self.stop.is_some() {
                 return None;
             }
         }
-        Some(StretchStart::Turn(side, second, None))
+        Some(StretchStart::Turn(side, second))
     }
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
@@ -447,12 +552,12 @@ impl<'a> Chain<'a> {
         }
         let time = before.quarter.time + after.quarter.time;
         self.swing([from.energy, turn.energy], time, to, [-from.x, turn.x]);
-        self.rest_at_turning_point(to, turn, None)
+        self.rest_at_turning_point(to, turn)
     }
 
     /// Continues from an angle on the way to a side: to the barrier there, or to the turning point.
     fn after_leaving(&mut self, to: Side, spot: SwingAngle, energy: f64) -> Option<StretchStart> {
-        let ahead = self.barrier(to);
+        let ahead = self.barrier(to).copied();
         if let Some(ahead) = ahead
             && energy > ahead.spot.energy
         {
@@ -467,14 +572,15 @@ impl<'a> Chain<'a> {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
                     self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
-                    return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
+                    let speed = (2.0 * (arrived - ahead.spot.energy)).sqrt();
+                    return self.contact(&ahead, speed, ahead.bounce(speed));
                 }
             }
         }
         let back = spot.mirrored();
         let model = self.model;
         let found = self.reference(energy, StretchKind::FromPlace, |swing| {
-            leg(model, swing, &back, swing.stretch_to(&back))
+            leg(&model, swing, &back, swing.stretch_to(&back))
         });
         let Some((swing, leg)) = found else {
             return self.integrate();
@@ -483,29 +589,14 @@ impl<'a> Chain<'a> {
         if ahead.is_some_and(|ahead| turn.x > ahead.spot.x) || turn.x < spot.x {
             return self.integrate();
         }
-        let lag = leg.lag - leg.rubbed + self.rub_lag(&back, energy, -1.0);
-        let time = leg.time - lag + Self::later(&swing, leg.phase, &back, energy);
+        let lag = leg.lag - leg.rubbed + rub_lag(model.alpha, &back, energy, -1.0);
+        let time = leg.time - lag + leg.later(&swing, &back, energy);
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
-        // The way back to a barrier that was left mirrors the way from it; a start between the
-        // barriers has no such way.
-        let leaves = |barrier: &ChainBarrier| barrier.spot == back;
-        let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
-            let reach = Stretch {
-                time: leg.time - swing.quarter.time,
-                area: leg.area - swing.quarter.area,
-            };
-            (swing, reach)
-        });
-        self.rest_at_turning_point(to, turn, known)
+        self.rest_at_turning_point(to, turn)
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
-    fn rest_at_turning_point(
-        &mut self,
-        side: Side,
-        turn: SwingAngle,
-        known: Option<(UndampedSwing, Stretch)>,
-    ) -> Option<StretchStart> {
+    fn rest_at_turning_point(&mut self, side: Side, turn: SwingAngle) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
@@ -518,21 +609,26 @@ impl<'a> Chain<'a> {
         }
         if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
             self.stop = Some(SimulationStop::RestEnergy);
-        } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
+        } else if self.settings.stop_at_rest && has_rested(&self.model, &self.turns, self.level) {
             self.stop = Some(SimulationStop::AtRest);
         }
-        Some(StretchStart::Turn(side, turn, known))
+        Some(StretchStart::Turn(side, turn))
     }
 
-    /// A contact entered with this speed.
-    fn contact(&mut self, barrier: &ChainBarrier, speed: f64) -> Option<StretchStart> {
+    /// A contact entered with this speed; it is integrated if it is no bounce.
+    fn contact(
+        &mut self,
+        barrier: &ChainBarrier,
+        speed: f64,
+        bounce: Option<Bounce>,
+    ) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
         let ChainBarrier { side, spot, .. } = *barrier;
         let x = side.sign() * spot.x;
         self.state = [x, side.sign() * speed];
-        let Some(bounce) = barrier.bounce(speed) else {
+        let Some(bounce) = bounce else {
             return self.integrate();
         };
         let mut contact = ContactRecord::touched(side, self.t, speed);
@@ -552,11 +648,11 @@ impl<'a> Chain<'a> {
         let away = side.opposite();
         let energy = spot.energy + 0.5 * bounce.speed_out * bounce.speed_out;
         if self.stop.is_none() {
-            contact.released(self.model, self.t, bounce.speed_out);
+            contact.released(&self.model, self.t, bounce.speed_out);
             self.state = [x, away.sign() * bounce.speed_out];
             if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
                 self.stop = Some(SimulationStop::RestEnergy);
-            } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level)
+            } else if self.settings.stop_at_rest && has_rested(&self.model, &self.turns, self.level)
             {
                 self.stop = Some(SimulationStop::AtRest);
             }
@@ -599,15 +695,16 @@ impl<'a> Chain<'a> {
 
     /// Follows the rest of the motion, which has no closed form, by Taylor series.
     fn integrate(&mut self) -> Option<StretchStart> {
-        let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
+        let left = Settings { duration: self.settings.duration - self.t, ..self.settings };
         let [x, velocity] = self.state;
-        let motion = taylor::simulate_one(*self.model, Start { x, velocity }, left);
+        let motion = taylor::simulate_one(self.model, Start { x, velocity }, left);
         self.stop = Some(motion.stop.delayed_by(self.t));
         self.integrated = Some(motion);
         None
     }
 
-    fn finish(mut self, start: Start) -> Simulation {
+    /// The motion that has ended.
+    fn finish(&mut self) -> Simulation {
         let mut end_time = self.t;
         let mut steps = self.count;
         if let Some(motion) = self.integrated.take() {
@@ -627,21 +724,23 @@ impl<'a> Chain<'a> {
             self.path.extend(&motion.path, from);
         }
         let [end_x, end_velocity] = self.state;
-        Simulation {
-            model: *self.model,
-            start,
-            settings: *self.settings,
+        let mut motion = Simulation {
+            model: self.model,
+            start: self.start,
+            settings: self.settings,
             integrator: Integrator::Chain,
-            path: self.path,
-            impacts: self.impacts,
-            turns: self.turns,
+            path: std::mem::replace(&mut self.path, SimulationPath::new()),
+            impacts: std::mem::take(&mut self.impacts),
+            turns: std::mem::take(&mut self.turns),
             end_time,
             end_x,
             end_velocity,
             stop: self.stop.unwrap_or(SimulationStop::Duration),
             steps,
             fall: None,
-        }
+        };
+        motion.fall = taylor::time_of_fall_by_series(&motion);
+        motion
     }
 }
 

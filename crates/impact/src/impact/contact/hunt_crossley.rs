@@ -30,6 +30,7 @@ use std::f64::consts::FRAC_PI_4;
 use spec_math::cephes64::log1pmx;
 
 use super::super::hertz::positive;
+use super::super::lanes::{Lanes, Mask};
 use super::time::{LegendrePanel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::numeric::ode::root::find_root;
@@ -287,26 +288,43 @@ const LARGEST: f64 = 1e150;
 /// With u = z/(2 + z), ln(1 + z) = 2 artanh u: psi = -u - u (1 - u)^2 (1/3 + u^2/5 + u^4/7 + ..),
 /// nothing of which cancels.
 pub(in crate::impact) fn excess(z: f64) -> f64 {
-    let u = z / (2.0 + z);
-    if u.abs() > 1.0 / 3.0 {
-        return -2.0 * (log1pmx(z) / z) / z - 1.0;
-    }
-    // 9^-17 < 2^-53, and 100^-8.
-    let terms = if u.abs() < 0.1 { 9 } else { 18 };
-    let series = (1..terms).rev().fold(0.0, |sum, k| sum * (u * u) + ODD_RECIPROCALS[k]);
-    -u - u * (1.0 - u) * (1.0 - u) * series
+    excesses(Lanes([z])).0[0]
 }
 
-/// 1/(2k + 1).
-const ODD_RECIPROCALS: [f64; 18] = {
-    let mut reciprocals = [1.0; 18];
-    let mut k = 1;
-    while k < 18 {
-        reciprocals[k] = 1.0 / (2 * k + 1) as f64;
+/// [`excess`] of several numbers.
+#[inline(always)]
+pub(in crate::impact) fn excesses<const L: usize>(z: Lanes<L>) -> Lanes<L> {
+    let u = z / (2.0 + z);
+    let square = u * u;
+    let mut series = square.polynomial(const { odd_reciprocals::<8>() });
+    let is_wide = square.is_above(Lanes::all(0.01));
+    if is_wide.any() {
+        series = is_wide.select(square.polynomial(const { odd_reciprocals::<17>() }), series);
+    }
+    let mut excess = -u - u * (1.0 - u) * (1.0 - u) * series;
+    let is_far = square.is_above(Lanes::all(1.0 / 9.0));
+    if is_far.any() {
+        for lane in 0..L {
+            if is_far.0[lane] {
+                let z = z.0[lane];
+                excess.0[lane] = -2.0 * (log1pmx(z) / z) / z - 1.0;
+            }
+        }
+    }
+    excess
+}
+
+/// 1/(2k + 1) from k = `N` down to 1: 8 are enough for u^2 < 0.01, and 17 for u^2 < 1/9, as 9^-18 <
+/// 2^-53.
+const fn odd_reciprocals<const N: usize>() -> [f64; N] {
+    let mut reciprocals = [1.0; N];
+    let mut k = 0;
+    while k < N {
+        reciprocals[k] = 1.0 / (2 * (N - k) + 1) as f64;
         k += 1;
     }
     reciprocals
-};
+}
 
 /// The signed square root of 2 G(z), z sqrt(1 + psi(z)): increasing, and z itself near zero.
 fn signed_root(z: f64) -> f64 {
@@ -321,32 +339,41 @@ fn imbalance(x: f64, e: f64, loss: f64) -> f64 {
 
 /// 1 - e at lambda v = x, with all its digits however small x is.
 pub(in crate::impact) fn loss(x: f64) -> f64 {
-    if x < 1e-9 {
-        return 2.0 / 3.0 * x;
-    }
-    if x >= 1.0 {
-        return 1.0 - restitution_of(x, 0.0);
-    }
+    losses(Lanes([x])).0[0]
+}
+
+/// [`loss`] of several numbers.
+#[inline(always)]
+pub(in crate::impact) fn losses<const L: usize>(x: Lanes<L>) -> Lanes<L> {
+    /// Largest number of Newton's steps, each of which doubles the digits.
+    const MOST_NEWTON: usize = 6;
     // Newton from e = 1/(1 + 2x/3 + 4x^3/135), which has the first three terms of the series and is
     // good to 1 % at x = 1.
-    let constant = excess(x);
+    let constant = excesses(x);
     let excluded = x * (2.0 / 3.0 + 4.0 / 135.0 * x * x);
     let mut loss = excluded / (1.0 + excluded);
+    let mut is_open = Mask([true; L]);
     for _ in 0..MOST_NEWTON {
         let e = 1.0 - loss;
-        let step =
-            (e * e * excess(-e * x) - constant - loss * (2.0 - loss)) * (1.0 - e * x) / (2.0 * e);
-        loss += step;
+        let imbalance = e * e * excesses(-e * x) - constant - loss * (2.0 - loss);
+        let step = imbalance * (1.0 - e * x) / (2.0 * e);
+        loss = is_open.select(loss + step, loss);
         // The remaining error is of the order of the square of the step.
-        if step * step <= 1e-17 * loss {
+        is_open = is_open.and((step * step).is_above(1e-17 * loss));
+        if !is_open.any() {
             break;
+        }
+    }
+    for lane in 0..L {
+        let x = x.0[lane];
+        if x < 1e-9 {
+            loss.0[lane] = 2.0 / 3.0 * x;
+        } else if x >= 1.0 {
+            loss.0[lane] = 1.0 - restitution_of(x, 0.0);
         }
     }
     loss
 }
-
-/// Largest number of Newton's steps, each of which doubles the digits.
-const MOST_NEWTON: usize = 6;
 
 /// e at lambda v = x, with all its digits however large x is.
 fn restitution_of(x: f64, loss: f64) -> f64 {

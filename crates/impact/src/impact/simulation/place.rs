@@ -26,7 +26,9 @@ impl RestPoint {
     /// The position at which a motion at x settles, without friction and excitation; the bottom if
     /// x is not finite.
     pub fn near(model: &Model, x: f64) -> Self {
-        let bottom = if x.is_finite() { TAU * (x / TAU).round() } else { 0.0 };
+        // Nearly every motion stays about the first bottom.
+        let turns = x.abs() >= PI && x.is_finite();
+        let bottom = if turns { TAU * (x / TAU).round() } else { 0.0 };
         let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
             let barrier = model.barrier(side).filter(|_| model.gamma > 0.0)?;
             let height = side.sign() * (bottom - barrier);

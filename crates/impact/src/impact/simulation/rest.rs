@@ -305,6 +305,9 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level
     };
     let place = RestPoint::near(model, last.x);
     let small = |turn: &TurningPoint| (turn.x - place.x).abs() <= level;
+    if !small(last) {
+        return false;
+    }
     // On the free side, not in the barrier.
     let free = |side: Side| {
         let from_barrier =
@@ -312,8 +315,8 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level
         side.sign() * (last.x - place.x) > 0.0 && from_barrier.is_none_or(|distance| distance > 0.0)
     };
     match (place.free_side(model), turns) {
-        (Some(side), [.., last]) => free(side) && small(last),
-        (None, [.., before, last]) => small(before) && small(last),
+        (Some(side), _) => free(side),
+        (None, [.., before, _]) => small(before),
         _ => false,
     }
 }

@@ -138,13 +138,19 @@ impl Balls {
         Ball { middle: &left.middle - &right.middle, radius: left.radius + right.radius }
     }
 
+    /// Returns a bound of the absolute value of the middle of a ball.
+    pub fn size_of_middle(self, ball: &Ball) -> Bound {
+        self.size(&ball.middle)
+    }
+
     /// The radius of a product, before its middle is rounded.
     pub fn radius_of_product(self, left: &Ball, right: &Ball) -> Bound {
-        let own = |ball: &Ball, other: &Ball| match ball.radius == Bound::ZERO {
+        // A size costs more than all the rest.
+        let size = |ball: &Ball, other: &Ball| match other.radius == Bound::ZERO {
             true => Bound::ZERO,
-            false => ball.radius * self.size(&other.middle),
+            false => self.size(&ball.middle),
         };
-        own(left, right) + own(right, left) + left.radius * right.radius
+        radius_of_product([left, right], [size(left, right), size(right, left)])
     }
 
     /// `left * right`.
@@ -167,8 +173,13 @@ impl Balls {
 
     /// `ball / divisor`, for a divisor that is not zero.
     pub fn divided(self, ball: &Ball, divisor: u32) -> Ball {
-        let (middle, rest) = ball.middle.div_mod_floor(&divisor.into());
         let radius = ball.radius / divisor;
+        // Every coefficient of a product of Fourier series is halved.
+        if divisor == 2 {
+            let unit = if ball.middle.is_odd() { self.unit() } else { Bound::ZERO };
+            return Ball { middle: &ball.middle >> 1, radius: radius + unit };
+        }
+        let (middle, rest) = ball.middle.div_mod_floor(&divisor.into());
         Ball { middle, radius: if rest.is_zero() { radius } else { radius + self.unit() } }
     }
 
@@ -225,6 +236,16 @@ impl Balls {
         };
         self.difference(&self.scaled(&arctangent(5), 16), &self.scaled(&arctangent(239), 4))
     }
+}
+
+/// The radius of a product of two balls of one unit, before its middle is rounded, from bounds of the
+/// [sizes of their middles](Balls::size_of_middle): for many products of the same balls.
+pub fn radius_of_product([left, right]: [&Ball; 2], [left_size, right_size]: [Bound; 2]) -> Bound {
+    let own = |ball: &Ball, other: Bound| match ball.radius == Bound::ZERO {
+        true => Bound::ZERO,
+        false => ball.radius * other,
+    };
+    own(left, right_size) + own(right, left_size) + left.radius * right.radius
 }
 
 #[cfg(test)]

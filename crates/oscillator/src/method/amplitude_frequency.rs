@@ -11,6 +11,8 @@
 //! R_i = f(c A) - omega_i^2 c A, c = sqrt(3)/2   ->   omega^2 = f(c A)/(c A), whatever omega_1 and omega_2 are
 //! ```
 //!
+//! Cost: one value of the force.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

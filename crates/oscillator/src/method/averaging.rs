@@ -25,6 +25,9 @@
 //! the restoring force is a power of the coordinate, the average is taken along the true motion in
 //! that force.
 //!
+//! Cost: one Fourier table of the force at the first order and a product of two at the second, once
+//! for all amplitudes.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -23,6 +23,8 @@
 //! points; and over Gauss points between the instants at which the motion crosses a corner, a jump
 //! or a narrow place of the force; finer ones are used where a force oscillates more often than
 //! they resolve.
+//!
+//! Cost: with `n` harmonics and `m` samples, `O(m n + n^3)` for each of Newton's steps.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::PI;

@@ -9,6 +9,8 @@
 //! omega^2 = 4 [V(A) - V(A/sqrt(2))]/A^2
 //! ```
 //!
+//! Cost: two values of the potential.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -29,6 +29,8 @@
 //! a x + b x^2:          x = A - 4 A (a + b A)/(P + D) sn^2(sqrt((P + D)/8) t, m)
 //! ```
 //!
+//! Cost: a closed form in constant time, or one quadrature for each amplitude.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -13,6 +13,8 @@
 //! The mean is taken of the potential in closed form and then differentiated; where there is none
 //! the derivative is taken under the integral, which leaves the [shared integral](super::one_term).
 //!
+//! Cost: one mean of the potential over a turn.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -12,6 +12,9 @@
 //! One harmonic of an odd force is solved in closed form. Beyond that the system is printed, and
 //! solved at an amplitude by [`balance`](super::balance::balance).
 //!
+//! Cost at an amplitude: a few Newton's steps, each with the samples of the force and a linear
+//! system of `n` unknowns, at each point of a branch.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

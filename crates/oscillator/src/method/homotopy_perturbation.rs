@@ -17,6 +17,8 @@
 //! depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic
 //! at order one.
 //!
+//! Cost: that of [`secular::expand`](super::secular::expand).
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -10,6 +10,9 @@
 //! no secular term fixes omega^2;   x_1 = A cos theta + sum_(k>1) c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)
 //! ```
 //!
+//! Cost: one Fourier table of the force for each pass; the number of terms of a pass grows as the
+//! power of the degree of the force.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

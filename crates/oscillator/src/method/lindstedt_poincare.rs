@@ -17,6 +17,9 @@
 //! first order, `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`, as [`limit_cycle`](super::limit_cycle)
 //! finds it.
 //!
+//! Cost: that of [`secular::expand`](super::secular::expand) at order n, whose Fourier coefficients
+//! are some n^2 in number with some n digits each.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

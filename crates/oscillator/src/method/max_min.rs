@@ -13,6 +13,8 @@
 //! method adds, and where there are none, as for a force that is steeper than linear at rest, it
 //! does not apply.
 //!
+//! Cost: the extremes of `f(x)/x` and one Fourier coefficient of the force.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -14,6 +14,9 @@
 //! degrees are worked out [modulo many primes](crate::series::hermite_pade::by_primes), from the
 //! frequency alone.
 //!
+//! Cost: the exact series to order `L + M`, then `O((L + M)^2)` products of rational numbers, or of
+//! residues for each of as many primes as the numbers have digits.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};

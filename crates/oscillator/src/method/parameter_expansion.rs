@@ -14,6 +14,8 @@
 //! linear part. At first order any force enters as it is, sine, |x| and all; above, the steps are
 //! those of [homotopy perturbation](super::homotopy_perturbation) with the force as a polynomial.
 //!
+//! Cost: one Fourier coefficient of the force at first order; above, that of homotopy perturbation.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

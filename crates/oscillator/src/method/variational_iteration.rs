@@ -9,6 +9,8 @@
 //! u_1 = A cos theta + sum_(k>1) c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)
 //! ```
 //!
+//! Cost: one Fourier table of the force.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

@@ -20,7 +20,7 @@ use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use super::law;
 use super::radii_polynomial::{NotProved, Proof};
 use super::{Certificate, Certified, CheckError, HIGHEST_HARMONIC};
-use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball::{Ball, Balls, radius_of_product};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
@@ -336,24 +336,34 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
     }
     let points = (64 * degree).min(4096).max(16 * degree);
     let table = waves(points, BALLS);
-    // Half a turn suffices for an even or odd function.
-    let all = match empty == [false, false] {
-        true => 2 * points,
-        false => points + 1,
+    // Half a turn suffices for an even or odd function, and for one that half a turn turns over.
+    let turns_over = parts.iter().all(|balls| balls.iter().step_by(2).all(Ball::is_zero));
+    let all = match (empty == [false, false], turns_over) {
+        (true, false) => 2 * points,
+        (true, true) => points,
+        (false, false) => points + 1,
+        (false, true) => points / 2 + 1,
+    };
+    // The coefficients and the waves that occur, with their sizes, of which each is asked for again
+    // and again.
+    let sized = |ball: Ball| {
+        let size = BALLS.size_of_middle(&ball);
+        (ball, size)
     };
     let short = parts.map(|balls| {
-        balls.iter().map(|ball| BALLS.converted(ball, WORKING)).collect::<Vec<Ball>>()
+        let occurring = balls.iter().enumerate().filter(|(_, ball)| !ball.is_zero());
+        let short = occurring.map(|(k, ball)| (k, sized(BALLS.converted(ball, WORKING))));
+        short.collect::<Vec<(usize, (Ball, Bound))>>()
     });
+    let table: Vec<[(Ball, Bound); 2]> = table.into_iter().map(|waves| waves.map(sized)).collect();
     let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
     for j in 0..all {
         let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
         for (wave, coefficients) in short.iter().enumerate() {
-            for (k, coefficient) in
-                coefficients.iter().enumerate().filter(|(_, ball)| !ball.is_zero())
-            {
-                let value = &table[j * k % (2 * points)][wave];
+            for (k, (coefficient, size)) in coefficients {
+                let (value, size_of_value) = &table[j * k % (2 * points)][wave];
                 units += &coefficient.middle * &value.middle;
-                radius += BALLS.radius_of_product(coefficient, value);
+                radius += radius_of_product([coefficient, value], [*size, *size_of_value]);
             }
         }
         let value = BALLS.rounded(&units, radius);
@@ -376,12 +386,22 @@ pub(super) fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
     let (sine, cosine) = FourierSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
     let turn = [cosine.at_zero(), sine.at_zero()];
     let mut at = [WORKING.integer(1), Ball::zero()];
-    let mut table = Vec::with_capacity(2 * points);
-    for _ in 0..2 * points {
-        table.push(at.each_ref().map(|value| balls.converted(value, WORKING)));
+    // A quarter turn: the others are its mirror images.
+    let mut quarter = Vec::with_capacity(points / 2 + 1);
+    for _ in 0..=points / 2 {
+        quarter.push(at.each_ref().map(|value| balls.converted(value, WORKING)));
         at = sum_of_angles(&at, &turn);
     }
-    table
+    let signed = |ball: &Ball, negative: bool| match negative {
+        true => balls.difference(&Ball::zero(), ball),
+        false => ball.clone(),
+    };
+    let place = |j: usize| {
+        let in_half = j.min(2 * points - j);
+        let [cosine, sine] = &quarter[in_half.min(points - in_half)];
+        [signed(cosine, 2 * in_half > points), signed(sine, j > points)]
+    };
+    (0..2 * points).map(place).collect()
 }
 
 /// Whether everything claimed is proved.

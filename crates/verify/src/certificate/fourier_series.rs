@@ -19,7 +19,7 @@
 use num_traits::{Signed as _, Zero};
 
 use crate::exact::Integer;
-use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball::{Ball, Balls, radius_of_product};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::numeric::harmonics::Transform;
@@ -539,13 +539,17 @@ fn add_products(
     right: &[Ball],
     waves: impl Fn(usize, usize) -> [(usize, bool); 2],
 ) {
-    let right: Vec<(usize, &Ball)> =
-        right.iter().enumerate().filter(|(_, ball)| !ball.is_zero()).collect();
-    for (i, left) in left.iter().enumerate().filter(|(_, left)| !left.is_zero()) {
-        for &(j, right) in &right {
-            let (product, radius) =
-                (&left.middle * &right.middle, WORKING.radius_of_product(left, right));
-            for (harmonic, negative) in waves(i, j) {
+    // The size of a ball is asked for in each of its products, and found once.
+    let sized = |balls: &[Ball]| -> Vec<(usize, Ball, Bound)> {
+        let occurring = balls.iter().enumerate().filter(|(_, ball)| !ball.is_zero());
+        occurring.map(|(k, ball)| (k, ball.clone(), WORKING.size_of_middle(ball))).collect()
+    };
+    let right = sized(right);
+    for (i, left, left_size) in sized(left) {
+        for (j, right, right_size) in &right {
+            let product = &left.middle * &right.middle;
+            let radius = radius_of_product([&left, right], [left_size, *right_size]);
+            for (harmonic, negative) in waves(i, *j) {
                 match negative {
                     true => doubled[harmonic].0 -= &product,
                     false => doubled[harmonic].0 += &product,

@@ -18,6 +18,9 @@
 //! equally small. In powers of the amplitude a linear damping counts as its square, so that it
 //! appears beside the first effect of a cubic force.
 //!
+//! Cost: the products of the force in as many slow times as there are orders, of which there are at
+//! most three.
+//!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};

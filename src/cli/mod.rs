@@ -43,7 +43,7 @@ use std::io::{Read as _, Write as _};
 use std::panic::RefUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
@@ -56,6 +56,7 @@ use crate::verify::{DEFAULT_TOLERANCE, Verdict};
 use clap::builder::styling::{AnsiColor, Style};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
+use lindstedt_expr::parallel::on_threads;
 use serde::Serialize;
 
 use self::session::Session;
@@ -729,9 +730,16 @@ fn within_limits(
         session.stop.store(true, Ordering::Relaxed);
     }
     let started = Instant::now();
+    let is_forked = is_forked();
     let worker = std::thread::spawn(move || {
-        session.enter();
-        let outcome = std::panic::catch_unwind(|| work.run());
+        let run = move || {
+            session.enter();
+            std::panic::catch_unwind(|| work.run())
+        };
+        let outcome = match is_forked {
+            true => on_threads(0, run),
+            false => run(),
+        };
         let _ = sender.send(Message::Done(outcome.ok()));
     });
     // A caller that ends a work has no use for a part of it.
@@ -776,6 +784,15 @@ fn within_limits(
         let _ = worker.join();
     }
     found
+}
+
+/// Whether this process is the child of one that had run a command before it was forked. The threads
+/// of the parent's pool are not in the child, which would wait for them for ever: it takes new ones.
+fn is_forked() -> bool {
+    static FIRST: AtomicU32 = AtomicU32::new(0);
+    let own = std::process::id();
+    let first = FIRST.compare_exchange(0, own, Ordering::Relaxed, Ordering::Relaxed);
+    first.is_err_and(|first| first != own)
 }
 
 /// The limits of a work.

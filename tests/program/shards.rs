@@ -92,12 +92,12 @@ fn the_file_of_the_problem_comes_with_the_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let file = folder.join("damper.toml");
-    std::fs::write(&file, "[pendulum]\nzeta = 0.02\n").expect("a file");
+    std::fs::write(&file, "[damping]\nzeta = 0.02\n").expect("a file");
     let command = ["simulate", "damper.toml", "--sweep", "alpha=0:0.02:3"];
     let whole = printed(folder, &command);
     let files = split(folder, &command, 2);
     // Neither a change of the file nor its loss matters to the lines that are there.
-    std::fs::write(&file, "[pendulum]\nzeta = 0.05\n").expect("a file");
+    std::fs::write(&file, "[damping]\nzeta = 0.05\n").expect("a file");
     assert_eq!(printed(folder, &collect(&files, &[])), whole);
     let other = split(folder, &command, 1);
     let message = refused(folder, &collect(&[files.clone(), other].concat(), &[]), 1);

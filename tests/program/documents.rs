@@ -344,7 +344,11 @@ fn every_key_is_described_and_no_other_is_allowed() {
         let (mut found, mut keys) = (Vec::new(), 0);
         faults(kind.name(), &schema, &mut found, &mut keys);
         assert_eq!(found, Vec::<String>::new());
-        assert!(keys >= 9, "{}: only {keys} keys", kind.name());
+        let least = match kind {
+            DocumentKind::Study | DocumentKind::Point => 7,
+            _ => 9,
+        };
+        assert!(keys >= least, "{}: only {keys} keys", kind.name());
     }
     // What is easily taken for something else is said where it stands.
     let said = |kind: DocumentKind, place: &str, words: &[&str]| {

@@ -347,7 +347,7 @@ pub fn material_motions(
     number: usize,
 ) -> Result<MaterialMotions, MaterialsError> {
     let material = question.materials.get(number).ok_or(MaterialsError::NoMaterial)?;
-    let units = units(question);
+    let StudyDesign { model: design, units, dissipation, .. } = StudyDesign::new(question)?;
     let (model, start) = MaterialQuestion::motion_of(material, &question.own_case(material))?;
     let course = course(&model, start, question.integrator, &question.settings)?;
     let first = match course.impacts.first() {
@@ -357,9 +357,8 @@ pub fn material_motions(
     let lossless = Model { mu: 0.0, ..model };
     let longer = with_longer_duration(&question.settings);
     let lossless = self::course(&lossless, start, question.integrator, &longer)?.rest_time;
-    let loses = question.case.motion()?.0.mu > 0.0 && first.is_some();
-    let held = match loses {
-        true => rest_times_held_fixed(question, material)?,
+    let held = match design.mu > 0.0 && first.is_some() {
+        true => rest_times_held_fixed(question, material, &dissipation)?,
         false => vec![],
     };
     Ok(MaterialMotions { first, course, lossless, held })
@@ -383,19 +382,13 @@ pub fn study_from_motions(
     question: MaterialQuestion,
     motions: Vec<MaterialMotions>,
 ) -> Result<MaterialStudy, MaterialsError> {
-    if question.materials.is_empty() {
-        return Err(MaterialsError::NoMaterial);
-    }
-    let case = question.case;
-    let (model, start) = case.motion()?;
-    let units = units(&question);
-    let dissipation = case.dissipation(Some(&units))?;
+    let StudyDesign { model, start, units, dissipation } = StudyDesign::new(&question)?;
     let loses = model.mu > 0.0 && motions.iter().any(|motions| motions.first.is_some());
     let (mut rows, mut held) = (Vec::new(), Vec::new());
     for (material, motions) in question.materials.iter().zip(motions) {
         held.push(match (loses, motions.held.is_empty()) {
             // It is not touched itself, but another one is.
-            (true, true) => rest_times_held_fixed(&question, material)?,
+            (true, true) => rest_times_held_fixed(&question, material, &dissipation)?,
             _ => motions.held,
         });
         rows.push(row(
@@ -417,17 +410,35 @@ pub fn study_from_motions(
     Ok(MaterialStudy { units, model, start, rows, no_barrier, dissipation, held_fixed, question })
 }
 
-/// The units of a study.
-fn units(question: &MaterialQuestion) -> Units {
-    let design = &question.case.design;
-    Units {
-        mass: design.mass,
-        length: design.length,
-        gravity: design.gravity,
-        radius: Some(design.radius),
-        modulus: None,
-        sphere_yield: question.sphere_yield,
-        barrier_yield: None,
+/// The design of a study, at its own modulus.
+struct StudyDesign {
+    model: Model,
+    start: Start,
+    units: Units,
+    dissipation: Dissipation,
+}
+
+impl StudyDesign {
+    /// The design of this question.
+    ///
+    /// # Errors
+    /// As [`study_materials`].
+    fn new(question: &MaterialQuestion) -> Result<Self, MaterialsError> {
+        if question.materials.is_empty() {
+            return Err(MaterialsError::NoMaterial);
+        }
+        let case = question.case;
+        let (model, start) = case.motion()?;
+        let units = Units {
+            mass: case.design.mass,
+            length: case.design.length,
+            gravity: case.design.gravity,
+            radius: Some(case.design.radius),
+            modulus: None,
+            sphere_yield: question.sphere_yield,
+            barrier_yield: None,
+        };
+        Ok(Self { model, start, units, dissipation: case.dissipation(Some(&units))? })
     }
 }
 
@@ -564,14 +575,14 @@ fn case_held_fixed(
 fn rest_times_held_fixed(
     question: &MaterialQuestion,
     material: &Material,
+    dissipation: &Dissipation,
 ) -> Result<Vec<Result<f64, NoRest>>, MaterialsError> {
-    let dissipation = question.case.dissipation(Some(&units(question)))?;
     let rest_time = |form| {
         let case = case_held_fixed(question, material, form);
         let (model, start) = MaterialQuestion::motion_of(material, &case)?;
         Ok(course(&model, start, question.integrator, &question.settings)?.rest_time)
     };
-    forms(&dissipation).into_iter().map(rest_time).collect()
+    forms(dissipation).into_iter().map(rest_time).collect()
 }
 
 /// The materials under every form of the damping of the design, the given one first; `rest_times`

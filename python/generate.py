@@ -151,6 +151,8 @@ class Module:
             else:
                 inner = f"{annotation}, ..."
             return f"tuple[{inner}]{none}", f"several({reader})" if reader else "tuple"
+        if filled == ["object"] and schema["additionalProperties"] is True:
+            return f"dict[str, Any]{none}", "dict"
         if filled == ["object"]:
             annotation, reader = self.typed(key, schema["additionalProperties"])
             return f"dict[str, {annotation}]{none}", f"mapped({reader})" if reader else "dict"
@@ -237,7 +239,11 @@ class Module:
         ]
         if "Fraction" in body:
             head.append("from fractions import Fraction")
-        typing = [name for name in ("Literal", "TypeAlias") if name in body]
+        typing = [
+            name
+            for name, use in (("Any", " Any]"), ("Literal", "Literal"), ("TypeAlias", "TypeAlias"))
+            if use in body
+        ]
         if typing:
             head.append(f"from typing import {', '.join(typing)}")
         head.append("")
@@ -321,7 +327,7 @@ RESULTS = {
 #: The commands of an equation, which are methods of `Oscillator` too.
 OF_EQUATIONS = ("derive", "compare", "simulate", "response", "stability", "certify")
 #: Options that Python has in another way.
-LEFT_OUT = {"at", "format", "output", "plot", "quiet", "standalone"}
+LEFT_OUT = {"at", "format", "output", "plot", "quiet", "shard", "standalone"}
 #: What Python says of an option in other words than the help.
 TOLD = {
     "problem": "An equation, an `Oscillator`, a name of the catalogue, the path of a problem file, or"

@@ -43,12 +43,16 @@ if TYPE_CHECKING:
     from .commands import stability as stability
     from .errors import InternalError as InternalError
     from .errors import LindstedtError as LindstedtError
+    from .errors import LostPoints as LostPoints
     from .errors import MissingPackage as MissingPackage
     from .errors import Refused as Refused
     from .errors import TimeLimit as TimeLimit
     from .errors import UsageError as UsageError
     from .oscillator import Oscillator as Oscillator
     from .law import Law as Law
+    from .studies import Study as Study
+    from .studies import collect as collect
+    from .studies import missing_shards as missing_shards
     from .symbolic import from_sympy as from_sympy
 
 #: The module of each name, which is imported when the name is used.
@@ -57,10 +61,11 @@ PLACES = {
     "Law": "law",
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",
+    **dict.fromkeys(("Study", "collect", "missing_shards"), "studies"),
     **dict.fromkeys(
         (
-            "InternalError", "LindstedtError", "MissingPackage", "Refused", "TimeLimit",
-            "UsageError",
+            "InternalError", "LindstedtError", "LostPoints", "MissingPackage", "Refused",
+            "TimeLimit", "UsageError",
         ),
         "errors",
     ),

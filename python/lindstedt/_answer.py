@@ -102,6 +102,10 @@ class Answer(Document):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 
+    def equals(self, other: object) -> bool:
+        """Returns whether another result has the same document, byte for byte."""
+        return isinstance(other, Answer) and self.json() == other.json()
+
     def to_pandas(self) -> Any:
         """Returns the table as a `pandas.DataFrame`; the units are in `attrs["units"]`.
 

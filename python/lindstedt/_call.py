@@ -197,11 +197,21 @@ def ask(
     progress: Progress | None = None,
 ) -> Any:
     """The result of a command with these keywords, in the class of its kind."""
+    return answer(asked(name, problem, options, values), progress)
+
+
+def asked(
+    name: str,
+    problem: Problem | None,
+    options: Mapping[str, Any],
+    values: Mapping[str, Any] | None = None,
+) -> Call:
+    """The call of a command with these keywords; a motion begins at values of its coordinate."""
     options, values = dict(options), dict(values or {})
     if name == "simulate" and values and problem is not None:
         begins, values = starts(problem, values)
         options["from_"] = option_list("from", options.get("from_")) + begins
-    return answer(command(name, problem, options, values), progress)
+    return command(name, problem, options, values)
 
 
 def starts(problem: Problem, values: Mapping[str, Any]) -> tuple[list[str], dict[str, Any]]:

@@ -10,6 +10,8 @@ refusal | 2*zeta*x'
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class LindstedtError(Exception):
     """Any error of the package.
@@ -32,7 +34,7 @@ class LindstedtError(Exception):
         self.message = message
         self.help = help if help is not None else given or None
 
-    def __reduce__(self) -> tuple[type, tuple[str, str, str | None, str | None]]:
+    def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (str(self), self.kind, self.term, self.help)
 
 
@@ -42,6 +44,21 @@ class Refused(LindstedtError, ValueError):
 
 class UsageError(LindstedtError, TypeError):
     """An argument that there is not, or with a value that it cannot have."""
+
+
+class LostPoints(LindstedtError, RuntimeError):
+    """The process of a shard of a study ended again and again without its lines.
+
+    Attributes:
+        shard: The shard, `3/64`.
+    """
+
+    def __init__(self, text: str, shard: str) -> None:
+        super().__init__(text, "study")
+        self.shard = shard
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.shard)
 
 
 class TimeLimit(LindstedtError, TimeoutError):

@@ -59,7 +59,8 @@ def result_of(name):
 
 
 def test_every_kind_of_document_is_among_them():
-    assert {result_of(name).schema for name in CALLS} == set(KINDS)
+    of_lines = {"lindstedt/study/1", "lindstedt/point/1"}
+    assert {result_of(name).schema for name in CALLS} == set(KINDS) - of_lines
 
 
 @pytest.mark.parametrize("name", CALLS)

@@ -159,9 +159,15 @@ impl Audit {
 
 /// Computes every claim, and compares those that share an unknown number.
 pub fn audit(claims: Claims) -> Audit {
-    let mut findings: Vec<ClaimFinding> = claims.claims.into_iter().map(judge).collect();
+    let findings = claims.claims.into_iter().map(audit_claim).collect();
+    audit_from_findings(claims.title, findings)
+}
+
+/// Makes the audit of the findings of all claims, each made by [`audit_claim`]: compares those that
+/// share an unknown number.
+pub fn audit_from_findings(title: String, mut findings: Vec<ClaimFinding>) -> Audit {
     share_unknowns(&mut findings);
-    Audit { title: claims.title, findings }
+    Audit { title, findings }
 }
 
 /// Largest number of combinations of suppositions that are tried.
@@ -184,7 +190,8 @@ fn combinations(subjects: &[Vec<Supposition>]) -> Vec<Vec<&Supposition>> {
     found
 }
 
-fn judge(claim: Claim) -> ClaimFinding {
+/// Computes one claim, without a look at the others.
+pub fn audit_claim(claim: Claim) -> ClaimFinding {
     let choices = combinations(&claim.suppositions);
     let mut tried: Vec<ClaimAttempt> = Vec::new();
     for chosen in &choices {

@@ -93,10 +93,10 @@ pub(super) fn page(
         false => session.words(),
     };
     write(&HtmlPage {
-        title: &command(&what_is_asked(&words)),
+        title: &command_text(&what_is_asked(&words)),
         picture,
         derivation,
-        made_by: &command(&words),
+        made_by: &command_text(&words),
     })
 }
 
@@ -120,7 +120,7 @@ fn what_is_asked(words: &[String]) -> Vec<String> {
 }
 
 /// A command as it can be typed again.
-fn command(words: &[String]) -> String {
+pub(super) fn command_text(words: &[String]) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+".contains(letter);
     let quoted = |word: &String| match !word.is_empty() && word.chars().all(plain) {
         true => word.clone(),

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::audit::{Claims, audit};
+use crate::audit::{Claim, Claims, audit, audit_claim, audit_from_findings};
 use crate::export::json;
+use crate::export::json::points::ClaimPoint;
+use crate::export::json::shard::Shard;
 use crate::problem::ProblemError;
 use crate::report;
 use crate::verify::Verdict;
@@ -11,6 +13,7 @@ use clap::Args;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_standard, width};
+use super::shard::{self, Points, ShardArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text, read};
 
 /// Every claim of the paper, the file that `lindstedt paper` runs.
@@ -43,6 +46,8 @@ struct StrictArguments {
     /// Exit with code 3 for every claim that is not reproduced, also where the file expects so
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    shard: ShardArguments,
 }
 
 impl Work for AuditArguments {
@@ -99,7 +104,19 @@ fn outcome(
     let claims: Claims = claims.parse().map_err(|error: ProblemError| {
         Failure::refused(&format!("{name}: {error}"), error.help())
     })?;
-    let audit = audit(claims);
+    if let Some(shard) = own.shard.shard {
+        return write_shard(shard, common, &claims);
+    }
+    let audit = match shard::known::<ClaimPoint>(claims.claims.len())? {
+        None => audit(claims),
+        Some(rows) => {
+            let read = |(index, (claim, row)): (usize, (Claim, ClaimPoint))| {
+                row.read(claim).ok_or_else(|| shard::unreadable(index))
+            };
+            let findings = claims.claims.into_iter().zip(rows).enumerate().map(read);
+            audit_from_findings(claims.title, findings.collect::<Result<_, _>>()?)
+        }
+    };
     let answer = Answer {
         document: &report::audit(&audit),
         width: width(common.output.as_deref()),
@@ -112,5 +129,24 @@ fn outcome(
     Ok(Outcome {
         verdict: Some(Verdict::from_passed(audit.passes(own.strict))),
         ..answer.outcome(common)?
+    })
+}
+
+/// The lines of the claims of a shard.
+fn write_shard(shard: Shard, common: &Common, claims: &Claims) -> Result<Outcome, Failure> {
+    let inputs = |index: usize| {
+        let id = claims.claims.get(index).map(|claim| claim.id.clone());
+        [("claim".to_owned(), id.into())].into_iter().collect()
+    };
+    let points = Points {
+        total: claims.claims.len(),
+        together: 1,
+        bar: "{bar:40} {pos}/{len} claims, {eta} left",
+        inputs: &inputs,
+    };
+    shard::write(shard, common, &points, |indices| {
+        let claims = indices.iter().filter_map(|index| claims.claims.get(*index));
+        let row = |claim: &Claim| Some(ClaimPoint::from_finding(&audit_claim(claim.clone())));
+        Ok(claims.map(row).collect())
     })
 }

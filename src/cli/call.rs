@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 use super::session::Session;
 use super::{
     COMMANDS, Command, Failure, INTERRUPTED, Limits, Outcome, Reason, Watch, Work, by_ending,
-    files, suggestions, within_limits,
+    files, find_work, within_limits,
 };
 use crate::{Oscillator, Verdict};
 
@@ -68,15 +68,15 @@ pub fn call(
 ) -> Result<CallResult, CallFailure> {
     let session = Session::of_call(words, input);
     session.enter();
-    let work = parse(&session.words()).and_then(|(command, work)| {
-        prepare(command, work.as_ref()).map_err(CallFailure::from)?;
+    let work = find_work(&session.words()).and_then(|(command, work)| {
+        prepare(command, work.as_ref())?;
         Ok((command, work))
     });
     let (command, work) = match work {
         Ok(asked) => asked,
         Err(failure) => {
             session.end();
-            return Err(failure);
+            return Err(failure.into());
         }
     };
     let output = work.common().output;
@@ -107,22 +107,6 @@ pub fn call(
     };
     session.end();
     result
-}
-
-/// The command that these words ask for, and its work.
-fn parse(words: &[String]) -> Result<(&'static Command, Box<dyn Work>), CallFailure> {
-    let usage =
-        |message: String| CallFailure { code: 2, kind: "usage".to_owned(), message, term: None };
-    let named = words.first().and_then(|name| COMMANDS.iter().find(|row| row.name == name));
-    let Some(command) = named else {
-        return Err(usage("no command of this name".to_owned()));
-    };
-    let parsed = command.parser().try_get_matches_from(words);
-    let work = parsed.and_then(|matches| (command.read)(&matches)).map_err(|error| {
-        let message = suggestions::with_what_is_meant(error).to_string();
-        usage(message.trim_start_matches("error: ").trim_end().to_owned())
-    })?;
-    Ok((command, work))
 }
 
 /// Refuses what no work is done for.

@@ -2,8 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::export::json::points::MaterialPoint;
+use crate::export::json::shard::Shard;
 use crate::export::{json, materials};
-use crate::impact::{Integrator, MaterialsError, Settings, study_materials};
+use crate::impact::{
+    Integrator, MaterialQuestion, MaterialsError, Settings, material_motions, study_from_motions,
+    study_materials,
+};
 use crate::problem::Problem;
 use crate::report;
 use clap::Args;
@@ -11,6 +16,7 @@ use clap::Args;
 use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::from_file;
+use super::shard::{self, Points, ShardArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text};
 
 /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
@@ -27,6 +33,8 @@ pub struct MaterialsArguments {
     /// is light and dry friction alpha no more than 0.02 of the amplitude
     #[arg(long)]
     chain: bool,
+    #[command(flatten)]
+    shard: ShardArguments,
     #[command(flatten)]
     pub common: Common,
 }
@@ -64,13 +72,20 @@ fn run(arguments: &MaterialsArguments) -> Result<Outcome, Failure> {
     if arguments.chain {
         question.integrator = Integrator::Chain;
     }
-    let study = study_materials(question).map_err(|error| {
-        let none = error == MaterialsError::NoMaterial;
-        Failure::refused(
-            &error,
-            none.then(|| "leave out --only-own, or list materials in a file".to_owned()),
-        )
-    })?;
+    let total = question.materials.len();
+    if let Some(shard) = arguments.shard.shard {
+        return write_shard(shard, common, &question);
+    }
+    let study = match shard::known::<MaterialPoint>(total)? {
+        None => study_materials(question).map_err(refused)?,
+        Some(rows) => {
+            let read = |(index, row): (usize, &MaterialPoint)| {
+                row.read().ok_or_else(|| shard::unreadable(index))
+            };
+            let motions = rows.iter().enumerate().map(read).collect::<Result<_, _>>()?;
+            study_from_motions(question, motions).map_err(refused)?
+        }
+    };
     let answer = Answer {
         document: &report::materials(&study),
         width: width(common.output.as_deref()),
@@ -87,4 +102,39 @@ fn run(arguments: &MaterialsArguments) -> Result<Outcome, Failure> {
         format!("warning: {name} stopped early, what there is is kept: {stop}")
     });
     Ok(Outcome { note, partial: broken.is_some(), ..answer.outcome(common)? })
+}
+
+fn refused(error: MaterialsError) -> Failure {
+    let none = error == MaterialsError::NoMaterial;
+    let help = none.then(|| "leave out --only-own, or list materials in a file".to_owned());
+    Failure::refused(&error, help)
+}
+
+/// The lines of the materials of a shard.
+fn write_shard(
+    shard: Shard,
+    common: &Common,
+    question: &MaterialQuestion,
+) -> Result<Outcome, Failure> {
+    if question.materials.is_empty() {
+        return Err(refused(MaterialsError::NoMaterial));
+    }
+    let inputs = |index: usize| {
+        let name = question.materials.get(index).map(|material| material.name.clone());
+        [("material".to_owned(), name.into())].into_iter().collect()
+    };
+    let points = Points {
+        total: question.materials.len(),
+        together: 1,
+        bar: "{bar:40} {pos}/{len} materials, {eta} left",
+        inputs: &inputs,
+    };
+    shard::write(shard, common, &points, |indices| {
+        let one = |index: &usize| {
+            let motions = material_motions(question, *index).map_err(refused)?;
+            let is_done = !question.settings.interrupt.is_requested();
+            Ok(is_done.then(|| MaterialPoint::from_motions(&motions)))
+        };
+        indices.iter().map(one).collect()
+    })
 }

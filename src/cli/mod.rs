@@ -13,6 +13,7 @@ mod audit;
 mod call;
 mod catalog;
 mod certify;
+mod collect;
 mod compare;
 mod derive;
 mod files;
@@ -27,6 +28,7 @@ mod progress;
 mod response;
 mod schema;
 mod session;
+mod shard;
 mod shell;
 mod simulate;
 mod stability;
@@ -41,7 +43,7 @@ use std::io::{Read as _, Write as _};
 use std::panic::RefUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
@@ -54,6 +56,7 @@ use crate::verify::{DEFAULT_TOLERANCE, Verdict};
 use clap::builder::styling::{AnsiColor, Style};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
+use lindstedt_expr::parallel::on_threads;
 use serde::Serialize;
 
 use self::session::Session;
@@ -70,7 +73,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 18] = [
+static COMMANDS: [Command; 19] = [
     Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
@@ -105,6 +108,10 @@ static COMMANDS: [Command; 18] = [
     Command::new::<audit::PaperArguments>("paper")
         .showing(include_str!("help/paper.txt"))
         .writing(Formats::Words)
+        .judged(),
+    Command::new::<collect::CollectArguments>("collect")
+        .showing(include_str!("help/collect.txt"))
+        .waiting(one_minute)
         .judged(),
     Command::new::<certify::CertifyArguments>("certify")
         .showing(include_str!("help/certify.txt"))
@@ -216,6 +223,14 @@ impl Command {
             formats => command
                 .mut_arg("format", |format| format.value_parser(format_parser(formats.listed()))),
         }
+    }
+
+    /// The work that these arguments ask for.
+    fn work(&self, matches: &ArgMatches) -> Result<Box<dyn Work>, clap::Error> {
+        if matches!(matches.try_contains_id("shard"), Ok(true)) {
+            session::current().begin_study(shard::words_of_study(&self.parser(), matches));
+        }
+        (self.read)(matches)
     }
 
     /// Refuses a format that the command does not have, before any work is done for it.
@@ -608,9 +623,23 @@ fn parse_command(words: Vec<OsString>) -> Result<(&'static Command, Box<dyn Work
         return Err(clap::Error::new(clap::error::ErrorKind::InvalidSubcommand));
     };
     let work = match arguments {
-        Some(arguments) => (command.read)(arguments)?,
-        None => (command.read)(&command.parser().try_get_matches_from([name])?)?,
+        Some(arguments) => command.work(arguments)?,
+        None => command.work(&command.parser().try_get_matches_from([name])?)?,
     };
+    Ok((command, work))
+}
+
+/// The command that these words ask for, and its work.
+fn find_work(words: &[String]) -> Result<(&'static Command, Box<dyn Work>), Failure> {
+    let named = words.first().and_then(|name| COMMANDS.iter().find(|row| row.name == name));
+    let Some(command) = named else {
+        return Err(Failure::Usage("no command of this name".to_owned()));
+    };
+    let parsed = command.parser().try_get_matches_from(words);
+    let work = parsed.and_then(|matches| command.work(&matches)).map_err(|error| {
+        let message = suggestions::with_what_is_meant(error).to_string();
+        Failure::Usage(message.trim_start_matches("error: ").trim_end().to_owned())
+    })?;
     Ok((command, work))
 }
 
@@ -701,9 +730,16 @@ fn within_limits(
         session.stop.store(true, Ordering::Relaxed);
     }
     let started = Instant::now();
+    let is_forked = is_forked();
     let worker = std::thread::spawn(move || {
-        session.enter();
-        let outcome = std::panic::catch_unwind(|| work.run());
+        let run = move || {
+            session.enter();
+            std::panic::catch_unwind(|| work.run())
+        };
+        let outcome = match is_forked {
+            true => on_threads(0, run),
+            false => run(),
+        };
         let _ = sender.send(Message::Done(outcome.ok()));
     });
     // A caller that ends a work has no use for a part of it.
@@ -748,6 +784,15 @@ fn within_limits(
         let _ = worker.join();
     }
     found
+}
+
+/// Whether this process is the child of one that had run a command before it was forked. The threads
+/// of the parent's pool are not in the child, which would wait for them for ever: it takes new ones.
+fn is_forked() -> bool {
+    static FIRST: AtomicU32 = AtomicU32::new(0);
+    let own = std::process::id();
+    let first = FIRST.compare_exchange(0, own, Ordering::Relaxed, Ordering::Relaxed);
+    first.is_err_and(|first| first != own)
 }
 
 /// The limits of a work.
@@ -859,9 +904,15 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     let failure = |error: std::io::Error| Failure::because(format!("cannot read {name}: {error}"));
     let limit = length as u64 + 1;
     let mut bytes = Vec::new();
-    if path.as_os_str() == "-" && session::current().is_call() {
-        let text = session::current().take_input().unwrap_or_default();
+    let given = match path.as_os_str() == "-" {
+        true => session::current().take_input(),
+        false => None,
+    };
+    if let Some(text) = given {
+        session::current().keep_file(&text);
         return Ok(text);
+    } else if path.as_os_str() == "-" && session::current().is_call() {
+        return Ok(String::new());
     } else if path.as_os_str() == "-" {
         std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(failure)?;
     } else {
@@ -871,10 +922,12 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
             .read_to_end(&mut bytes)
             .map_err(failure)?;
     }
-    String::from_utf8(bytes).map_err(|error| {
+    let text = String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         Failure::because(format!("{name} is not UTF-8 text: byte {place} belongs to no character"))
-    })
+    })?;
+    session::current().keep_file(&text);
+    Ok(text)
 }
 
 fn tolerance(common: &Common) -> f64 {

@@ -6,21 +6,25 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use crate::export::json::optimization::{read_record, record_head, record_line};
+use crate::export::json::optimization::{Run, read_record, record_head, record_line};
+use crate::export::json::shard::Shard;
 use crate::export::{json, optimization};
 use crate::genetic::SearchError;
 use crate::optimize::{
     OptimizationProblem, OptimizeError, SearchRun, Study, StudyObserver, optimize, optimize_on,
+    search_runs,
 };
 use crate::problem::Problem;
 use crate::report;
 use clap::Args;
+use lindstedt_expr::parallel::on_threads;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_same_file, is_standard, width};
 use super::problem::from_file;
 use super::progress::PartsBar;
 use super::session;
+use super::shard::{self, Points, ShardArguments};
 use super::{Common, Failure, Format, Outcome, Work, count, json_text, read_at_most};
 
 /// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts
@@ -51,6 +55,8 @@ pub struct OptimizeArguments {
     /// the same as in one go
     #[arg(long, value_name = "FILE.jsonl")]
     resume: Option<PathBuf>,
+    #[command(flatten)]
+    shard: ShardArguments,
     #[command(flatten)]
     pub common: Common,
 }
@@ -113,7 +119,14 @@ fn run(arguments: &OptimizeArguments) -> Result<Outcome, Failure> {
         _ => None,
     };
     question.check().map_err(refused)?;
-    let record = Record::open(arguments, &question)?;
+    if let Some(shard) = arguments.shard.shard {
+        return write_shard(shard, arguments, &question);
+    }
+    let mut record = Record::open(arguments, &question)?;
+    if let Some(rows) = shard::known::<Run>(question.runs)? {
+        let read = |(index, run): (usize, Run)| run.read().ok_or_else(|| shard::unreadable(index));
+        record.known = rows.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    }
     let study = search(arguments, question, &record, deadline)?;
     let answer = Answer {
         document: &report::optimization(&study),
@@ -139,6 +152,45 @@ fn run(arguments: &OptimizeArguments) -> Result<Outcome, Failure> {
         (None, true) => None,
     };
     Ok(Outcome { note, partial: !study.complete, ..answer.outcome(common)? })
+}
+
+/// The lines of the runs of a shard. What compares all runs, and follows the best designs again, is
+/// done where they are put together.
+fn write_shard(
+    shard: Shard,
+    arguments: &OptimizeArguments,
+    question: &OptimizationProblem,
+) -> Result<Outcome, Failure> {
+    let foreign = [
+        ("--record", arguments.record.is_some()),
+        ("--resume", arguments.resume.is_some()),
+        ("--budget in seconds", matches!(arguments.budget, Some(SearchBudget::Time(_)))),
+    ];
+    if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
+        return Err(Failure::Usage(format!(
+            "{option} does not go with --shard, whose lines are the record: leave it out"
+        )));
+    }
+    let inputs = |index: usize| {
+        [("seed".to_owned(), question.seed.into()), ("run".to_owned(), index.into())]
+            .into_iter()
+            .collect()
+    };
+    let threads = arguments.jobs.map_or_else(rayon::current_num_threads, usize::from);
+    let points = Points {
+        total: question.runs,
+        together: threads,
+        bar: "{bar:40} {pos}/{len} runs, {eta} left",
+        inputs: &inputs,
+    };
+    let interrupt = session::interrupt();
+    let watch = StudyObserver { stop: &|| interrupt.is_requested(), ..StudyObserver::default() };
+    shard::write(shard, &arguments.common, &points, |indices| {
+        let runs = on_threads(threads, || search_runs(question, indices, &watch));
+        let runs = runs.map_err(refused)?;
+        let row = |index: &usize| runs.iter().find(|run| run.number == *index).map(Run::from_run);
+        Ok(indices.iter().map(row).collect())
+    })
 }
 
 fn search(

@@ -1,8 +1,11 @@
 //! `lindstedt simulate FILE` of a file with a main mass, `[primary]`.
 
+use crate::export::json::points::PrimaryPoint;
+use crate::export::json::shard::Shard;
 use crate::export::{json, primary};
 use crate::impact::primary::{
-    PrimaryError, PrimaryParameter, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary,
+    PrimaryCase, PrimaryError, PrimaryParameter, PrimaryRow, PrimarySettings, PrimaryStop,
+    simulate_primary, sweep_primary,
 };
 use crate::impact::sweep::{Axis, grid_size, grid_values};
 use crate::problem::Problem;
@@ -13,7 +16,10 @@ use super::answer::{Answer, Draw, no_such};
 use super::files::width;
 use super::progress::{MOTIONS, PartsBar};
 use super::session;
-use super::simulate::{SimulateArguments, check_format, check_samples, check_varied};
+use super::shard::{self, Points};
+use super::simulate::{
+    SimulateArguments, TOGETHER, check_format, check_samples, check_varied, inputs,
+};
 use super::{Failure, Format, Outcome, json_text};
 
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
@@ -83,10 +89,26 @@ fn run_sweep(
         motions.push((file.case, settings));
         units.push(file.units);
     }
-    let bar = PartsBar::new(total, MOTIONS);
-    let rows = sweep_primary(&motions, |done| bar.advance(done))
-        .map_err(|(number, error)| Failure::because(format!("motion {}: {error}", number + 1)))?;
-    bar.finish();
+    if let Some(shard) = asked.shard.shard {
+        return write_shard(shard, asked, &motions);
+    }
+    let rows = match shard::known::<PrimaryPoint>(total)? {
+        Some(rows) => {
+            let read = |(index, (row, (case, _))): (usize, (&PrimaryPoint, &Followed))| {
+                row.read(case).ok_or_else(|| shard::unreadable(index))
+            };
+            rows.iter().zip(&motions).enumerate().map(read).collect::<Result<_, _>>()?
+        }
+        None => {
+            let bar = PartsBar::new(total, MOTIONS);
+            let rows =
+                sweep_primary(&motions, |done| bar.advance(done)).map_err(|(number, error)| {
+                    Failure::because(format!("motion {}: {error}", number + 1))
+                })?;
+            bar.finish();
+            rows
+        }
+    };
     let report = PrimarySweepReport { axes, parameters: &parameters, rows: &rows, units: &units };
     let draw: Draw = &|| Ok(primary::sweep_picture(&report)?);
     let answer = Answer {
@@ -124,4 +146,30 @@ fn check_sweep(asked: &SimulateArguments) -> Result<(), Failure> {
         ));
     }
     check_varied(&asked.sweep)
+}
+
+/// A motion and how it is followed.
+type Followed = (PrimaryCase, PrimarySettings);
+
+/// The lines of the motions of a shard.
+fn write_shard(
+    shard: Shard,
+    asked: &SimulateArguments,
+    motions: &[Followed],
+) -> Result<Outcome, Failure> {
+    let points = Points {
+        total: motions.len(),
+        together: TOGETHER,
+        bar: MOTIONS,
+        inputs: &|index| inputs(&asked.sweep, index),
+    };
+    shard::write(shard, &asked.common, &points, |indices| {
+        let own: Vec<Followed> = indices.iter().map(|index| motions[*index]).collect();
+        let rows = sweep_primary(&own, |_| ()).map_err(|(number, error)| {
+            Failure::because(format!("motion {}: {error}", indices[number] + 1))
+        })?;
+        let is_whole = |row: &&PrimaryRow| row.stop != PrimaryStop::Interrupted;
+        let row = |row| Some(row).filter(is_whole).map(PrimaryPoint::from_row);
+        Ok(rows.iter().map(row).collect())
+    })
 }

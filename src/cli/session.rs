@@ -10,6 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use serde_json::{Map, Value};
+
 use super::{Failure, Format};
 use crate::export::printable;
 use crate::{Counter, Interrupt, Progress, Supervision};
@@ -34,6 +36,16 @@ struct Asked {
     notes: Option<Vec<String>>,
     began: Option<Instant>,
     forms: Vec<(&'static str, String)>,
+    study: AskedStudy,
+}
+
+/// What a study that is split over shards is known by, and the rows of one that is put together.
+#[derive(Default)]
+struct AskedStudy {
+    command: Vec<String>,
+    /// The text of the file that the command read.
+    file: Option<String>,
+    rows: Option<Vec<Map<String, Value>>>,
 }
 
 /// The session of the program.
@@ -47,6 +59,7 @@ static OF_PROGRAM: Session = Session {
         notes: None,
         began: None,
         forms: Vec::new(),
+        study: AskedStudy { command: Vec::new(), file: None, rows: None },
     }),
 };
 
@@ -100,6 +113,7 @@ impl Session {
             notes: Some(Vec::new()),
             began: Some(Instant::now()),
             forms: Vec::new(),
+            study: AskedStudy::default(),
         };
         session
     }
@@ -127,6 +141,41 @@ impl Session {
     /// Takes the text that stands for standard input, where the caller gave one.
     pub(super) fn take_input(&self) -> Option<String> {
         locked(&self.asked).input.take()
+    }
+
+    /// Keeps the words by which the study of the command is known.
+    pub(super) fn begin_study(&self, command: Vec<String>) {
+        locked(&self.asked).study.command = command;
+    }
+
+    /// Keeps the text of the first file that is read, which is that of the problem.
+    pub(super) fn keep_file(&self, text: &str) {
+        locked(&self.asked).study.file.get_or_insert_with(|| text.to_owned());
+    }
+
+    /// Returns the words by which the study is known, and the text of its file.
+    pub(super) fn study(&self) -> (Vec<String>, Option<String>) {
+        let study = &locked(&self.asked).study;
+        (study.command.clone(), study.file.clone())
+    }
+
+    /// Makes this the session of a command that was split: its words, the text that `-` stands for,
+    /// and the rows of its points.
+    pub(super) fn repeat(
+        &self,
+        command: Vec<String>,
+        file: Option<String>,
+        rows: Vec<Map<String, Value>>,
+    ) {
+        let mut asked = locked(&self.asked);
+        asked.words = command.clone();
+        asked.input = file;
+        asked.study = AskedStudy { command, file: None, rows: Some(rows) };
+    }
+
+    /// Takes the rows of the points, where they are known.
+    pub(super) fn take_rows(&self) -> Option<Vec<Map<String, Value>>> {
+        locked(&self.asked).study.rows.take()
     }
 
     /// Whether this session is inside another process, whose standard input is not read.

@@ -4,18 +4,21 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::export::json;
+use crate::export::json::points::SweepPoint;
+use crate::export::json::shard::Shard;
 use crate::export::simulation::{
     Report, SweepReport, csv, figure, html, latex, sweep_csv, sweep_html, sweep_text, text,
 };
 use crate::export::text::fitted;
 use crate::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use crate::impact::{
-    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline,
-    known_until, simulate,
+    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, SimulationError,
+    SimulationStop, Start, baseline, known_until, simulate,
 };
 use crate::problem::{Problem, ProblemError, Simulate};
 use crate::verify::Verdict;
 use clap::{Args, ValueEnum};
+use serde_json::{Map, Value};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::files::width;
@@ -23,6 +26,7 @@ use super::primary;
 use super::problem::problem;
 use super::progress::{MOTIONS, PartsBar};
 use super::session;
+use super::shard::{self, Points, ShardArguments};
 use super::trajectory;
 use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
@@ -80,6 +84,8 @@ pub struct SimulateArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     #[command(flatten)]
+    pub(super) shard: ShardArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -119,6 +125,11 @@ impl Work for SimulateArguments {
 }
 
 fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
+    if arguments.shard.shard.is_some() && arguments.sweep.is_empty() {
+        return Err(Failure::Usage(
+            "--shard splits a sweep: leave it out, or give --sweep".to_owned(),
+        ));
+    }
     let problem = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,
@@ -384,8 +395,8 @@ fn add_baseline(
     rows: &mut [Summary],
     motions: &[(Model, Start)],
     settings: &Settings,
-    follow: impl Fn(&[(Model, Start)], &Settings) -> Result<Vec<Summary>, Failure>,
-) -> Result<(), Failure> {
+    follow: impl Fn(&[(Model, Start)], &Settings) -> Result<Vec<Summary>, (usize, SimulationError)>,
+) -> Result<(), (usize, SimulationError)> {
     let longer = Settings { duration: BASELINE_DURATIONS * settings.duration, ..*settings };
     let others = |change: fn(Model) -> Model| {
         let changed: Vec<_> =
@@ -400,28 +411,95 @@ fn add_baseline(
     Ok(())
 }
 
-fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
-    check_sweep(arguments)?;
-    let (motions, settings) = motions(arguments, problem)?;
+/// A row for every motion of a sweep.
+fn follow_all(
+    arguments: &SimulateArguments,
+    motions: &[(Model, Start)],
+    settings: &Settings,
+) -> Result<Vec<Summary>, Failure> {
     let total = motions.len();
     let bar = PartsBar::new(if arguments.baseline { 3 * total } else { total }, MOTIONS);
+    let rows = follow(arguments, motions, settings, |done| bar.advance(done));
+    bar.finish();
+    rows.map_err(|(number, error)| Failure::because(format!("motion {}: {error}", number + 1)))
+}
+
+/// A row for each of these motions, with its baseline where that is asked for; `progress` is called
+/// with the number of motions newly done.
+fn follow(
+    arguments: &SimulateArguments,
+    motions: &[(Model, Start)],
+    settings: &Settings,
+    progress: impl Fn(usize) + Sync,
+) -> Result<Vec<Summary>, (usize, SimulationError)> {
     let route = match arguments.chain {
         true => Integrator::Chain,
         false => Integrator::Taylor,
     };
-    let progress = |done: usize| bar.advance(done);
-    let follow = |motions: &[(Model, Start)], settings: &Settings| {
-        match arguments.jobs {
-            Some(threads) => sweep_on(usize::from(threads), motions, route, settings, progress),
-            None => sweep(motions, route, settings, progress),
-        }
-        .map_err(|(number, error)| Failure::because(format!("motion {}: {error}", number + 1)))
+    let follow = |motions: &[(Model, Start)], settings: &Settings| match arguments.jobs {
+        Some(threads) => sweep_on(usize::from(threads), motions, route, settings, &progress),
+        None => sweep(motions, route, settings, &progress),
     };
-    let mut rows: Vec<Summary> = follow(&motions, &settings)?;
+    let mut rows = follow(motions, settings)?;
     if arguments.baseline {
-        add_baseline(&mut rows, &motions, &settings, follow)?;
+        add_baseline(&mut rows, motions, settings, follow)?;
     }
-    bar.finish();
+    Ok(rows)
+}
+
+/// The values of the parameters of a point, by their names.
+pub(super) fn inputs(axes: &[Axis], index: usize) -> Map<String, Value> {
+    let names = axes.iter().map(|axis| axis.name().to_owned());
+    names.zip(grid_values(axes, index).into_iter().map(Value::from)).collect()
+}
+
+/// The number of motions of a shard that are followed together: enough for all cores, and few enough
+/// that a shard that is killed has written most of its lines.
+pub(super) const TOGETHER: usize = 256;
+
+/// The lines of the motions of a shard.
+fn write_shard(
+    shard: Shard,
+    arguments: &SimulateArguments,
+    motions: &[(Model, Start)],
+    settings: &Settings,
+) -> Result<Outcome, Failure> {
+    let points = Points {
+        total: motions.len(),
+        together: TOGETHER,
+        bar: MOTIONS,
+        inputs: &|index| inputs(&arguments.sweep, index),
+    };
+    shard::write(shard, &arguments.common, &points, |indices| {
+        let own: Vec<_> = indices.iter().map(|index| motions[*index]).collect();
+        let rows = follow(arguments, &own, settings, |_| ()).map_err(|(number, error)| {
+            Failure::because(format!("motion {}: {error}", indices[number] + 1))
+        })?;
+        let is_cut = |row: &Summary| {
+            let interrupted = matches!(row.stop, SimulationStop::Interrupted { .. });
+            interrupted || arguments.baseline && settings.interrupt.is_requested()
+        };
+        let row = |row: &Summary| (!is_cut(row)).then(|| SweepPoint::from_summary(row));
+        Ok(rows.iter().map(row).collect())
+    })
+}
+
+fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
+    check_sweep(arguments)?;
+    let (motions, settings) = motions(arguments, problem)?;
+    let total = motions.len();
+    if let Some(shard) = arguments.shard.shard {
+        return write_shard(shard, arguments, &motions, &settings);
+    }
+    let rows = match shard::known::<SweepPoint>(total)? {
+        None => follow_all(arguments, &motions, &settings)?,
+        Some(rows) => {
+            let read = |(index, row): (usize, &SweepPoint)| {
+                row.read().ok_or_else(|| shard::unreadable(index))
+            };
+            rows.iter().enumerate().map(read).collect::<Result<_, _>>()?
+        }
+    };
     let report = SweepReport { axes: &arguments.sweep, rows: &rows };
     let draw: Option<Draw> = Some(&|| Ok(figure::sweep(&report)?));
     let picture = pictured(&arguments.common, draw);

@@ -1,6 +1,7 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
 use crate::Symbol;
+use crate::export::json::points::MotionPoint;
 use crate::export::{decimal, json, trajectory};
 use crate::expr::Expr;
 use crate::impact::sweep::{grid_size, grid_values};
@@ -19,7 +20,8 @@ use super::files::width;
 use super::problem::{expression, value_name};
 use super::progress::{MOTIONS, PartsBar};
 use super::session;
-use super::simulate::{Method, SimulateArguments, check_format, check_samples};
+use super::shard::{self, Points};
+use super::simulate::{Method, SimulateArguments, TOGETHER, check_format, check_samples, inputs};
 use super::{Failure, Format, Outcome, json_text, values_of};
 
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
@@ -282,10 +284,45 @@ fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Ou
     }
     let total = grid_size(&asked.sweep)?;
     let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(&asked.sweep, number)).collect();
-    let bar = PartsBar::new(total, MOTIONS);
-    let motions = sweep(course, &names, &grid, || bar.advance(1))
-        .map_err(|(number, error)| refused(error).within(&format!("motion {}", number + 1)))?;
-    bar.finish();
+    let failed = |number: usize, error: TrajectoryError| {
+        refused(error).within(&format!("motion {}", number + 1))
+    };
+    if let Some(shard) = asked.shard.shard {
+        let points = Points {
+            total,
+            together: TOGETHER,
+            bar: MOTIONS,
+            inputs: &|index| inputs(&asked.sweep, index),
+        };
+        return shard::write(shard, common, &points, |indices| {
+            let own: Vec<Vec<f64>> = indices.iter().map(|index| grid[*index].clone()).collect();
+            let motions = sweep(course, &names, &own, || ())
+                .map_err(|(number, error)| failed(indices[number], error))?;
+            // After an interrupt there are fewer motions than were asked for.
+            let whole = motions.iter().filter(|motion| motion.reason != PathEnd::Interrupted);
+            let whole: Vec<&SweptMotion> = whole.collect();
+            let row = |values: &Vec<f64>| {
+                let motion = whole.iter().find(|motion| motion.values == *values)?;
+                Some(MotionPoint::from_motion(motion))
+            };
+            Ok(own.iter().map(row).collect())
+        });
+    }
+    let motions = match shard::known::<MotionPoint>(total)? {
+        Some(rows) => {
+            let read = |(index, row): (usize, &MotionPoint)| {
+                row.read(grid[index].clone()).ok_or_else(|| shard::unreadable(index))
+            };
+            rows.iter().enumerate().map(read).collect::<Result<_, _>>()?
+        }
+        None => {
+            let bar = PartsBar::new(total, MOTIONS);
+            let motions = sweep(course, &names, &grid, || bar.advance(1))
+                .map_err(|(number, error)| failed(number, error))?;
+            bar.finish();
+            motions
+        }
+    };
     let report = MotionSweep { course, names: &names, motions: &motions };
     let answer = Answer {
         document: &report::motion_sweep(&report),

@@ -17,11 +17,13 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/motion-sweep/1": ("motion_sweep", ("MotionSweep",)),
     "lindstedt/motion/1": ("motion", ("Motion",)),
     "lindstedt/optimization/1": ("optimization", ("Optimization",)),
+    "lindstedt/point/1": ("point", ("Point",)),
     "lindstedt/primary-sweep/1": ("primary_sweep", ("PrimarySweep",)),
     "lindstedt/primary/1": ("primary", ("Primary",)),
     "lindstedt/response/1": ("response", ("Response",)),
     "lindstedt/simulation/1": ("simulation", ("Simulation",)),
     "lindstedt/solution/1": ("solution", ("Solution",)),
     "lindstedt/stability/1": ("stability", ("Stability",)),
+    "lindstedt/study/1": ("study", ("Study",)),
     "lindstedt/sweep/1": ("sweep", ("Sweep",)),
 }

@@ -11,8 +11,8 @@ use super::{
     AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
     DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactComparisonDocument,
     ImpactDocument, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
-    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
+    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -40,6 +40,8 @@ impl DocumentKind {
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
             Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
+            Self::Study => generator.into_root_schema_for::<StudyDocument>(),
+            Self::Point => generator.into_root_schema_for::<PointDocument>(),
         };
         schema.insert("$id".to_owned(), format!("urn:{}", self.schema().replace('/', ":")).into());
         schema.insert("title".to_owned(), self.schema().into());

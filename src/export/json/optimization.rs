@@ -665,7 +665,8 @@ impl Genetic {
 }
 
 impl Run {
-    fn from_run(run: &SearchRun) -> Self {
+    /// The document of a run.
+    pub fn from_run(run: &SearchRun) -> Self {
         Self {
             number: run.number,
             found: run.found.clone(),
@@ -677,7 +678,8 @@ impl Run {
         }
     }
 
-    fn read(self) -> Option<SearchRun> {
+    /// The run again; `None` if it ended for an unknown reason.
+    pub fn read(self) -> Option<SearchRun> {
         Some(SearchRun {
             number: self.number,
             found: self.found,

@@ -43,11 +43,15 @@ pub enum DocumentKind {
     Catalog,
     /// `certify`.
     Certificate,
+    /// The first line of a shard.
+    Study,
+    /// Another line of a shard.
+    Point,
 }
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -67,6 +71,8 @@ impl DocumentKind {
         Self::Audit,
         Self::Catalog,
         Self::Certificate,
+        Self::Study,
+        Self::Point,
     ];
 
     /// The name of the schema, and its file.
@@ -101,6 +107,8 @@ impl DocumentKind {
             Self::Certificate => {
                 ["lindstedt/certificate/1", include_str!("schemas/certificate.json")]
             }
+            Self::Study => ["lindstedt/study/1", include_str!("schemas/study.json")],
+            Self::Point => ["lindstedt/point/1", include_str!("schemas/point.json")],
         }
     }
 

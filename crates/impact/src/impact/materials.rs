@@ -302,6 +302,20 @@ pub struct MaterialStudy {
     pub held_fixed: Vec<HeldFixed>,
 }
 
+/// The motions of one material, from which its part of a study follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialMotions {
+    /// The first contact; `None` if the barrier is not touched, or not left again.
+    pub first: Option<FirstContact>,
+    /// The motion until it rests.
+    pub course: MotionToRest,
+    /// The rest time of the same barrier without loss, in units of 1/omega.
+    pub lossless: Result<f64, NoRest>,
+    /// The rest time under every form of the contact damping, the given one first, in units of
+    /// 1/omega; empty if its contact is lossless or does not occur.
+    pub held: Vec<Result<f64, NoRest>>,
+}
+
 /// Follows the motion for every material of a study.
 ///
 /// # Errors
@@ -318,45 +332,114 @@ pub struct MaterialStudy {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, MaterialsError> {
-    if question.materials.is_empty() {
-        return Err(MaterialsError::NoMaterial);
-    }
-    let case = question.case;
-    let (model, start) = case.motion()?;
-    let units = Units {
-        mass: case.design.mass,
-        length: case.design.length,
-        gravity: case.design.gravity,
-        radius: Some(case.design.radius),
-        modulus: None,
-        sphere_yield: question.sphere_yield,
-        barrier_yield: None,
+    let motions = (0..question.materials.len()).map(|number| material_motions(&question, number));
+    let motions = motions.collect::<Result<_, _>>()?;
+    study_from_motions(question, motions)
+}
+
+/// Follows the motions of the material of this number, counted from 0; they do not depend on the
+/// other materials.
+///
+/// # Errors
+/// As [`study_materials`]; a material that does not exist has no motions.
+pub fn material_motions(
+    question: &MaterialQuestion,
+    number: usize,
+) -> Result<MaterialMotions, MaterialsError> {
+    let material = question.materials.get(number).ok_or(MaterialsError::NoMaterial)?;
+    let StudyDesign { model: design, units, dissipation, .. } = StudyDesign::new(question)?;
+    let (model, start) = MaterialQuestion::motion_of(material, &question.own_case(material))?;
+    let course = course(&model, start, question.integrator, &question.settings)?;
+    let first = match course.impacts.first() {
+        Some(impact) => first_contact(impact, &model, start, question, &units)?,
+        None => None,
     };
-    let dissipation = case.dissipation(Some(&units))?;
-    let rows = question.materials.iter().map(|material| row(&question, &units, material));
-    let rows: Vec<MaterialRow> = rows.collect::<Result<_, _>>()?;
-    let without = Model { left: None, right: None, ..model };
-    let loses = model.mu > 0.0 && rows.iter().any(|row| row.first.is_some());
-    let held_fixed = match loses {
-        true => held_fixed(&question, &dissipation)?,
+    let lossless = Model { mu: 0.0, ..model };
+    let longer = with_longer_duration(&question.settings);
+    let lossless = self::course(&lossless, start, question.integrator, &longer)?.rest_time;
+    let held = match design.mu > 0.0 && first.is_some() {
+        true => rest_times_held_fixed(question, material, &dissipation)?,
         false => vec![],
     };
-    Ok(MaterialStudy {
-        units,
-        model,
-        start,
-        rows,
-        no_barrier: course(
-            &without,
-            start,
-            question.integrator,
-            &with_longer_duration(&question.settings),
-        )?
-        .rest_time,
-        dissipation,
-        held_fixed,
-        question,
-    })
+    Ok(MaterialMotions { first, course, lossless, held })
+}
+
+/// Makes the study of the motions of all its materials, in their order.
+///
+/// # Errors
+/// As [`study_materials`].
+///
+/// ```
+/// # use lindstedt_impact as lindstedt;
+/// use lindstedt::impact::{MaterialQuestion, material_motions, study_from_motions, study_materials};
+///
+/// let question = MaterialQuestion::default();
+/// let motions = (0..3).map(|number| material_motions(&question, number)).collect::<Result<_, _>>()?;
+/// assert_eq!(study_from_motions(question.clone(), motions)?, study_materials(question)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn study_from_motions(
+    question: MaterialQuestion,
+    motions: Vec<MaterialMotions>,
+) -> Result<MaterialStudy, MaterialsError> {
+    let StudyDesign { model, start, units, dissipation } = StudyDesign::new(&question)?;
+    let loses = model.mu > 0.0 && motions.iter().any(|motions| motions.first.is_some());
+    let (mut rows, mut held) = (Vec::new(), Vec::new());
+    for (material, motions) in question.materials.iter().zip(motions) {
+        held.push(match (loses, motions.held.is_empty()) {
+            // It is not touched itself, but another one is.
+            (true, true) => rest_times_held_fixed(&question, material, &dissipation)?,
+            _ => motions.held,
+        });
+        rows.push(row(
+            &question,
+            &units,
+            material,
+            motions.course,
+            motions.first,
+            motions.lossless,
+        )?);
+    }
+    let held_fixed = match loses {
+        true => held_fixed(&question, &dissipation, &held)?,
+        false => vec![],
+    };
+    let without = Model { left: None, right: None, ..model };
+    let longer = with_longer_duration(&question.settings);
+    let no_barrier = course(&without, start, question.integrator, &longer)?.rest_time;
+    Ok(MaterialStudy { units, model, start, rows, no_barrier, dissipation, held_fixed, question })
+}
+
+/// The design of a study, at its own modulus.
+struct StudyDesign {
+    model: Model,
+    start: Start,
+    units: Units,
+    dissipation: Dissipation,
+}
+
+impl StudyDesign {
+    /// The design of this question.
+    ///
+    /// # Errors
+    /// As [`study_materials`].
+    fn new(question: &MaterialQuestion) -> Result<Self, MaterialsError> {
+        if question.materials.is_empty() {
+            return Err(MaterialsError::NoMaterial);
+        }
+        let case = question.case;
+        let (model, start) = case.motion()?;
+        let units = Units {
+            mass: case.design.mass,
+            length: case.design.length,
+            gravity: case.design.gravity,
+            radius: Some(case.design.radius),
+            modulus: None,
+            sphere_yield: question.sphere_yield,
+            barrier_yield: None,
+        };
+        Ok(Self { model, start, units, dissipation: case.dissipation(Some(&units))? })
+    }
 }
 
 /// The settings of a motion that rests later.
@@ -395,15 +478,12 @@ fn row(
     question: &MaterialQuestion,
     units: &Units,
     material: &Material,
+    course: MotionToRest,
+    first: Option<FirstContact>,
+    lossless: Result<f64, NoRest>,
 ) -> Result<MaterialRow, MaterialsError> {
     let case = question.own_case(material);
-    let (model, start) = MaterialQuestion::motion_of(material, &case)?;
-    let course = course(&model, start, question.integrator, &question.settings)?;
-    let first = match course.impacts.first() {
-        Some(impact) => first_contact(impact, &model, start, question, units)?,
-        None => None,
-    };
-    let lossless = Model { mu: 0.0, ..model };
+    let (model, _) = MaterialQuestion::motion_of(material, &case)?;
     let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
     let checks = limits.into_iter().filter_map(|(body, limit)| {
         let limit = limit?;
@@ -414,13 +494,7 @@ fn row(
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(
-            &lossless,
-            start,
-            question.integrator,
-            &with_longer_duration(&question.settings),
-        )?
-        .rest_time,
+        lossless,
         course,
         material: material.clone(),
     })
@@ -466,13 +540,10 @@ fn first_contact(
     }))
 }
 
-/// The materials under every form of the damping of the design, the given one first.
-fn held_fixed(
-    question: &MaterialQuestion,
-    dissipation: &Dissipation,
-) -> Result<Vec<HeldFixed>, MaterialsError> {
+/// The forms of the damping of the design, the given one first, each with the speed at which a
+/// restitution is stated.
+fn forms(dissipation: &Dissipation) -> Vec<(ContactDamping, Option<f64>)> {
     let given = dissipation.contact;
-    let touch_speed = dissipation.touch_speed;
     let form = |form: Parameter| match form {
         Parameter::Mu => Some(ContactDamping::Mu(dissipation.mu)),
         Parameter::MuOverGamma => Some(ContactDamping::MuOverGamma(dissipation.mu_over_gamma)),
@@ -482,28 +553,59 @@ fn held_fixed(
         _ => None,
     };
     let others = ContactDamping::FORMS.into_iter().filter(|form| *form != given.form());
-    let forms = std::iter::once(given).chain(others.filter_map(form));
+    let with_speed = |damping: ContactDamping| match damping {
+        ContactDamping::Restitution(_) => {
+            (damping, dissipation.at_speed.or(dissipation.touch_speed))
+        }
+        _ => (damping, None),
+    };
+    std::iter::once(given).chain(others.filter_map(form)).map(with_speed).collect()
+}
+
+/// The case of a material under a form of the damping of the design.
+fn case_held_fixed(
+    question: &MaterialQuestion,
+    material: &Material,
+    (damping, at_speed): (ContactDamping, Option<f64>),
+) -> Case {
+    Case { speed_unit: SpeedUnit::RadOmega, ..question.case_of(material, damping, at_speed) }
+}
+
+/// The rest times of a material under every form of the damping of the design.
+fn rest_times_held_fixed(
+    question: &MaterialQuestion,
+    material: &Material,
+    dissipation: &Dissipation,
+) -> Result<Vec<Result<f64, NoRest>>, MaterialsError> {
+    let rest_time = |form| {
+        let case = case_held_fixed(question, material, form);
+        let (model, start) = MaterialQuestion::motion_of(material, &case)?;
+        Ok(course(&model, start, question.integrator, &question.settings)?.rest_time)
+    };
+    forms(dissipation).into_iter().map(rest_time).collect()
+}
+
+/// The materials under every form of the damping of the design, the given one first; `rest_times`
+/// are those of each material.
+fn held_fixed(
+    question: &MaterialQuestion,
+    dissipation: &Dissipation,
+    rest_times: &[Vec<Result<f64, NoRest>>],
+) -> Result<Vec<HeldFixed>, MaterialsError> {
     let mut found = Vec::new();
-    for damping in forms {
-        let at_speed = match damping {
-            ContactDamping::Restitution(_) => dissipation.at_speed.or(touch_speed),
-            _ => None,
-        };
+    for (number, (damping, at_speed)) in forms(dissipation).into_iter().enumerate() {
         let mut held = HeldFixed {
             damping,
             at_speed,
             ratios: vec![],
             restitutions: vec![],
-            rest_times: vec![],
+            rest_times: rest_times.iter().filter_map(|times| times.get(number).copied()).collect(),
         };
         for material in &question.materials {
-            let mut case = question.case_of(material, damping, at_speed);
-            case.speed_unit = SpeedUnit::RadOmega;
-            let (model, start) = MaterialQuestion::motion_of(material, &case)?;
+            let case = case_held_fixed(question, material, (damping, at_speed));
+            let (model, _) = MaterialQuestion::motion_of(material, &case)?;
             held.ratios.push(model.mu / model.gamma);
             held.restitutions.push(case.dissipation(None)?.restitution);
-            held.rest_times
-                .push(course(&model, start, question.integrator, &question.settings)?.rest_time);
         }
         found.push(held);
     }
@@ -562,10 +664,7 @@ impl MaterialStudy {
         let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
         let case = match held {
             None => self.question.own_case(material),
-            Some(held) => Case {
-                speed_unit: SpeedUnit::RadOmega,
-                ..self.question.case_of(material, held.damping, held.at_speed)
-            },
+            Some(held) => case_held_fixed(&self.question, material, (held.damping, held.at_speed)),
         };
         let (model, start) = MaterialQuestion::motion_of(material, &case)?;
         self.follow(&model, start, duration)

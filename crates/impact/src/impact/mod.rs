@@ -117,8 +117,8 @@ pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
     DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
-    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest, course,
-    default_lambda, study_materials,
+    MaterialMotions, MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest,
+    course, default_lambda, material_motions, study_from_motions, study_materials,
 };
 pub use model::{
     DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,

@@ -42,4 +42,5 @@ pub use question::{DEFAULT_BOX, Limit, OptimizationProblem, OptimizeError, Varia
 pub use study::optimize_on;
 pub use study::{
     BaselineSearch, Finalist, FiveNumberSummary, Found, SearchRun, Study, StudyObserver, optimize,
+    search_runs,
 };

@@ -290,6 +290,24 @@ impl OptimizationProblem {
     }
 }
 
+/// The runs of these numbers alone, in that order, on all threads of the current pool; those that
+/// an interrupt ended, or kept from beginning, are left out.
+///
+/// # Errors
+/// [`OptimizeError`]: options that are not admissible.
+pub fn search_runs(
+    question: &OptimizationProblem,
+    numbers: &[usize],
+    watch: &StudyObserver,
+) -> Result<Vec<SearchRun>, OptimizeError> {
+    let space = question.check()?;
+    let one = |&number: &usize| {
+        let run = (!(watch.stop)()).then(|| question.run(&space, number, watch))?;
+        (run.stop != GeneticStop::Interrupted).then_some(run)
+    };
+    Ok(par_map(numbers, one).into_iter().flatten().collect())
+}
+
 /// Searches: all runs but those that are known already, on all threads of the current pool.
 ///
 /// # Errors

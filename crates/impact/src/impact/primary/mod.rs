@@ -152,6 +152,8 @@ pub struct PrimaryEnergy {
 
 /// The reason why a motion ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PrimaryStop {
     /// The end of the duration.

@@ -90,6 +90,8 @@ impl Default for Settings {
 
 /// The reason why a run ended. Everything before is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum SimulationStop {
     /// The end of the duration.
     Duration,
@@ -197,6 +199,7 @@ impl fmt::Display for SimulationStop {
 
 /// One contact with a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ContactRecord {
     /// The side of the barrier.

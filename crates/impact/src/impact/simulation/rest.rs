@@ -58,6 +58,8 @@ pub struct Rest {
 
 /// The reason why there is no rest time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum NoRest {
     /// The motion has not become small enough.

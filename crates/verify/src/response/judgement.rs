@@ -219,9 +219,13 @@ impl PreparedRequest<'_> {
         const EACH: usize = 6;
         const MOST: usize = 30;
         /// Disturbances, relative to the size of the motion; a smaller one is used if the one before
-        /// leads to another motion, as it may beside a motion that just does not touch a stop.
-        const DISTURBANCES: [f64; 3] = [1e-2, 1e-5, 1e-8];
+        /// leads to another motion, as it may beside a motion that just does not touch a stop. The
+        /// last one is that of orbits by shooting, whose starts are known to more digits.
+        const DISTURBANCES: [f64; 4] = [1e-2, 1e-5, 1e-8, 1e-11];
+        /// Errors beyond which a simulation has settled on another motion: beside points of a
+        /// balance, and beside orbits by shooting.
         const OTHER: f64 = 0.05;
+        const OTHER_THAN_ORBIT: f64 = 1e-3;
         const PERIODS: f64 = 1500.0;
         if self.driven.undamped {
             return vec![];
@@ -231,14 +235,22 @@ impl PreparedRequest<'_> {
             .flat_map(|branch| &branch.points)
             .map(|point| point.peak)
             .fold(0.0, f64::max);
+        // An orbit by shooting is known too well to be mistaken for one beside it.
+        let (other, disturbances) = match self.period_series {
+            Some(_) => (OTHER_THAN_ORBIT, &DISTURBANCES[..]),
+            None => (OTHER, &DISTURBANCES[..3]),
+        };
         let mut budget = self.budget();
         let parts = branches
             .iter()
             .flat_map(|branch| branch.points.chunk_by(|one, other| one.stable == other.stable))
             .filter(|part| part.first().is_some_and(|point| point.stable == Some(true)));
-        let chosen = parts.flat_map(|part| {
-            let steps = EACH.min(part.len());
-            (0..steps).map(move |index| &part[(2 * index + 1) * part.len() / (2 * steps)])
+        let chosen = parts.flat_map(|part| match self.period_series {
+            Some(_) => self.spread_over(part, EACH, size),
+            None => {
+                let steps = EACH.min(part.len());
+                (0..steps).map(|index| &part[(2 * index + 1) * part.len() / (2 * steps)]).collect()
+            }
         });
         // Each point with the number of periods in which its disturbance decays.
         let decaying = chosen.filter_map(|point| {
@@ -255,10 +267,11 @@ impl PreparedRequest<'_> {
             if found.len() >= MOST || self.question.interrupt.is_requested() {
                 break;
             }
-            let is_near =
-                |simulated: &Option<Simulated>| simulated.is_some_and(|it| it.error <= OTHER);
+            let is_near = |simulated: &Option<Simulated>| {
+                simulated.is_some_and(|simulated| simulated.error <= other)
+            };
             let mut nearest = vec![None; points.len()];
-            for disturbance in DISTURBANCES {
+            for &disturbance in disturbances {
                 let left: Vec<usize> =
                     (0..points.len()).filter(|index| !is_near(&nearest[*index])).collect();
                 let beside: Vec<_> = left.iter().map(|index| points[*index]).collect();
@@ -271,6 +284,38 @@ impl PreparedRequest<'_> {
         }
         found.truncate(MOST);
         found
+    }
+
+    /// Chooses at most so many points of a part of a branch, at equal distances along it: where a
+    /// motion begins to touch a stiff stop the branch turns sharply, and half of its points lie
+    /// there. `size` is that of the largest motion. Linear in the number of points.
+    fn spread_over<'a>(
+        &self,
+        part: &'a [SteadyMotion],
+        most: usize,
+        size: f64,
+    ) -> Vec<&'a SteadyMotion> {
+        let [low, high] = self.question.range;
+        let mut way = 0.0;
+        let mut ways = vec![way];
+        ways.extend(part.windows(2).map(|pair| {
+            let parameter = (pair[1].parameter - pair[0].parameter) / (high - low);
+            way += parameter.hypot((pair[1].peak - pair[0].peak) / size);
+            way
+        }));
+        let steps = most.min(part.len());
+        let nearest = |step: usize| {
+            let there = way * (2 * step + 1) as f64 / (2 * steps) as f64;
+            let behind = ways.partition_point(|way| *way < there).min(part.len() - 1);
+            match behind {
+                0 => 0,
+                _ if there - ways[behind - 1] < ways[behind] - there => behind - 1,
+                _ => behind,
+            }
+        };
+        let mut chosen: Vec<usize> = (0..steps).map(nearest).collect();
+        chosen.dedup();
+        chosen.into_iter().map(|index| &part[index]).collect()
     }
 
     /// Simulations beside points, each over its number of periods, from starts that are moved by

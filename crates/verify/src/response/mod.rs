@@ -308,8 +308,11 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
         return asked.balanced_response();
     }
     let shot = asked.shot_response();
+    // A balance of points that are right already would have no smaller errors.
     let is_answer = match &shot {
-        Ok(response) => response.verdict == Verdict::Pass || !response.complete,
+        Ok(response) => {
+            response.verdict == Verdict::Pass || !response.complete || response.has_right_points()
+        }
         Err(_) => question.interrupt.is_requested(),
     };
     if is_answer {
@@ -327,6 +330,15 @@ impl ResponseDiagram {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
+    }
+
+    /// Whether every point is within the tolerance of a true motion, and no motion is missed.
+    fn has_right_points(&self) -> bool {
+        let mut points = self.branches.iter().flat_map(|branch| &branch.points);
+        let is_right = |point: &SteadyMotion| {
+            point.error.is_some_and(|error| error <= self.question.tolerance)
+        };
+        points.all(is_right) && !self.elsewhere.iter().any(|place| place.periods == Some(1))
     }
 
     /// This response with the largest error of its points and simulations, and the verdict on it.

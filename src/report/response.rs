@@ -228,6 +228,9 @@ fn end_in_words(
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),
+        BranchEnd::Lost if response.by_map => format!(
+            "It could not be followed beyond {place}: the motion begins to touch a corner of the force there, or the force has no value."
+        ),
         BranchEnd::Lost => format!(
             "It could not be followed beyond {place}: the force has a jump or no value there."
         ),

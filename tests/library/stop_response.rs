@@ -2,7 +2,8 @@
 //! spring in pieces, and shooting with it.
 
 use lindstedt::response::bifurcation::BifurcationKind;
-use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
+use lindstedt::response::continuation::BranchEnd;
+use lindstedt::response::{Branch, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::verify::Verdict;
 
 fn response(equation: &str, range: [f64; 2], values: &str) -> ResponseDiagram {
@@ -235,4 +236,98 @@ fn a_stiff_contact_changes_where_harmonic_balance_says() {
         assert!((one.parameter - parameter).abs() < 3e-5, "{one:?} {parameter}");
         assert!((one.peak / peak - 1.0).abs() < 2e-3, "{one:?} {peak}");
     }
+}
+
+/// The discriminant of the impact speed of a motion that meets a rigid wall once a period of the
+/// drive, without loss: the free motion in between is that of `x'' + c x' + x = F cos(omega t)`
+/// which comes back with the same speed. It is zero at a fold.
+///
+/// ```text
+/// m1 = -b + w s,  m2 = E (-b (C + s S) + w (s C - S)),  s = (1/E - C)/S,  E = exp(-b T),  b = c/2,  C + i S = exp(i w T)
+/// (d - g v)^2 + (v (1 - m2 g)/omega)^2 = X^2,   g = 2/(m2 - m1),   X = F/abs(1 - omega^2 + i c omega)
+/// ```
+fn discriminant_at_rigid_wall([damping, drive, wall]: [f64; 3], omega: f64) -> f64 {
+    let period = std::f64::consts::TAU / omega;
+    let half = 0.5 * damping;
+    let own = (1.0 - half * half).sqrt();
+    let decay = (-half * period).exp();
+    let (sine, cosine) = (own * period).sin_cos();
+    let slope = (1.0 / decay - cosine) / sine;
+    let after = -half + own * slope;
+    let before = decay * (-half * (cosine + slope * sine) + own * (slope * cosine - sine));
+    let gain = 2.0 / (before - after);
+    let free = drive / (1.0 - omega * omega).hypot(damping * omega);
+    let square = gain * gain + ((1.0 - before * gain) / omega).powi(2);
+    wall * wall * gain * gain - square * (wall * wall - free * free)
+}
+
+/// A stiff contact tends to a rigid wall as `g^(-2/5)`, the depth of Hertz's contact, and the free
+/// motion touches the stop where its amplitude is the gap. One branch passes every touch.
+#[test]
+fn a_stiff_contact_tends_to_a_rigid_wall_through_every_grazing() {
+    let contact = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - F*cos(Omega*t) = 0";
+    let rigid = |[mut low, mut high]: [f64; 2]| {
+        let value = |omega: f64| discriminant_at_rigid_wall([0.1, 0.3, 0.5], omega);
+        let sign = value(low).signum();
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if value(middle) * sign > 0.0 { low = middle } else { high = middle }
+        }
+        low
+    };
+    let followed = |range: [f64; 2], stiffness: &str| {
+        let found = response(contact, range, &format!("F = 3/10, g = {stiffness}"));
+        assert_eq!(found.verdict, Verdict::Pass, "{stiffness}: {:?}", found.error);
+        assert!(found.error.is_some_and(|error| error < 1e-4), "{stiffness}: {:?}", found.error);
+        assert!(found.by_map && found.unjudged == 0);
+        let range_to_range = |branch: &Branch| branch.ends == [BranchEnd::Range; 2];
+        assert!(found.branches.iter().all(range_to_range), "{stiffness}");
+        found
+    };
+    let folds = |found: &ResponseDiagram| -> Vec<f64> {
+        let folds = found.bifurcations.iter();
+        let folds = folds.filter(|found| found.kind == BifurcationKind::Fold);
+        folds.map(|fold| fold.parameter).collect()
+    };
+    let nearest = |folds: &[f64], to: f64| {
+        let apart = folds.iter().map(|fold| (fold - to).abs());
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    // (1 - omega^2)^2 + omega^2/100 = (F/d)^2
+    let [first_touch, last_touch] = [-1.0, 1.0].map(|sign: f64| {
+        let root = (1.99_f64 * 1.99 - 4.0 * 0.64).sqrt();
+        (0.5 * (1.99 + sign * root)).sqrt()
+    });
+    for (range, bracket, touch) in
+        [([0.5, 0.7], [0.5375, 0.538], first_touch), ([1.2, 1.8], [1.775, 1.776], last_touch)]
+    {
+        let wall = rigid(bracket);
+        let apart: Vec<f64> = ["1e6", "1e9"]
+            .into_iter()
+            .map(|stiffness| {
+                let folds = folds(&followed(range, stiffness));
+                assert!(nearest(&folds, touch) < 1e-5, "{stiffness}: {folds:?} {touch}");
+                nearest(&folds, wall)
+            })
+            .collect();
+        let ratio = apart[0] / apart[1];
+        assert!((ratio / 1000_f64.powf(0.4) - 1.0).abs() < 0.05, "{apart:?}");
+    }
+}
+
+/// Two stiff stops that the symmetric motion touches at once: its branch goes on beyond, and the
+/// one of motions that lean to a side is listed once and does not go round for ever.
+#[test]
+fn a_motion_between_two_stiff_stops_is_followed_past_the_touch_of_both() {
+    let stops = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - g*max(-x - 0.5, 0)^1.5";
+    let found = response(&format!("{stops} - 0.3*cos(Omega*t) = 0"), [0.5, 1.1], "g = 1e4");
+    assert!(found.verdict == Verdict::Pass && found.unjudged == 0, "{:?}", found.error);
+    assert!(found.error.is_some_and(|error| error < 1e-3), "{:?}", found.error);
+    let is_followed = |branch: &Branch| !branch.ends.contains(&BranchEnd::Points);
+    assert!(found.branches.iter().all(is_followed));
+    // An odd motion has no even harmonics.
+    let is_odd = |point: &SteadyMotion| point.harmonics[0][0].abs() < 1e-6;
+    let through =
+        |branch: &Branch| branch.ends == [BranchEnd::Range; 2] && branch.points.iter().all(is_odd);
+    assert!(found.branches.iter().any(through));
 }

@@ -85,6 +85,8 @@ pub enum OrbitBranchEnd {
     Range,
     /// The branch has come back to its first orbit.
     Closed,
+    /// The branch has come back to another of its orbits, and would go round once more.
+    Joined,
     /// No step leads on, however small.
     Lost,
     /// The largest number of points was reached.
@@ -388,6 +390,10 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             if points.len() >= LEAST_TO_CLOSE && same_way && passes(&target, &from, &to) {
                 return Ended(Some(points[0].clone()), OrbitBranchEnd::Closed);
             }
+            if self.goes_round(&points[..points.len().saturating_sub(LEAST_TO_CLOSE)], here, &point)
+            {
+                return Ended(Some(point), OrbitBranchEnd::Joined);
+            }
             let ratio = match periods {
                 ..=FEW => 1.4,
                 _ if periods > MANY => 0.7,
@@ -398,12 +404,51 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         continuation::follow(first, FIRST * limits.longest, limits.longest, step)
     }
 
+    /// Whether the way from one orbit to the next passes one of these, which are known, as the branch
+    /// passed it then: where a branch has jumped to another one at a sharp crossing, it goes round
+    /// without coming back to its start. Costs a comparison of numbers for each known orbit.
+    fn goes_round(
+        &self,
+        known: &[OrbitPoint<Kept>],
+        here: &OrbitPoint<Kept>,
+        next: &OrbitPoint<Kept>,
+    ) -> bool {
+        /// Ratio to the step of the distance below which two orbits are one.
+        const SAME: f64 = 1e-3;
+        let (sizes, states) = ((self.sizes)(here), here.monodromy.nrows());
+        let from = here.unknowns.component_div(&sizes);
+        let way = next.unknowns.component_div(&sizes) - &from;
+        let length = way.norm();
+        let last = sizes.len() - 1;
+        let is_near = |point: &&OrbitPoint<Kept>| {
+            let beyond = (point.unknowns[last] / sizes[last] - from[last]) / length;
+            (-0.1..=1.1).contains(&(beyond * way[last].signum()))
+        };
+        known.iter().filter(is_near).any(|point| {
+            let target = point.unknowns.component_div(&sizes);
+            let along = (&target - &from).dot(&way) / (length * length);
+            let forward = point.tangent.component_div(&sizes).dot(&way) > 0.0;
+            if !forward || !passes(&target, &from, &(&from + &way)) {
+                return false;
+            }
+            // The orbit of the branch at right angles to the way through the known one.
+            let guess = &here.unknowns + (&next.unknowns - &here.unknowns) * along;
+            let found = self.corrected(&guess, &(&way / length), &sizes, states);
+            found.is_some_and(|(found, _)| {
+                (&found.unknowns - &point.unknowns).component_div(&sizes).norm() < SAME * length
+            })
+        })
+    }
+
     /// The orbit beyond a corner of the branch at this one, and its distance: where an orbit begins
     /// to touch a stiff stop the branch turns within less than the last digits of its unknowns.
     ///
     /// A little way ahead the derivatives are those of the orbits beyond, though no orbit is there:
     /// in their direction the touch does not change. The branch goes on that way on which the
-    /// orientation stays what it is, as it would on a round corner.
+    /// orientation stays what it is, as it would on a round corner. Where two stops are touched at
+    /// once, branches cross in the corner: those on which only one of them is touched are found a
+    /// little aside, and if the orientation stays on none of them, the branch goes on where it
+    /// changes.
     fn around_corner(
         &self,
         here: &OrbitPoint<Kept>,
@@ -413,12 +458,14 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         /// Ratio to the length of the distance between the orbit and the branch on this side, below
         /// which it lies on that.
         const ASIDE: f64 = 0.05;
+        /// Part of a unit vector by which the way ahead is turned aside.
+        const TURNED: f64 = 0.5;
         let (sizes, states) = ((self.sizes)(here), here.monodromy.nrows());
         let tangent = here.tangent.component_div(&sizes).normalize();
-        let beyond = |length: f64| {
-            let ahead = &here.unknowns + (&tangent * length).component_mul(&sizes);
-            let image = self.image(&ahead, states)?;
-            let (matrix, _) = Self::bordered(&image, &ahead, &tangent, &sizes);
+        let beyond = |length: f64, ahead: &DVector<f64>, keeps: bool| {
+            let there = &here.unknowns + (ahead * length).component_mul(&sizes);
+            let image = self.image(&there, states)?;
+            let (matrix, _) = Self::bordered(&image, &there, &tangent, &sizes);
             let rows = matrix.rows(0, matrix.nrows() - 1);
             let along = least_changed(&(rows.transpose() * rows), None)?;
             [1.0, -1.0].into_iter().find_map(|sign| {
@@ -428,14 +475,27 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
                 let way = (&point.unknowns - &here.unknowns).component_div(&sizes);
                 let aside = (&way - &tangent * way.dot(&tangent)).norm();
                 let [low, high] = limits.range;
-                let is_beyond = point.orientation == here.orientation
+                let is_beyond = (!keeps || point.orientation == here.orientation)
                     && (0.5 * length..1.5 * length).contains(&way.norm())
                     && aside > ASIDE * length
                     && (low..=high).contains(&point.parameter());
                 is_beyond.then_some((point, length))
             })
         };
-        LENGTHS.into_iter().find_map(beyond)
+        let turned = (0..states).flat_map(|state| [TURNED, -TURNED].map(|part| (state, part)));
+        let turned = turned.map(|(state, part)| {
+            let mut ahead = tangent.clone();
+            ahead[state] += part;
+            ahead.normalize()
+        });
+        let ways: Vec<DVector<f64>> = std::iter::once(tangent.clone()).chain(turned).collect();
+        let straight = LENGTHS.into_iter().find_map(|length| beyond(length, &tangent, true));
+        let aside = |keeps: bool| {
+            let all =
+                LENGTHS.into_iter().flat_map(|length| ways.iter().map(move |way| (length, way)));
+            { all }.find_map(|(length, way)| beyond(length, way, keeps))
+        };
+        straight.or_else(|| aside(true)).or_else(|| aside(false))
     }
 
     /// The end of a branch at a bound of the range between an orbit inside and one outside.
@@ -567,6 +627,36 @@ mod tests {
         assert_eq!(points.windows(2).map(turns).sum::<usize>(), 1);
         let (low, high) = (points[0].start()[0], points[points.len() - 1].start()[0]);
         assert!((low.max(high) - 1.0).abs() < 1e-9 && (low.min(high) + 1.0).abs() < 1e-9);
+    }
+
+    /// (r^2 - 1)(r^2 - 1.01) = 0 with r^2 = y^2 + p^2: two circles closer than a tenth of a step.
+    #[test]
+    fn a_branch_goes_round_where_it_passes_its_own_orbits_the_same_way() {
+        let map = scalar(|y, p| {
+            let square = y * y + p * p;
+            let slope = 2.0 * square - 2.01;
+            let value = (square - 1.0) * (square - 1.01);
+            [y + value, 1.0 + 2.0 * y * slope, 2.0 * p * slope]
+        });
+        let sizes = vector(&[1.0, 1.0]);
+        let equations = OrbitEquations {
+            period: 1.0,
+            map: &map,
+            keep: &|_, _| (),
+            sizes: &|_| vector(&[1.0, 1.0]),
+        };
+        let orbit = |square: f64, p: f64| {
+            let guess = vector(&[(square - p * p).sqrt()]);
+            equations.orbit_at(&guess, p, &sizes, 1).expect("an orbit")
+        };
+        let known = [orbit(1.0, 0.1)];
+        let [here, next] = [0.05, 0.15].map(|p| orbit(1.0, p));
+        assert!(equations.goes_round(&known, &here, &next));
+        // The other way, further on, and on the other circle.
+        assert!(!equations.goes_round(&known, &next, &here));
+        assert!(!equations.goes_round(&known, &next, &orbit(1.0, 0.25)));
+        let [here, next] = [0.05, 0.15].map(|p| orbit(1.01, p));
+        assert!(!equations.goes_round(&known, &here, &next));
     }
 
     /// y -> y + p y - y^3: y = 0 crosses p = y^2 at zero.

@@ -122,22 +122,32 @@ impl PreparedRequest<'_> {
     }
 
     /// A branch that begins at a crossing with another one returns from there as its own image:
-    /// that half is removed.
+    /// that half is removed. Shooting may also come to the other branch by a sharp crossing before
+    /// that one, where two stops are touched at once.
     fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
+        /// Largest number of crossings that are looked at.
+        const MOST: usize = 8;
         let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
-        let Some(index) = path.nodes.windows(2).position(turns) else {
-            return;
-        };
-        let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
-        let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
-        let image =
-            |node: &BranchNode| self.known_motion(balance, std::slice::from_ref(&half), node);
-        // The middle of that half, which is surely no longer than the first.
-        if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
-            path.mirrored = matches!(known, KnownMotion::Mirrored(_));
-            // The first point beyond stays, so that the crossing lies between two points.
-            path.nodes.truncate(index + 2);
-            path.ends[1] = BranchEnd::Crossing;
+        let turns = path.nodes.windows(2).enumerate().filter(|(_, pair)| turns(pair));
+        let turns: Vec<usize> = turns.map(|(index, _)| index).collect();
+        let looked_at = if self.period_series.is_some() { MOST } else { 1 };
+        for (count, &index) in turns.iter().enumerate().take(looked_at) {
+            let next = match self.period_series {
+                Some(_) => turns.get(count + 1).map_or(path.nodes.len(), |next| next + 1),
+                None => path.nodes.len(),
+            };
+            let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..next]);
+            let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
+            let image =
+                |node: &BranchNode| self.known_motion(balance, std::slice::from_ref(&half), node);
+            // The middle of that half, which is surely no longer than the first.
+            if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
+                path.mirrored = matches!(known, KnownMotion::Mirrored(_));
+                // The first point beyond stays, so that the crossing lies between two points.
+                path.nodes.truncate(index + 2);
+                path.ends[1] = BranchEnd::Crossing;
+                return;
+            }
         }
     }
 

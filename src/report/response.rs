@@ -82,9 +82,18 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
 
 /// The method that finds the branches.
 fn method(response: &ResponseDiagram) -> &'static str {
-    match response.by_map {
-        true => "the map of a period from jump to jump of the force",
-        false => "harmonic balance",
+    match (response.by_map, response.jumps) {
+        (true, true) => "the map of a period from jump to jump of the force",
+        (true, false) => "shooting, across the corners of the force",
+        (false, _) => "harmonic balance",
+    }
+}
+
+/// What judges the points of the branches.
+fn judge(response: &ResponseDiagram) -> &'static str {
+    match response.by_map && !response.jumps {
+        true => "a period by Runge-Kutta",
+        false => "shooting",
     }
 }
 
@@ -218,6 +227,9 @@ fn end_in_words(
         }
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
+        ),
+        BranchEnd::Lost if response.by_map => format!(
+            "It could not be followed beyond {place}: the motion begins to touch a corner of the force there, or the force has no value."
         ),
         BranchEnd::Lost => format!(
             "It could not be followed beyond {place}: the force has a jump or no value there."
@@ -467,10 +479,11 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
         "largest error",
         match response.error {
             Some(error) => format!(
-                "{} of the true {}, of {} points against shooting and {} against simulation",
+                "{} of the true {}, of {} points against {} and {} against simulation",
                 significant(error, 2),
                 if response.self_excited { "peak or frequency" } else { "peak" },
                 points - response.unjudged,
+                judge(response),
                 response.simulated.len()
             ),
             None => "unknown: no true motion was found".to_owned(),
@@ -479,7 +492,7 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     if response.unjudged > 0 {
         facts.push((
             "not judged",
-            format!("{} points: shooting found no true motion near", response.unjudged),
+            format!("{} points: {} found no true motion near", response.unjudged, judge(response)),
         ));
     }
     facts.push((

@@ -2,7 +2,8 @@
 //! spring in pieces, and shooting with it.
 
 use lindstedt::response::bifurcation::BifurcationKind;
-use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
+use lindstedt::response::continuation::BranchEnd;
+use lindstedt::response::{Branch, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::verify::Verdict;
 
 fn response(equation: &str, range: [f64; 2], values: &str) -> ResponseDiagram {
@@ -100,8 +101,8 @@ impl Pieces<'_> {
     }
 }
 
-/// A spring that grows stiffer at a stop has no jump, however it is written: one branch of harmonic
-/// balance, from end to end of the range.
+/// A spring that grows stiffer at a stop has no jump, however it is written: one branch, from end to
+/// end of the range.
 #[test]
 fn a_stop_is_no_jump_of_the_force() {
     let one: &[[f64; 2]] = &[[0.5, 20.0]];
@@ -114,7 +115,7 @@ fn a_stop_is_no_jump_of_the_force() {
     ] {
         let equation = format!("x'' + 0.2*x' + x + {force} = F*cos(Omega*t)");
         let found = response(&equation, [0.5, 3.0], &format!("F = {drive}"));
-        assert!(!found.by_map && !found.jumps, "{force}");
+        assert!(found.by_map && !found.jumps, "{force}");
         assert_eq!(found.verdict, Verdict::Pass, "{force}: {:?} {}", found.error, found.unjudged);
         assert_eq!(found.branches.len(), 1, "{force}");
         let points = &found.branches[0].points;
@@ -205,4 +206,131 @@ fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
             .any(|elsewhere| elsewhere.parameter == 1.3 && elsewhere.periods == Some(1))
     );
     assert_eq!(by_few.verdict, Verdict::Fail);
+}
+
+/// Where the branch of a stiff contact changes: by shooting as by harmonic balance of 64 harmonics,
+/// whose largest error is a hundredth of the peak, and whose list is pinned here.
+#[test]
+fn a_stiff_contact_changes_where_harmonic_balance_says() {
+    let contact = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - F*cos(Omega*t) = 0";
+    let found = response(contact, [0.5, 2.5], "F = 3/10, g = 1000");
+    assert!(found.verdict == Verdict::Pass && found.unjudged == 0, "{:?}", found.error);
+    assert!(found.error.is_some_and(|error| error < 1e-4), "{:?}", found.error);
+    assert_eq!(found.branches.len(), 1);
+    let (fold, doubling) = (BifurcationKind::Fold, BifurcationKind::PeriodDoubling);
+    let balanced = [
+        (fold, 0.63603, 0.497406),
+        (fold, 0.542911, 0.517282),
+        (doubling, 0.569118, 0.706413),
+        (doubling, 0.597183, 0.724462),
+        (fold, 0.623912, 0.747114),
+        (fold, 0.623416, 0.745302),
+        (doubling, 0.841558, 0.488883),
+        (doubling, 0.949831, 0.527011),
+        (fold, 1.70031, 1.55261),
+        (fold, 1.25951, 0.500463),
+    ];
+    assert_eq!(found.bifurcations.len(), balanced.len(), "{:?}", found.bifurcations);
+    for (one, (kind, parameter, peak)) in found.bifurcations.iter().zip(balanced) {
+        assert_eq!(one.kind, kind);
+        assert!((one.parameter - parameter).abs() < 3e-5, "{one:?} {parameter}");
+        assert!((one.peak / peak - 1.0).abs() < 2e-3, "{one:?} {peak}");
+    }
+}
+
+/// The discriminant of the impact speed of a motion that meets a rigid wall once a period of the
+/// drive, without loss: the free motion in between is that of `x'' + c x' + x = F cos(omega t)`
+/// which comes back with the same speed. It is zero at a fold.
+///
+/// ```text
+/// m1 = -b + w s,  m2 = E (-b (C + s S) + w (s C - S)),  s = (1/E - C)/S,  E = exp(-b T),  b = c/2,  C + i S = exp(i w T)
+/// (d - g v)^2 + (v (1 - m2 g)/omega)^2 = X^2,   g = 2/(m2 - m1),   X = F/abs(1 - omega^2 + i c omega)
+/// ```
+fn discriminant_at_rigid_wall([damping, drive, wall]: [f64; 3], omega: f64) -> f64 {
+    let period = std::f64::consts::TAU / omega;
+    let half = 0.5 * damping;
+    let own = (1.0 - half * half).sqrt();
+    let decay = (-half * period).exp();
+    let (sine, cosine) = (own * period).sin_cos();
+    let slope = (1.0 / decay - cosine) / sine;
+    let after = -half + own * slope;
+    let before = decay * (-half * (cosine + slope * sine) + own * (slope * cosine - sine));
+    let gain = 2.0 / (before - after);
+    let free = drive / (1.0 - omega * omega).hypot(damping * omega);
+    let square = gain * gain + ((1.0 - before * gain) / omega).powi(2);
+    wall * wall * gain * gain - square * (wall * wall - free * free)
+}
+
+/// A stiff contact tends to a rigid wall as `g^(-2/5)`, the depth of Hertz's contact, and the free
+/// motion touches the stop where its amplitude is the gap. One branch passes every touch.
+#[test]
+fn a_stiff_contact_tends_to_a_rigid_wall_through_every_grazing() {
+    let contact = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - F*cos(Omega*t) = 0";
+    let rigid = |[mut low, mut high]: [f64; 2]| {
+        let value = |omega: f64| discriminant_at_rigid_wall([0.1, 0.3, 0.5], omega);
+        let sign = value(low).signum();
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if value(middle) * sign > 0.0 { low = middle } else { high = middle }
+        }
+        low
+    };
+    let followed = |range: [f64; 2], stiffness: &str| {
+        let found = response(contact, range, &format!("F = 3/10, g = {stiffness}"));
+        assert_eq!(found.verdict, Verdict::Pass, "{stiffness}: {:?}", found.error);
+        assert!(found.error.is_some_and(|error| error < 1e-4), "{stiffness}: {:?}", found.error);
+        assert!(found.by_map && found.unjudged == 0);
+        let range_to_range = |branch: &Branch| branch.ends == [BranchEnd::Range; 2];
+        assert!(found.branches.iter().all(range_to_range), "{stiffness}");
+        found
+    };
+    let folds = |found: &ResponseDiagram| -> Vec<f64> {
+        let folds = found.bifurcations.iter();
+        let folds = folds.filter(|found| found.kind == BifurcationKind::Fold);
+        folds.map(|fold| fold.parameter).collect()
+    };
+    let nearest = |folds: &[f64], to: f64| {
+        let apart = folds.iter().map(|fold| (fold - to).abs());
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    // (1 - omega^2)^2 + omega^2/100 = (F/d)^2
+    let [first_touch, last_touch] = [-1.0, 1.0].map(|sign: f64| {
+        let root = (1.99_f64 * 1.99 - 4.0 * 0.64).sqrt();
+        (0.5 * (1.99 + sign * root)).sqrt()
+    });
+    for (range, bracket, touch) in
+        [([0.5, 0.7], [0.5375, 0.538], first_touch), ([1.2, 1.8], [1.775, 1.776], last_touch)]
+    {
+        let wall = rigid(bracket);
+        let apart: Vec<f64> = ["1e6", "1e9"]
+            .into_iter()
+            .map(|stiffness| {
+                let folds = folds(&followed(range, stiffness));
+                assert!(nearest(&folds, touch) < 1e-5, "{stiffness}: {folds:?} {touch}");
+                nearest(&folds, wall)
+            })
+            .collect();
+        let ratio = apart[0] / apart[1];
+        assert!((ratio / 1000_f64.powf(0.4) - 1.0).abs() < 0.05, "{apart:?}");
+    }
+}
+
+/// Two stiff stops that the symmetric motion touches at once: its branch goes on beyond, and the
+/// one of motions that lean to a side is listed once and does not go round for ever.
+#[test]
+fn a_motion_between_two_stiff_stops_is_followed_past_the_touch_of_both() {
+    let stops = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - g*max(-x - 0.5, 0)^1.5";
+    let found = response(&format!("{stops} - 0.3*cos(Omega*t) = 0"), [0.5, 1.1], "g = 1e4");
+    assert!(found.verdict == Verdict::Pass && found.unjudged == 0, "{:?}", found.error);
+    // Where branches cross the start of a motion is known to fewer digits.
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    let is_exact = |point: &&SteadyMotion| point.error.is_some_and(|error| error < 1e-5);
+    assert!(100 * points().filter(is_exact).count() > 97 * points().count());
+    let is_followed = |branch: &Branch| !branch.ends.contains(&BranchEnd::Points);
+    assert!(found.branches.iter().all(is_followed));
+    // An odd motion has no even harmonics.
+    let is_odd = |point: &SteadyMotion| point.harmonics[0][0].abs() < 1e-6;
+    let through =
+        |branch: &Branch| branch.ends == [BranchEnd::Range; 2] && branch.points.iter().all(is_odd);
+    assert!(found.branches.iter().any(through));
 }

@@ -526,9 +526,11 @@ fn a_state_that_begins_with_a_high_power_is_followed() {
 #[test]
 fn motions_side_by_side_are_what_each_is_alone() {
     let same = |motions: &[(&Solver, Vec<f64>)], what: &str| {
-        let starts: Vec<(&Solver, &[f64])> =
-            motions.iter().map(|(solver, start)| (*solver, start.as_slice())).collect();
-        let together = solve_together(&starts, [0.0, 20.0]);
+        let starts: Vec<(&Solver, [f64; 2], &[f64])> = motions
+            .iter()
+            .map(|(solver, start)| (*solver, [0.0, 20.0], start.as_slice()))
+            .collect();
+        let together = solve_together(&starts);
         assert_eq!(together.len(), motions.len(), "{what}");
         for ((solver, start), together) in motions.iter().zip(together) {
             match (solver.solve([0.0, 20.0], start), together) {
@@ -579,5 +581,5 @@ fn motions_side_by_side_are_what_each_is_alone() {
     motions.insert(7, (&root, vec![-1.0, 0.0]));
     motions.insert(9, (&corners, vec![f64::NAN, 0.0]));
     same(&motions, "corners");
-    assert!(solve_together(&[], [0.0, 1.0]).is_empty());
+    assert!(solve_together(&[]).is_empty());
 }

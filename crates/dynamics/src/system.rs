@@ -32,6 +32,7 @@ mod runge_kutta;
 mod step_length;
 mod steps;
 mod taylor;
+mod variations;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,6 +43,7 @@ use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
 pub use taylor::LANES;
+pub use variations::Variations;
 
 use expansion::Expansions;
 use narrow::Argument;
@@ -470,17 +472,14 @@ impl Solver {
     }
 }
 
-/// Integrates several motions between the same times as [`Solver::solve`] does, each from its own
+/// Integrates several motions as [`Solver::solve`] does, each between its own times and from its own
 /// values. Motions whose solvers differ only in numbers are computed side by side, [`LANES`] at a
 /// time; each result is bit for bit the same as alone.
-pub fn solve_together(
-    motions: &[(&Solver, &[f64])],
-    times: [f64; 2],
-) -> Vec<Result<Path, SystemError>> {
+pub fn solve_together(motions: &[(&Solver, [f64; 2], &[f64])]) -> Vec<Result<Path, SystemError>> {
     let mut runs: Vec<TaylorRun> = Vec::new();
     let mut alone = Vec::new();
-    for (solver, values) in motions {
-        let Solver { system, events, options, expansions, .. } = *solver;
+    for &(solver, times, values) in motions {
+        let Solver { system, events, options, expansions, .. } = solver;
         let run = match expansions {
             Some(Ok(own)) if system.check(times, values, options).is_ok() => {
                 TaylorRun::new(system, times, values, events, options, own.clone()).ok()

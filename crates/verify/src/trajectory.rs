@@ -351,9 +351,11 @@ impl TrajectoryRequest {
             Ok::<_, TrajectoryError>((ready, start))
         };
         let all: Vec<_> = courses.iter().map(made_ready).collect();
-        let motions = all.iter().flatten().map(|(ready, start)| (&ready.solver, start.as_slice()));
         let duration = courses.first().map_or(0.0, |course| course.duration);
-        let paths = solve_together(&motions.collect::<Vec<_>>(), [0.0, duration]);
+        let motions = all.iter().flatten();
+        let motions =
+            motions.map(|(ready, start)| (&ready.solver, [0.0, duration], start.as_slice()));
+        let paths = solve_together(&motions.collect::<Vec<_>>());
         let mut paths = paths.into_iter();
         let mut first = |course: &Self, ready: &Ready| match paths.next() {
             Some(path) => course.clone().finish(ready, path?, Integrator::Taylor),

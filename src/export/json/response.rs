@@ -28,8 +28,8 @@ pub struct ResponseDocument {
     pub parameter: String,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How the branches were found: `harmonic-balance`, or `period-map` where the force has jumps
-    /// that harmonic balance does not take.
+    /// How the branches were found: `harmonic-balance`, or `period-map` where the force has corners,
+    /// or jumps that harmonic balance does not take.
     pub method: String,
     /// The highest harmonic kept.
     pub harmonics: usize,

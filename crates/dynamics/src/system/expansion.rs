@@ -88,7 +88,8 @@ impl Expansions {
             false => equations_on_side(system, &events, &self.roots, signs).ok()?,
         };
         let series = SystemSeries::new(&equations, &system.numbers, self.tolerance).ok()?;
-        known.entry(side).or_insert_with(|| series.clone());
+        // The latest stays: recurrences for a number that is exactly 1 serve no other number.
+        known.insert(side, series.clone());
         Some(series)
     }
 

@@ -437,11 +437,15 @@ mod tests {
         let solvers: Vec<_> = (2..13)
             .map(|k| solver.with_numbers(&[("k".into(), f64::from(k))].into()).expect("the same"))
             .collect();
-        let motions: Vec<_> = solvers.iter().map(|solver| (solver, &[-1.0, 1.0][..])).collect();
-        let together = solve_together(&motions, [0.0, 5.0]);
-        for ((solver, start), together) in motions.iter().zip(together) {
-            let alone = solver.solve([0.0, 5.0], start).expect("a path");
-            assert_eq!(alone.states_at(5.0), together.expect("a path").states_at(5.0));
+        let motions: Vec<_> = solvers
+            .iter()
+            .enumerate()
+            .map(|(index, solver)| (solver, [0.0, 5.0 + index as f64], &[-1.0, 1.0][..]))
+            .collect();
+        let together = solve_together(&motions);
+        for ((solver, times, start), together) in motions.into_iter().zip(together) {
+            let alone = solver.solve(times, start).expect("a path");
+            assert_eq!(alone.states_at(times[1]), together.expect("a path").states_at(times[1]));
         }
     }
 

@@ -89,11 +89,27 @@ impl Expr {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct CompiledFunction {
+pub struct CompiledFunction(CompiledFunctions<1>);
+
+/// Several expressions of the same arguments as one list of floating-point operations, in which
+/// subexpressions that they have in common are computed once; each value is bit for bit that of its
+/// [`CompiledFunction`].
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::expr::{CompiledFunctions, parse_expression};
+/// let [force, slope] = ["sin(x)^3", "3*sin(x)^2*cos(x)"].map(|text| parse_expression(text).expect("a text"));
+/// let both = CompiledFunctions::new([&force, &slope], &["x".into()])?;
+/// let sine = 0.25_f64.sin();
+/// assert_eq!(both.call(&[0.25])[0], sine * sine * sine);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CompiledFunctions<const N: usize> {
     argument_count: usize,
     constants: Vec<f64>,
     instructions: Vec<Instruction>,
-    result: usize,
+    results: [usize; N],
 }
 
 /// Operands are places in one row of values: arguments, constants, then the result of each
@@ -121,6 +137,24 @@ impl CompiledFunction {
     /// # Errors
     /// A symbol of the expression is not among the arguments.
     pub fn new(expr: &Expr, arguments: &[Symbol]) -> Result<Self, EvaluationError> {
+        CompiledFunctions::new([expr], arguments).map(Self)
+    }
+
+    /// The value at these arguments: NaN where the expression has no real value, infinite at a
+    /// pole, and NaN if the number of arguments is not that of the symbols given to
+    /// [`CompiledFunction::new`].
+    pub fn call(&self, arguments: &[f64]) -> f64 {
+        let [value] = self.0.call(arguments);
+        value
+    }
+}
+
+impl<const N: usize> CompiledFunctions<N> {
+    /// Translates the expressions; `call` will take the values of these symbols in this order.
+    ///
+    /// # Errors
+    /// A symbol of an expression is not among the arguments.
+    pub fn new(expressions: [&Expr; N], arguments: &[Symbol]) -> Result<Self, EvaluationError> {
         let mut compiler = Compiler {
             arguments,
             known: HashMap::new(),
@@ -128,20 +162,22 @@ impl CompiledFunction {
             constants: Vec::new(),
             code: Vec::new(),
         };
-        let result = expr.fold(|node, children: &[ValueLocation]| compiler.node(node, children))?;
-        Ok(compiler.finish(result))
+        let mut results = [ValueLocation::Argument(0); N];
+        for (result, expr) in results.iter_mut().zip(expressions) {
+            *result =
+                expr.fold(|node, children: &[ValueLocation]| compiler.node(node, children))?;
+        }
+        Ok(compiler.finish(results))
     }
 
-    /// The value at these arguments: NaN where the expression has no real value, infinite at a
-    /// pole, and NaN if the number of arguments is not that of the symbols given to
-    /// [`CompiledFunction::new`].
-    pub fn call(&self, arguments: &[f64]) -> f64 {
+    /// The values at these arguments, as those of [`CompiledFunction::call`].
+    pub fn call(&self, arguments: &[f64]) -> [f64; N] {
         // Most forces are short: clearing more places than they need would take a fifth of a call.
         const SHORT: usize = 16;
         const LONG: usize = 64;
         let size = self.argument_count + self.constants.len() + self.instructions.len();
         if arguments.len() != self.argument_count {
-            return f64::NAN;
+            return [f64::NAN; N];
         }
         if size <= SHORT {
             self.run(arguments, &mut [0.0; SHORT])
@@ -152,7 +188,7 @@ impl CompiledFunction {
         }
     }
 
-    fn run(&self, arguments: &[f64], values: &mut [f64]) -> f64 {
+    fn run(&self, arguments: &[f64], values: &mut [f64]) -> [f64; N] {
         let constants_end = arguments.len() + self.constants.len();
         values[..arguments.len()].copy_from_slice(arguments);
         values[arguments.len()..constants_end].copy_from_slice(&self.constants);
@@ -175,7 +211,7 @@ impl CompiledFunction {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        values[self.result]
+        self.results.map(|result| values[result])
     }
 }
 
@@ -478,7 +514,7 @@ impl Compiler<'_> {
 
     /// Removes unused constants and operations, such as reciprocals that became divisions, and
     /// numbers the others.
-    fn finish(self, result: ValueLocation) -> CompiledFunction {
+    fn finish<const N: usize>(self, results: [ValueLocation; N]) -> CompiledFunctions<N> {
         let mut constant_used = vec![false; self.constants.len()];
         let mut result_used = vec![false; self.code.len()];
         let mut mark = |slot: ValueLocation, results: &mut [bool]| match slot {
@@ -486,7 +522,7 @@ impl Compiler<'_> {
             ValueLocation::Constant(place) => constant_used[place] = true,
             ValueLocation::Result(place) => results[place] = true,
         };
-        mark(result, &mut result_used);
+        results.into_iter().for_each(|result| mark(result, &mut result_used));
         for (place, operation) in self.code.iter().enumerate().rev() {
             if result_used[place] {
                 for slot in operation.operands().into_iter().flatten() {
@@ -502,13 +538,13 @@ impl Compiler<'_> {
             ValueLocation::Constant(index) => constant_places[index],
             ValueLocation::Result(index) => result_places[index],
         };
-        CompiledFunction {
+        CompiledFunctions {
             argument_count,
             constants: kept(self.constants, &constant_used).collect(),
             instructions: kept(self.code, &result_used)
                 .map(|operation| operation.resolve(place))
                 .collect(),
-            result: place(result),
+            results: results.map(place),
         }
     }
 }
@@ -661,12 +697,12 @@ mod tests {
         let names: Vec<Symbol> = ["x", "x'", "xc", "gamma", "mu"].map(Symbol::new).to_vec();
         let compiled = CompiledFunction::new(&force, &names).unwrap();
         // sin, -xc, x - xc, its root, its power, mu*x', + gamma, *, H, gate, +
-        assert!(compiled.instructions.len() <= 11, "{compiled:?}");
+        assert!(compiled.0.instructions.len() <= 11, "{compiled:?}");
         let expected = 0.5_f64.sin() + (2.0 + 3.0 * 0.1) * 0.25_f64.powi(3);
         assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
         let quotient =
             CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
-        assert_eq!(quotient.instructions.len(), 2, "{quotient:?}");
+        assert_eq!(quotient.0.instructions.len(), 2, "{quotient:?}");
     }
 
     #[test]

@@ -63,7 +63,7 @@ use num_traits::{One, Signed, Zero};
 use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
 
-pub use evaluate::{CompiledFunction, EvaluationError};
+pub use evaluate::{CompiledFunction, CompiledFunctions, EvaluationError};
 pub use function::Function;
 // Problem files show the place of an error in the same way.
 pub use parse::excerpt;

@@ -310,6 +310,13 @@ impl HarmonicBalance {
         self.in_order(positions.iter().map(of_coordinate))
     }
 
+    /// The coefficients of a motion whose coordinates are known at the samples of a transform, twice
+    /// as many as harmonics at least.
+    pub fn transformed(&self, transform: &Transform, positions: &[&[f64]]) -> DVector<f64> {
+        let harmonics = |positions: &&[f64]| transform.harmonics(positions, self.harmonics);
+        self.in_order(positions.iter().map(harmonics))
+    }
+
     /// The unknowns of a motion of this frequency, whose coordinates are known as in
     /// [`HarmonicBalance::coefficients_of`].
     pub fn unknowns_of(&self, positions: &[&[f64]], frequency: f64) -> DVector<f64> {

@@ -96,6 +96,15 @@ pub fn tangent(factors: &LU<f64, Dyn, Dyn>) -> Option<DVector<f64>> {
     factors.solve(&right)
 }
 
+/// Returns the sign of a determinant, which itself may be beyond doubles, from the factors of the
+/// matrix.
+pub fn sign_of_determinant(factors: &LU<f64, Dyn, Dyn>) -> f64 {
+    let upper = factors.u();
+    let negative = upper.diagonal().iter().filter(|entry| **entry < 0.0).count();
+    let sign: f64 = factors.p().determinant();
+    if negative % 2 == 1 { -sign } else { sign }
+}
+
 /// Whether the straight line from one point to the next passes close to a third one in between.
 pub fn passes<D: Dim>(
     target: &OVector<f64, D>,

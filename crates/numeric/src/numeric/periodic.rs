@@ -126,59 +126,131 @@ impl<const N: usize> Shooting<'_, N> {
         mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,
         mut settled: impl FnMut(f64, f64) -> bool,
     ) -> Option<PeriodicOrbit<N, Path>> {
+        let mut search = self.begin();
+        loop {
+            let image = follow(search.start(), search.period())?;
+            match search.advance(image, &mut settled) {
+                SearchStep::Found(orbit) => return Some(orbit),
+                SearchStep::Going => {}
+                SearchStep::Failed => return None,
+            }
+        }
+    }
+
+    /// The search before its first step, for those who follow several motions side by side.
+    pub fn begin(&self) -> OrbitSearch<'_, N> {
+        let [start, sizes] = [self.guess, self.sizes].map(SVector::from);
+        OrbitSearch { shooting: self, sizes, start, period: self.period, steps: 0 }
+    }
+}
+
+/// A search for a periodic orbit, step by step.
+pub struct OrbitSearch<'a, const N: usize> {
+    shooting: &'a Shooting<'a, N>,
+    sizes: SVector<f64, N>,
+    start: SVector<f64, N>,
+    period: f64,
+    /// The number of steps taken.
+    steps: usize,
+}
+
+/// The result of a step of a search.
+pub enum SearchStep<const N: usize, Path> {
+    /// Newton's method has converged.
+    Found(PeriodicOrbit<N, Path>),
+    /// Another motion is to be followed.
+    Going,
+    /// Newton's method does not converge.
+    Failed,
+}
+
+impl<const N: usize> OrbitSearch<'_, N> {
+    /// The start of the next motion to be followed.
+    pub fn start(&self) -> [f64; N] {
+        self.start.into()
+    }
+
+    /// The time over which it is to be followed.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Takes a step of Newton's method from the motion that was followed: the state after a period,
+    /// its derivative by the start, and the path. `settled` is that of [`Shooting::orbit`].
+    pub fn advance<Path>(
+        &mut self,
+        (end, monodromy, path): ([f64; N], SMatrix<f64, N, N>, Path),
+        settled: &mut impl FnMut(f64, f64) -> bool,
+    ) -> SearchStep<N, Path> {
+        match self.advanced(end, monodromy, settled) {
+            Some(true) => SearchStep::Found(PeriodicOrbit {
+                start: self.start.into(),
+                period: self.period,
+                monodromy,
+                path,
+            }),
+            Some(false) if self.steps < self.shooting.most => SearchStep::Going,
+            _ => SearchStep::Failed,
+        }
+    }
+
+    /// Takes a step, unless the search has converged, which is returned; `None` if there is no
+    /// step, or it leads too far.
+    fn advanced(
+        &mut self,
+        end: [f64; N],
+        monodromy: SMatrix<f64, N, N>,
+        settled: &mut impl FnMut(f64, f64) -> bool,
+    ) -> Option<bool> {
         /// The longest step, in units of the sizes: a longer one leads to another orbit, or
         /// nowhere.
         const LONGEST: f64 = 0.5;
-        let [guess, sizes] = [self.guess, self.sizes].map(SVector::from);
+        let (shooting, start, period) = (self.shooting, self.start, self.period);
+        let sizes = self.sizes;
         let in_sizes = |vector: SVector<f64, N>| vector.component_div(&sizes);
         let length = |vector| in_sizes(vector).iter().copied().fold(0.0, f64::hypot);
-        let (mut start, mut period) = (guess, self.period);
-        for _ in 0..self.most {
-            let (end, monodromy, path) = follow(start.into(), period)?;
-            let missed = SVector::from(end) - start;
-            let matrix = monodromy - SMatrix::identity();
-            let (step, longer) = match self.rates {
-                None => {
-                    let missed = missed.resize_vertically(N, 0.0);
-                    let step = (self.solve)(matrix.resize(N, N, 0.0), missed)?;
-                    (step.fixed_rows::<N>(0).into_owned(), 0.0)
-                }
-                Some(rates) => {
-                    let [there, back] = [start.into(), end]
-                        .map(|state| in_sizes(SVector::from(rates(state)) * period));
-                    let matrix = DMatrix::from_fn(N + 1, N + 1, |i, j| match (i < N, j < N) {
-                        (true, true) if i == j => matrix[(i, i)],
-                        (true, true) => matrix[(i, j)] * sizes[j] / sizes[i],
-                        (true, false) => back[i],
-                        (false, true) => there[j],
-                        (false, false) => 0.0,
-                    });
-                    let missed = in_sizes(missed).resize_vertically(N + 1, 0.0);
-                    let step = (self.solve)(matrix, missed)?;
-                    (step.fixed_rows::<N>(0).component_mul(&sizes), step[N])
-                }
-            };
-            // grad eta . step over eta
-            let pull = |known: &[f64; N]| {
-                let apart = in_sizes(start - SVector::from(*known));
-                let square = apart.norm_squared();
-                -2.0 * in_sizes(apart.component_mul(&step)).sum() / (square * (square + 1.0))
-            };
-            let step = step / (1.0 + self.known.iter().map(pull).sum::<f64>());
-            let moved = length(step).hypot(longer);
-            if settled(length(missed), moved) {
-                return Some(PeriodicOrbit { start: start.into(), period, monodromy, path });
+        self.steps += 1;
+        let missed = SVector::from(end) - start;
+        let matrix = monodromy - SMatrix::identity();
+        let (step, longer) = match shooting.rates {
+            None => {
+                let missed = missed.resize_vertically(N, 0.0);
+                let step = (shooting.solve)(matrix.resize(N, N, 0.0), missed)?;
+                (step.fixed_rows::<N>(0).into_owned(), 0.0)
             }
-            let part = f64::min(1.0, LONGEST / moved);
-            start -= step * part;
-            period *= 1.0 - part * longer;
-            if !(length(start - guess) <= self.far
-                && (period / self.period - 1.0).abs() <= self.far)
-            {
-                return None;
+            Some(rates) => {
+                let [there, back] =
+                    [start.into(), end].map(|state| in_sizes(SVector::from(rates(state)) * period));
+                let matrix = DMatrix::from_fn(N + 1, N + 1, |i, j| match (i < N, j < N) {
+                    (true, true) if i == j => matrix[(i, i)],
+                    (true, true) => matrix[(i, j)] * sizes[j] / sizes[i],
+                    (true, false) => back[i],
+                    (false, true) => there[j],
+                    (false, false) => 0.0,
+                });
+                let missed = in_sizes(missed).resize_vertically(N + 1, 0.0);
+                let step = (shooting.solve)(matrix, missed)?;
+                (step.fixed_rows::<N>(0).component_mul(&sizes), step[N])
             }
+        };
+        // grad eta . step over eta
+        let pull = |known: &[f64; N]| {
+            let apart = in_sizes(start - SVector::from(*known));
+            let square = apart.norm_squared();
+            -2.0 * in_sizes(apart.component_mul(&step)).sum() / (square * (square + 1.0))
+        };
+        let step = step / (1.0 + shooting.known.iter().map(pull).sum::<f64>());
+        let moved = length(step).hypot(longer);
+        if settled(length(missed), moved) {
+            return Some(true);
         }
-        None
+        let part = f64::min(1.0, LONGEST / moved);
+        self.start -= step * part;
+        self.period *= 1.0 - part * longer;
+        let guess = SVector::from(shooting.guess);
+        let is_near = length(self.start - guess) <= shooting.far
+            && (self.period / shooting.period - 1.0).abs() <= shooting.far;
+        is_near.then_some(false)
     }
 }
 

@@ -7,14 +7,16 @@
 //!
 //! The resonance peak bends along it. In: an oscillator without drive and damping, the frequency of
 //! the drive as an expression in the parameter that varies. Out: the parameter at which the free
-//! motion has the frequency of the drive, for amplitudes from small to large; the same balance as
-//! that of the driven motion, with the frequency as an unknown.
+//! motion has the frequency of the drive, for amplitudes from small to large; by the same balance as
+//! that of the driven motion, with the frequency as an unknown, or by Taylor series where the driven
+//! motion is found by shooting.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::ResponseError;
 use super::balance::DrivenBalance;
 use super::driven::Driven;
+use super::free_swing::FreeSwings;
 use crate::expr::Expr;
 use crate::numeric::balance::CONVERGED;
 use crate::oscillator::Oscillator;
@@ -34,14 +36,15 @@ pub struct BackbonePoint {
 const POINTS: usize = 120;
 
 /// The backbones of an oscillator about its equilibria, as far as they lie in the range; of two
-/// mirrored equilibria only one is listed. `size` is the largest amplitude of interest.
+/// mirrored equilibria only one is listed. `size` is the largest amplitude of interest; `by_series`
+/// says that the free motion is found by its Taylor series, if it has one.
 ///
 /// # Errors
 /// A force that cannot be differentiated.
 pub fn backbones(
     oscillator: &Oscillator,
     driven: &Driven,
-    harmonics: usize,
+    (harmonics, by_series): (usize, bool),
     range: [f64; 2],
     size: f64,
 ) -> Result<Vec<Vec<BackbonePoint>>, ResponseError> {
@@ -57,12 +60,16 @@ pub fn backbones(
         return Ok(vec![]);
     }
     let free = Oscillator { force, ..oscillator.clone() };
+    let swings = by_series.then(|| FreeSwings::new(&free, driven.parameter)).flatten();
     let free =
         Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
     let balance = DrivenBalance::new(&free, harmonics);
     let mut curves: Vec<Vec<BackbonePoint>> = Vec::new();
     for place in places_of_rest(&free, range[0], size) {
-        let curve = curve(&balance, place, range, size);
+        let curve = match &swings {
+            Some(swings) => curve_by_series(swings, &free, place, range, size),
+            None => curve(&balance, place, range, size),
+        };
         let same = |other: &Vec<BackbonePoint>| {
             other.len() == curve.len()
                 && other.iter().zip(&curve).all(|(one, two)| {
@@ -92,8 +99,11 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
     };
     // The grid is shifted by half a cell, so that zero lies inside a cell.
     let place = |cell: i32| REACH * size * (f64::from(cell) + 0.5) / f64::from(CELLS);
+    let forces: Vec<f64> = (-CELLS..=CELLS).map(|cell| mean_force(place(cell))).collect();
     let mut found: Vec<f64> = (-CELLS..CELLS)
-        .filter(|cell| mean_force(place(*cell)) < 0.0 && mean_force(place(cell + 1)) > 0.0)
+        .zip(forces.windows(2))
+        .filter(|(_, pair)| pair[0] < 0.0 && pair[1] > 0.0)
+        .map(|(cell, _)| cell)
         .filter_map(|cell| {
             crate::numeric::ode::root::find_root(mean_force, place(cell), place(cell + 1)).ok()
         })
@@ -134,6 +144,46 @@ fn curve(balance: &DrivenBalance, place: f64, range: [f64; 2], size: f64) -> Vec
     points
 }
 
+/// The points of one curve that lie in the range, by Taylor series.
+fn curve_by_series(
+    swings: &FreeSwings,
+    free: &Driven,
+    place: f64,
+    range: [f64; 2],
+    size: f64,
+) -> Vec<BackbonePoint> {
+    let mut points = Vec::new();
+    let mut known: Vec<(f64, f64)> = Vec::new();
+    for index in 1..=POINTS {
+        let amplitude = size * index as f64 / POINTS as f64;
+        match swings.frequency_at(place, amplitude, &known) {
+            Some((frequency, below)) => {
+                let parameter = parameter_with(free, frequency, range);
+                points.extend(parameter.map(|parameter| BackbonePoint { parameter, amplitude }));
+                known.push((amplitude, below));
+            }
+            // A motion that leaves its well has no neighbour beyond.
+            None if !known.is_empty() => break,
+            None => {}
+        }
+    }
+    points.retain(|point| (range[0]..=range[1]).contains(&point.parameter));
+    points
+}
+
+/// The parameter at which the frequency is this one; `None` if Newton's method does not find it.
+fn parameter_with(driven: &Driven, frequency: f64, range: [f64; 2]) -> Option<f64> {
+    let mut parameter = 0.5 * (range[0] + range[1]);
+    for _ in 0..20 {
+        let step = (driven.frequency_at(parameter) - frequency) / driven.frequency_slope(parameter);
+        parameter -= step;
+        if !parameter.is_finite() {
+            return None;
+        }
+    }
+    Some(parameter)
+}
+
 /// The motion of one harmonic about an equilibrium, with the frequency by the first harmonic of the
 /// force.
 fn first_guess(
@@ -153,15 +203,7 @@ fn first_guess(
     if square.is_nan() || square <= 0.0 {
         return None;
     }
-    let wanted = square.sqrt();
-    let mut parameter = 0.5 * (range[0] + range[1]);
-    for _ in 0..20 {
-        let step = (driven.frequency_at(parameter) - wanted) / driven.frequency_slope(parameter);
-        parameter -= step;
-        if !parameter.is_finite() {
-            return None;
-        }
-    }
+    let parameter = parameter_with(driven, square.sqrt(), range)?;
     let mut coefficients = DVector::zeros(balance.core.size());
     coefficients[0] = place;
     coefficients[1] = amplitude;

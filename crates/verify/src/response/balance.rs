@@ -67,7 +67,10 @@ impl<'a> DrivenBalance<'a> {
                 true => {
                     write(sample, driven.force_on(&at, &[BELOW]), driven.slopes_on(&at, &[BELOW]))
                 }
-                false => write(sample, driven.force(&at), driven.slopes(&at)),
+                false => {
+                    let (value, slopes) = driven.force_with_slopes(&at);
+                    write(sample, value, slopes);
+                }
             }
         };
         let frequency = [omega, driven.frequency_slope(parameter)];

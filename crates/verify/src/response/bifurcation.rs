@@ -140,7 +140,15 @@ pub fn between(
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
         let beside =
             |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
-        let Some(node) = part.and_then(beside) else {
+        // An orbit by shooting that begins to touch a stiff stop is a corner of its branch: where it
+        // turns back there is no point in between to be found, and it is itself the fold.
+        let at_corner = || {
+            let is_shot = [from, to].iter().all(|(node, _)| node.truth.is_some());
+            let is_corner = kind == Fold && is_shot && balance.driven.jumps() == 0;
+            let from_is_last = (from.0.parameter - to.0.parameter) * before > 0.0;
+            is_corner.then(|| if from_is_last { from.0.clone() } else { to.0.clone() })
+        };
+        let Some(node) = part.and_then(beside).or_else(at_corner) else {
             continue;
         };
         // A branch that begins at a crossing turns back there without a fold of its own, but the

@@ -10,7 +10,7 @@ use super::{MOST_BRANCHES, PreparedRequest};
 
 /// The relation of a known motion to a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum KnownMotion {
+pub(super) enum KnownMotion {
     /// The motion lies on a branch.
     Itself,
     /// Its mirror image lies on this one.
@@ -41,9 +41,11 @@ impl PreparedRequest<'_> {
                     .map(|path| largest(balance, path))
                     .fold(size.max(balance.core.extent(&found)), f64::max),
             );
-            if walk.is_cut_off(balance, &found)
-                || self.was_known(balance, &mut paths, &found, seed.parameter)
-            {
+            if walk.is_cut_off(balance, &found) {
+                continue;
+            }
+            let known = self.known_coefficients(balance, &paths, &found, seed.parameter);
+            if self.mark(&mut paths, known) {
                 continue;
             }
             if let Some(path) = walk.branch_through(balance, &found, seed.parameter) {
@@ -69,27 +71,37 @@ impl PreparedRequest<'_> {
             .solve(&image, parameter)
             .is_some_and(|found| (&found - &image).norm() <= SAME * image.norm());
         if is_motion {
-            self.was_known(balance, paths, &image, parameter);
+            let known = self.known_coefficients(balance, paths, &image, parameter);
+            self.mark(paths, known);
         }
     }
 
-    /// Whether a motion is known; where it is a mirror image, its branch is marked.
-    fn was_known(
-        &self,
-        balance: &DrivenBalance,
-        paths: &mut [BranchPath],
-        coefficients: &DVector<f64>,
-        parameter: f64,
-    ) -> bool {
-        let known = self.known_motion(balance, paths, coefficients, parameter);
+    /// Marks the branch of which a motion is a mirror image; returns whether the motion is known.
+    fn mark(&self, paths: &mut [BranchPath], known: Option<KnownMotion>) -> bool {
         if let Some(KnownMotion::Mirrored(index)) = known {
             paths[index].mirrored = true;
         }
         known.is_some()
     }
 
+    /// Whether the motion of a point is known; where it is a mirror image, its branch is marked.
+    pub(super) fn was_known(
+        &self,
+        balance: &DrivenBalance,
+        paths: &mut [BranchPath],
+        node: &BranchNode,
+    ) -> bool {
+        let known = self.known_motion(balance, paths, node);
+        self.mark(paths, known)
+    }
+
     /// Adds a branch unless it, or its mirror image, is known already.
-    fn keep(&self, balance: &DrivenBalance, mut path: BranchPath, paths: &mut Vec<BranchPath>) {
+    pub(super) fn keep(
+        &self,
+        balance: &DrivenBalance,
+        mut path: BranchPath,
+        paths: &mut Vec<BranchPath>,
+    ) {
         if path.nodes.len() < 2 || self.is_centre(&path) {
             return;
         }
@@ -101,9 +113,7 @@ impl PreparedRequest<'_> {
             _ if path.ends[1] == BranchEnd::Crossing => vec![first],
             _ => vec![first, last],
         };
-        let known = |node: &BranchNode| {
-            self.known_motion(balance, paths, &node.coefficients, node.parameter)
-        };
+        let known = |node: &BranchNode| self.known_motion(balance, paths, node);
         match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
             Some(KnownMotion::Itself) => {}
             Some(KnownMotion::Mirrored(index)) => paths[index].mirrored = true,
@@ -112,34 +122,51 @@ impl PreparedRequest<'_> {
     }
 
     /// A branch that begins at a crossing with another one returns from there as its own image:
-    /// that half is removed.
+    /// that half is removed. Shooting may also come to the other branch by a sharp crossing before
+    /// that one, where two stops are touched at once.
     fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
+        /// Largest number of crossings that are looked at.
+        const MOST: usize = 8;
         let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
-        let Some(index) = path.nodes.windows(2).position(turns) else {
-            return;
-        };
-        let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
-        let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
-        let image = |node: &BranchNode| {
-            self.known_motion(
-                balance,
-                std::slice::from_ref(&half),
-                &node.coefficients,
-                node.parameter,
-            )
-        };
-        // The middle of that half, which is surely no longer than the first.
-        if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
-            path.mirrored = matches!(known, KnownMotion::Mirrored(_));
-            // The first point beyond stays, so that the crossing lies between two points.
-            path.nodes.truncate(index + 2);
-            path.ends[1] = BranchEnd::Crossing;
+        let turns = path.nodes.windows(2).enumerate().filter(|(_, pair)| turns(pair));
+        let turns: Vec<usize> = turns.map(|(index, _)| index).collect();
+        let looked_at = if self.period_series.is_some() { MOST } else { 1 };
+        for (count, &index) in turns.iter().enumerate().take(looked_at) {
+            let next = match self.period_series {
+                Some(_) => turns.get(count + 1).map_or(path.nodes.len(), |next| next + 1),
+                None => path.nodes.len(),
+            };
+            let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..next]);
+            let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
+            let image =
+                |node: &BranchNode| self.known_motion(balance, std::slice::from_ref(&half), node);
+            // The middle of that half, which is surely no longer than the first.
+            if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
+                path.mirrored = matches!(known, KnownMotion::Mirrored(_));
+                // The first point beyond stays, so that the crossing lies between two points.
+                path.nodes.truncate(index + 2);
+                path.ends[1] = BranchEnd::Crossing;
+                return;
+            }
         }
     }
 
-    /// The branch on which a motion lies, shifted by drive periods or mirrored; `None` if there is
-    /// none.
+    /// The branch on which the motion of a point lies, shifted by drive periods or mirrored; `None`
+    /// if there is none.
     fn known_motion(
+        &self,
+        balance: &DrivenBalance,
+        paths: &[BranchPath],
+        node: &BranchNode,
+    ) -> Option<KnownMotion> {
+        match self.period_series {
+            Some(_) => self.known_orbit(balance, paths, node),
+            None => self.known_coefficients(balance, paths, &node.coefficients, node.parameter),
+        }
+    }
+
+    /// The branch of the balance on which a motion lies, as in [`Self::known_motion`].
+    fn known_coefficients(
         &self,
         balance: &DrivenBalance,
         paths: &[BranchPath],
@@ -207,9 +234,16 @@ impl PreparedRequest<'_> {
         at: &BranchNode,
         paths: &mut Vec<BranchPath>,
     ) -> bool {
+        if self.period_series.is_some() {
+            let is_known = |node: &BranchNode| self.was_known(balance, paths, node);
+            for path in self.shot_beside_crossing(balance, at, walk.size, is_known) {
+                self.keep(balance, path, paths);
+            }
+            return false;
+        }
         let mut is_centre = false;
         for node in walk.crossing(balance, at) {
-            if self.was_known(balance, paths, &node.coefficients, node.parameter) {
+            if self.was_known(balance, paths, &node) {
                 continue;
             }
             if let Some(path) =

@@ -19,7 +19,7 @@ use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
 use crate::numeric::balance::{CONVERGED, Linearised};
 use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
-use crate::numeric::continuation::{bordered, follow, passes, tangent};
+use crate::numeric::continuation::{bordered, follow, passes, sign_of_determinant, tangent};
 
 /// A point of a branch.
 #[derive(Clone, Debug)]
@@ -571,12 +571,4 @@ impl ContinuationSettings {
         });
         found.into_iter().flatten().collect()
     }
-}
-
-/// The sign of a determinant, which itself may be beyond doubles.
-fn sign_of_determinant(factors: &LU<f64, Dyn, Dyn>) -> f64 {
-    let upper = factors.u();
-    let negative = upper.diagonal().iter().filter(|entry| **entry < 0.0).count();
-    let sign: f64 = factors.p().determinant();
-    if negative % 2 == 1 { -sign } else { sign }
 }

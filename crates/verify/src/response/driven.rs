@@ -14,13 +14,13 @@ use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
 
 use super::ResponseError;
+use super::series::{PhaseEquations, solver_in_time};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
-use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::expr::{CompiledFunction, CompiledFunctions, Expr, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh, fresh_stem};
-use crate::system::{Path, PathEnd, Solver, System, SystemOptions};
-use crate::trajectory::roots_across_corners;
+use crate::system::{Path, PathEnd, Solver, Variations, solve_together};
 
 /// A driven equation of which one parameter varies.
 #[derive(Clone, Debug)]
@@ -37,19 +37,34 @@ pub struct Driven {
     /// f(x, x', theta; p), with the sides of the jumps as further arguments if there are any.
     force: CompiledFunction,
     jumps: Vec<Jump>,
-    /// Its derivatives by x, x' and p.
-    slopes: [CompiledFunction; 3],
+    /// f with its derivatives by x, x' and p.
+    with_slopes: CompiledFunctions<4>,
     /// f(x, x', t; p), as it was given.
     in_time: CompiledFunction,
     /// The motion, and the motion with its variations, as Taylor series; `None` if there is a jump
     /// or no series.
     series: [Option<Solver>; 2],
+    /// The motion as first-order equations in its phase.
+    pub(super) in_phase: PhaseEquations,
     /// omega(p) and its derivative.
     base: [CompiledFunction; 2],
     /// Whether the force is even in the velocity.
     pub undamped: bool,
+    /// What changes its sign at each corner of f(x, x', t; p).
+    corners: Vec<CompiledFunction>,
     /// Whether the force has no corner or jump: no `abs`, `sgn`, `H`, `max` or `min`.
     pub smooth: bool,
+}
+
+/// A motion to be followed: position and velocity at phase zero, the parameter and the duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedStart {
+    /// Position and velocity.
+    pub start: [f64; 2],
+    /// The parameter.
+    pub parameter: f64,
+    /// The duration.
+    pub duration: f64,
 }
 
 /// A line in the plane of position and velocity on which the force jumps, `n_x x + n_v x' = c(p)`;
@@ -287,12 +302,15 @@ impl Driven {
         let compiled = |expression: &Expr| {
             CompiledFunction::new(expression, &arguments).map_err(ResponseError::from)
         };
-        let slope = |by: Symbol| compiled(&force.differentiate(by)?);
+        let slope = |by: Symbol| force.differentiate(by);
+        let [by_position, by_velocity, by_parameter] =
+            [slope(position)?, slope(velocity)?, slope(parameter)?];
+        let with_slopes = [&force, &by_position, &by_velocity, &by_parameter];
         let undamped = oscillator
             .parts()
             .is_ok_and(|parts| parts.damping.is_zero() && !parts.forcing.contains(velocity));
         Ok(Self {
-            slopes: [slope(position)?, slope(velocity)?, slope(parameter)?],
+            with_slopes: CompiledFunctions::new(with_slopes, &arguments)?,
             force: compiled(&force)?,
             jumps: lines
                 .into_iter()
@@ -307,13 +325,21 @@ impl Driven {
                 })
                 .collect::<Result<_, _>>()?,
             series: match lines_are_empty {
-                true => [false, true].map(|varied| solver(oscillator, parameter, varied)),
+                true => [false, true].map(|varied| solver_in_time(oscillator, parameter, varied)),
                 false => [None, None],
             },
             in_time: CompiledFunction::new(
                 &oscillator.force,
                 &[position, velocity, time, parameter],
             )?,
+            in_phase: PhaseEquations {
+                states: vec![position, velocity],
+                phase,
+                right: vec![
+                    Expr::divide(&Expr::from(velocity), &base)?,
+                    -Expr::divide(&force, &base)?,
+                ],
+            },
             base: [
                 CompiledFunction::new(&base, &[parameter])?,
                 CompiledFunction::new(&base.differentiate(parameter)?, &[parameter])?,
@@ -323,6 +349,7 @@ impl Driven {
             periods,
             self_excited: false,
             undamped,
+            corners: corners_of(oscillator, parameter)?,
             smooth: !oscillator.force.contains_corner(),
         })
     }
@@ -394,10 +421,16 @@ impl Driven {
 
     /// Its derivatives by position, velocity and parameter, the phase being fixed.
     pub fn slopes(&self, at: &[f64; 4]) -> [f64; 3] {
-        match self.jumps.is_empty() {
-            true => self.slopes.each_ref().map(|slope| slope.call(at)),
-            false => self.slopes_on(at, &self.sides(at)),
-        }
+        self.force_with_slopes(at).1
+    }
+
+    /// f, and its derivatives by position, velocity and parameter, the phase being fixed.
+    pub fn force_with_slopes(&self, at: &[f64; 4]) -> (f64, [f64; 3]) {
+        let [force, slopes @ ..] = match self.jumps.is_empty() {
+            true => self.with_slopes.call(at),
+            false => self.with_slopes_on(at, &self.sides(at)),
+        };
+        (force, slopes)
     }
 
     /// f on these sides of its jumps, 1 above and -1 below.
@@ -407,9 +440,12 @@ impl Driven {
 
     /// The derivatives of f on these sides.
     pub fn slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 3] {
-        with_arguments(at, sides, self.jumps.len(), |arguments| {
-            self.slopes.each_ref().map(|slope| slope.call(arguments))
-        })
+        let [_, slopes @ ..] = self.with_slopes_on(at, sides);
+        slopes
+    }
+
+    fn with_slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 4] {
+        with_arguments(at, sides, self.jumps.len(), |arguments| self.with_slopes.call(arguments))
     }
 
     /// The side of each jump at a state, 1 or -1; zero on the jump itself.
@@ -418,29 +454,51 @@ impl Driven {
         (0..self.jumps.len()).map(|index| side(self.height(index, [at[0], at[1]], at[3]))).collect()
     }
 
-    /// Follows the motion from a position and a velocity at phase zero by its Taylor series; `None`
-    /// if it has none all the way.
-    pub fn by_series(&self, start: [f64; 2], parameter: f64, duration: f64) -> Option<Path> {
-        self.path(&self.series[0], &start, parameter, duration)
+    /// Whether a motion is followed by its Taylor series.
+    pub(super) fn has_series(&self) -> bool {
+        self.series[0].is_some()
     }
 
-    /// Follows the motion with its variations, whose states are position, velocity and the two
-    /// columns of M(t).
-    pub fn varied_by_series(&self, start: [f64; 2], parameter: f64, duration: f64) -> Option<Path> {
-        let [x, v] = start;
-        self.path(&self.series[1], &[x, v, 1.0, 0.0, 0.0, 1.0], parameter, duration)
+    /// Follows motions side by side by their Taylor series; `None` for one that has none all the
+    /// way.
+    pub fn by_series(&self, motions: &[TimedStart]) -> Vec<Option<Path>> {
+        self.paths(&self.series[0], motions, |start| start.to_vec())
     }
 
-    fn path(
+    /// Follows motions with their variations side by side, whose states are position, velocity and
+    /// the two columns of M(t).
+    pub fn varied_by_series(&self, motions: &[TimedStart]) -> Vec<Option<Path>> {
+        self.paths(&self.series[1], motions, |start| Variations::start(start, false))
+    }
+
+    fn paths(
         &self,
         solver: &Option<Solver>,
-        start: &[f64],
-        parameter: f64,
-        duration: f64,
-    ) -> Option<Path> {
-        let solver = solver.as_ref()?.with_numbers(&[(self.parameter, parameter)].into())?;
-        let path = solver.solve([0.0, duration], start).ok()?;
-        (path.reason() == PathEnd::Reached).then_some(path)
+        motions: &[TimedStart],
+        begin: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Vec<Option<Path>> {
+        let prepared = |motion: &TimedStart| {
+            let numbers = [(self.parameter, motion.parameter)].into();
+            let solver = solver.as_ref()?.with_numbers(&numbers)?;
+            Some((solver, [0.0, motion.duration], begin(&motion.start)))
+        };
+        let prepared: Vec<_> = motions.iter().map(prepared).collect();
+        let runs = prepared.iter().flatten();
+        let runs = runs.map(|(solver, times, start)| (solver, *times, start.as_slice()));
+        let mut paths = solve_together(&runs.collect::<Vec<_>>()).into_iter();
+        let reached = |path: &Path| path.reason() == PathEnd::Reached;
+        let path = |run: &Option<_>| run.as_ref().and_then(|_| paths.next()?.ok().filter(reached));
+        prepared.iter().map(path).collect()
+    }
+
+    /// The number of corners of the force.
+    pub fn corners(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// What changes its sign at a corner, in time.
+    pub fn corner(&self, index: usize, at: &[f64; 4]) -> f64 {
+        self.corners[index].call(at)
     }
 
     /// f as it was given, in time.
@@ -449,40 +507,28 @@ impl Driven {
     }
 }
 
-/// Prepares the Taylor series of a motion, or of the motion with its variations.
-fn solver(oscillator: &Oscillator, parameter: Symbol, varied: bool) -> Option<Solver> {
-    /// Relative error of a step, below any that a judge asks for.
-    const TOLERANCE: f64 = 1e-13;
-    const STEPS: usize = 4_000;
-    /// A value of the parameter with which nothing cancels; every motion has its own.
-    const ANY: f64 = 0.618_034;
-    let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
-    let mut states = vec![position, velocity];
-    let mut right = vec![Expr::from(velocity), -&oscillator.force];
-    let mut taken: Vec<Symbol> = oscillator.names().into_iter().collect();
-    taken.extend([velocity, parameter]);
-    let slopes = [position, velocity].map(|by| oscillator.force.differentiate(by));
-    let [by_position, by_velocity] = slopes;
-    let (by_position, by_velocity) = (by_position.ok()?, by_velocity.ok()?);
-    for _ in 0..if varied { 2 } else { 0 } {
-        let place = fresh("a", &taken);
-        taken.push(place);
-        let rate = fresh("b", &taken);
-        taken.push(rate);
-        states.extend([place, rate]);
-        let change = &by_position * &Expr::from(place) + &by_velocity * &Expr::from(rate);
-        right.extend([Expr::from(rate), -change]);
+/// What changes its sign at each corner of a force, each once.
+fn corners_of(
+    oscillator: &Oscillator,
+    parameter: Symbol,
+) -> Result<Vec<CompiledFunction>, ResponseError> {
+    let own = [oscillator.coordinate, oscillator.velocity(), Symbol::new("t")];
+    let mut found: Vec<Expr> = Vec::new();
+    for node in oscillator.force.unique_nodes() {
+        let Node::Function(function, arguments) = node.node() else { continue };
+        let argument = match arguments.as_slice() {
+            [only] if function.has_corner() => only.clone(),
+            [one, other] if function.has_corner() => one - other,
+            _ => continue,
+        };
+        if own.iter().any(|name| argument.contains(*name)) && !found.contains(&argument) {
+            found.push(argument);
+        }
     }
-    let numbers = [(parameter, ANY)].into();
-    let right: Vec<Expr> = right
-        .iter()
-        .map(|rate| roots_across_corners(rate, &numbers))
-        .collect::<Result<_, _>>()
-        .ok()?;
-    let system = System::new(&states, Symbol::new("t"), &right, &numbers).ok()?;
-    let options =
-        SystemOptions { tolerance: TOLERANCE, step_limit: STEPS, ..SystemOptions::default() };
-    Some(system.solver(&[], &options))
+    let [position, velocity, time] = own;
+    let arguments = [position, velocity, time, parameter];
+    let compiled = found.iter().map(|corner| CompiledFunction::new(corner, &arguments));
+    Ok(compiled.collect::<Result<_, _>>()?)
 }
 
 /// Calls a function with the arguments of the force and the sides of a number of jumps behind them.

@@ -7,48 +7,94 @@ use super::balance::DrivenBalance;
 use super::continuation::BranchNode;
 use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
-    Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along,
-    periodic_motion, settle,
+    Floquet, MotionGuess, SAMPLES, Settled, SettlingStart, SimulationBudget, TrueMotion,
+    checked_orbit, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motions,
+    settle_together,
 };
 use super::{Branch, PreparedRequest, Simulated, SteadyMotion};
+use crate::system::LANES;
 use crate::trajectory;
 
 /// The multipliers at a point of a branch, and the true motion beside it.
 pub(super) type PointJudgement = (Option<Floquet>, Option<TrueMotion>);
 
 impl PreparedRequest<'_> {
-    /// The multipliers and the true motion of [`Self::judged`]; both `None` once an interrupt was
-    /// requested.
+    /// The multipliers and the true motion at each of some points, as by [`Self::judged`]; both
+    /// `None` once an interrupt was requested. The progress advances by a point for each.
     pub(super) fn judged_in_time(
         &self,
         balance: &DrivenBalance,
-        node: &BranchNode,
-    ) -> PointJudgement {
-        match self.question.interrupt.is_requested() {
-            true => (None, None),
-            false => self.judged(balance, node),
+        nodes: &[BranchNode],
+    ) -> Vec<PointJudgement> {
+        let is_alone = |node: &BranchNode| node.truth.is_some() || self.driven.self_excited;
+        let together = match self.driven.has_series() && !nodes.iter().any(is_alone) {
+            true => 8 * LANES,
+            false => 1,
+        };
+        let mut all = Vec::with_capacity(nodes.len());
+        for nodes in nodes.chunks(together) {
+            nodes.iter().for_each(|_| self.question.progress.advance());
+            match self.question.interrupt.is_requested() {
+                true => all.extend(nodes.iter().map(|_| (None, None))),
+                false => all.extend(self.judged_together(balance, nodes)),
+            }
         }
+        all
     }
 
     /// The multipliers at a point of a branch, and the true motion beside it.
     pub(super) fn judged(&self, balance: &DrivenBalance, node: &BranchNode) -> PointJudgement {
+        self.judged_together(balance, std::slice::from_ref(node)).pop().unwrap_or_default()
+    }
+
+    /// The multipliers at points of a branch, and the true motions beside them, followed side by
+    /// side.
+    fn judged_together(
+        &self,
+        balance: &DrivenBalance,
+        nodes: &[BranchNode],
+    ) -> Vec<PointJudgement> {
+        let size = |node: &BranchNode| balance.core.extent(&node.coefficients).max(1e-12);
+        let is_guess = |node: &&BranchNode| node.truth.is_none() && !self.driven.self_excited;
+        let guess = |node: &BranchNode| MotionGuess {
+            start: node.begins(balance),
+            parameter: node.parameter,
+            size: size(node),
+        };
+        let guesses: Vec<MotionGuess> = nodes.iter().filter(is_guess).map(guess).collect();
+        let mut truths = periodic_motions(&self.driven, &guesses).into_iter();
+        let judged = |node: &BranchNode| {
+            if let Some(truth) = node.truth {
+                let checked = match self.period_series {
+                    Some(_) => checked_orbit(&self.driven, &truth, node.parameter),
+                    None => Some(truth),
+                };
+                return (Some(truth.floquet), checked);
+            }
+            match self.driven.self_excited {
+                true => self.judged_cycle(balance, node),
+                false => self.judged_beside(balance, node, size(node), truths.next().flatten()),
+            }
+        };
+        nodes.iter().map(judged).collect()
+    }
+
+    /// The multipliers at a point of a driven motion, and the true motion that shooting has found
+    /// from it, unless that is another one.
+    fn judged_beside(
+        &self,
+        balance: &DrivenBalance,
+        node: &BranchNode,
+        size: f64,
+        truth: Option<TrueMotion>,
+    ) -> PointJudgement {
         /// Largest difference of the true motion, relative to its size; beyond this it is another
         /// motion.
         const OTHER: f64 = 0.3;
-        if node.truth.is_some() {
-            return (node.truth.map(|truth| truth.floquet), node.truth);
-        }
-        if self.driven.self_excited {
-            return self.judged_cycle(balance, node);
-        }
-        let start = node.begins(balance);
-        let size = balance.core.extent(&node.coefficients);
-        let truth =
-            periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
-                let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
-                (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine)
-                    <= OTHER * size.max(1e-12)
-            });
+        let truth = truth.filter(|truth| {
+            let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
+            (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size
+        });
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
             // Across a jump only the true motion has multipliers.
@@ -119,12 +165,16 @@ impl PreparedRequest<'_> {
         (floquet, truth): PointJudgement,
         size: f64,
     ) -> SteadyMotion {
-        let u = &node.coefficients;
-        let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
         /// Relative size below which a harmonic is rounding.
         const NOTHING: f64 = 1e-12;
+        let u = &node.coefficients;
         let [cosine, sine] = balance.core.harmonic(u, 0, 1);
-        let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
+        let orbit = node.truth.filter(|_| self.period_series.is_some());
+        let peak = orbit.map(|orbit| orbit.peak).unwrap_or_else(|| {
+            let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
+            half_of_peak_to_peak(&positions)
+        });
+        let amplitude = cosine.hypot(sine);
         let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
             // A half turn is written as pi, not -pi, whatever the rounding of the sine.
@@ -137,7 +187,13 @@ impl PreparedRequest<'_> {
         let error = truth.map(|truth| {
             let [cosine, sine] = truth.first_harmonic;
             let of_size = relative_error([amplitude, peak], [cosine.hypot(sine), truth.peak], size);
-            of_size.max((frequency / truth.frequency - 1.0).abs())
+            // The judge closes the orbit at another start.
+            let start = orbit.map_or(truth.start, |orbit| orbit.start);
+            let apart = (start[0] - truth.start[0])
+                .abs()
+                .max((start[1] - truth.start[1]).abs() / frequency);
+            let of_start = relative_error([apart, peak], [0.0, peak], size);
+            of_size.max(of_start).max((frequency / truth.frequency - 1.0).abs())
         });
         // Without damping the multipliers lie on the unit circle, up to rounding.
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
@@ -148,10 +204,7 @@ impl PreparedRequest<'_> {
             amplitude,
             phase,
             peak,
-            start: truth.map_or_else(
-                || balance.phase_point_at(u, node.parameter, 0.0),
-                |truth| truth.start,
-            ),
+            start: truth.map_or_else(|| node.begins(balance), |truth| truth.start),
             stable: floquet.map(|floquet| floquet.largest() < allowed),
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),
@@ -165,12 +218,15 @@ impl PreparedRequest<'_> {
         /// Largest number of points on a stable part of a branch, and on all of them.
         const EACH: usize = 6;
         const MOST: usize = 30;
-        /// Disturbances, relative to the size of the motion; the second is used if the first leads
-        /// to another motion.
-        const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
+        /// Disturbances, relative to the size of the motion; a smaller one is used if the one before
+        /// leads to another motion, as it may beside a motion that just does not touch a stop. The
+        /// last one is that of orbits by shooting, whose starts are known to more digits.
+        const DISTURBANCES: [f64; 4] = [1e-2, 1e-5, 1e-8, 1e-11];
+        /// Errors beyond which a simulation has settled on another motion: beside points of a
+        /// balance, and beside orbits by shooting.
         const OTHER: f64 = 0.05;
+        const OTHER_THAN_ORBIT: f64 = 1e-3;
         const PERIODS: f64 = 1500.0;
-        const CLOSELY: f64 = 1e-8;
         if self.driven.undamped {
             return vec![];
         }
@@ -179,70 +235,128 @@ impl PreparedRequest<'_> {
             .flat_map(|branch| &branch.points)
             .map(|point| point.peak)
             .fold(0.0, f64::max);
-        let mut found = Vec::new();
+        // An orbit by shooting is known too well to be mistaken for one beside it.
+        let (other, disturbances) = match self.period_series {
+            Some(_) => (OTHER_THAN_ORBIT, &DISTURBANCES[..]),
+            None => (OTHER, &DISTURBANCES[..3]),
+        };
         let mut budget = self.budget();
-        for branch in branches {
-            for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
-                if part.first().is_none_or(|point| point.stable != Some(true)) {
-                    continue;
-                }
+        let parts = branches
+            .iter()
+            .flat_map(|branch| branch.points.chunk_by(|one, other| one.stable == other.stable))
+            .filter(|part| part.first().is_some_and(|point| point.stable == Some(true)));
+        let chosen = parts.flat_map(|part| match self.period_series {
+            Some(_) => self.spread_over(part, EACH, size),
+            None => {
                 let steps = EACH.min(part.len());
-                for index in 0..steps {
-                    let point = &part[(2 * index + 1) * part.len() / (2 * steps)];
-                    let largest =
-                        point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
-                    let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
-                    let stopped = self.question.interrupt.is_requested();
-                    // Without a drive, a motion that shooting does not find may not exist.
-                    let nothing = self.driven.self_excited && point.error.is_none();
-                    if !(needed > 0.0 && needed < PERIODS)
-                        || found.len() >= MOST
-                        || stopped
-                        || nothing
-                    {
-                        continue;
-                    }
-                    let most = needed.ceil() as usize + 8;
-                    let mut run = |disturbance: f64| {
-                        let start = [point.start[0] + disturbance * point.peak, point.start[1]];
-                        if self.driven.jumps() > 0 {
-                            let (frequency, positions) =
-                                self.simulated_by_series(start, point, most)?;
-                            return Some(simulated(point, &positions, frequency, size));
-                        }
-                        if self.driven.self_excited {
-                            let guess =
-                                Guess { start, frequency: point.frequency, size: point.peak };
-                            let found = cycle::settle_cycle(
-                                &self.driven,
-                                &guess,
-                                point.parameter,
-                                most,
-                                &mut budget,
-                            )?;
-                            return Some(simulated(point, &found.1, found.0, size));
-                        }
-                        let settled = settle(
-                            &self.driven,
-                            start,
-                            point.parameter,
-                            (most, CLOSELY),
-                            &mut budget,
-                        )?;
-                        Some(simulated(point, &settled.positions, point.frequency, size))
-                    };
-                    // If the first disturbance leads to another motion, the second, much smaller
-                    // one decides.
-                    let first = run(DISTURBANCES[0]);
-                    let near = match first {
-                        Some(first) if first.error <= OTHER => Some(first),
-                        _ => run(DISTURBANCES[1]).or(first),
-                    };
-                    found.extend(near);
+                (0..steps).map(|index| &part[(2 * index + 1) * part.len() / (2 * steps)]).collect()
+            }
+        });
+        // Each point with the number of periods in which its disturbance decays.
+        let decaying = chosen.filter_map(|point| {
+            let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
+            let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
+            // Without a drive, a motion that shooting does not find may not exist.
+            let nothing = self.driven.self_excited && point.error.is_none();
+            let decays = needed > 0.0 && needed < PERIODS && !nothing;
+            decays.then(|| (point, needed.ceil() as usize + 8))
+        });
+        let decaying: Vec<(&SteadyMotion, usize)> = decaying.collect();
+        let mut found = Vec::new();
+        for points in decaying.chunks(if self.driven.has_series() { LANES } else { 1 }) {
+            if found.len() >= MOST || self.question.interrupt.is_requested() {
+                break;
+            }
+            let is_near = |simulated: &Option<Simulated>| {
+                simulated.is_some_and(|simulated| simulated.error <= other)
+            };
+            let mut nearest = vec![None; points.len()];
+            for &disturbance in disturbances {
+                let left: Vec<usize> =
+                    (0..points.len()).filter(|index| !is_near(&nearest[*index])).collect();
+                let beside: Vec<_> = left.iter().map(|index| points[*index]).collect();
+                let runs = self.simulated_beside(&beside, (disturbance, size), &mut budget);
+                for (index, run) in left.into_iter().zip(runs) {
+                    nearest[index] = run.or(nearest[index]);
                 }
             }
+            found.extend(nearest.into_iter().flatten());
         }
+        found.truncate(MOST);
         found
+    }
+
+    /// Chooses at most so many points of a part of a branch, at equal distances along it: where a
+    /// motion begins to touch a stiff stop the branch turns sharply, and half of its points lie
+    /// there. `size` is that of the largest motion. Linear in the number of points.
+    fn spread_over<'a>(
+        &self,
+        part: &'a [SteadyMotion],
+        most: usize,
+        size: f64,
+    ) -> Vec<&'a SteadyMotion> {
+        let [low, high] = self.question.range;
+        let mut way = 0.0;
+        let mut ways = vec![way];
+        ways.extend(part.windows(2).map(|pair| {
+            let parameter = (pair[1].parameter - pair[0].parameter) / (high - low);
+            way += parameter.hypot((pair[1].peak - pair[0].peak) / size);
+            way
+        }));
+        let steps = most.min(part.len());
+        let nearest = |step: usize| {
+            let there = way * (2 * step + 1) as f64 / (2 * steps) as f64;
+            let behind = ways.partition_point(|way| *way < there).min(part.len() - 1);
+            match behind {
+                0 => 0,
+                _ if there - ways[behind - 1] < ways[behind] - there => behind - 1,
+                _ => behind,
+            }
+        };
+        let mut chosen: Vec<usize> = (0..steps).map(nearest).collect();
+        chosen.dedup();
+        chosen.into_iter().map(|index| &part[index]).collect()
+    }
+
+    /// Simulations beside points, each over its number of periods, from starts that are moved by
+    /// this part of their peaks; `size` is the largest peak of all branches.
+    fn simulated_beside(
+        &self,
+        points: &[(&SteadyMotion, usize)],
+        (disturbance, size): (f64, f64),
+        budget: &mut SimulationBudget,
+    ) -> Vec<Option<Simulated>> {
+        const CLOSELY: f64 = 1e-8;
+        let start =
+            |point: &SteadyMotion| [point.start[0] + disturbance * point.peak, point.start[1]];
+        if self.driven.jumps() > 0 {
+            let run = |&(point, most): &(&SteadyMotion, usize)| {
+                let (frequency, positions) = self.simulated_by_series(start(point), point, most)?;
+                Some(simulated(point, &positions, None, frequency, size))
+            };
+            return points.iter().map(run).collect();
+        }
+        if self.driven.self_excited {
+            let run = |&(point, most): &(&SteadyMotion, usize)| {
+                let guess =
+                    Guess { start: start(point), frequency: point.frequency, size: point.peak };
+                let (frequency, positions) =
+                    cycle::settle_cycle(&self.driven, &guess, point.parameter, most, budget)?;
+                Some(simulated(point, &positions, None, frequency, size))
+            };
+            return points.iter().map(run).collect();
+        }
+        let starts = points.iter().map(|&(point, most)| SettlingStart {
+            start: start(point),
+            parameter: point.parameter,
+            most,
+        });
+        let settled = settle_together(&self.driven, &starts.collect::<Vec<_>>(), CLOSELY, budget);
+        let run = |((point, _), settled): (&(&SteadyMotion, usize), Option<Settled>)| {
+            let Settled { positions, peak, .. } = settled?;
+            Some(simulated(point, &positions, Some(peak), point.frequency, size))
+        };
+        points.iter().zip(settled).map(run).collect()
     }
 }
 
@@ -281,9 +395,17 @@ impl PreparedRequest<'_> {
     }
 }
 
-fn simulated(point: &SteadyMotion, positions: &[f64], frequency: f64, size: f64) -> Simulated {
+/// The error of a point against a simulation, whose peak is that of its samples unless it is known.
+fn simulated(
+    point: &SteadyMotion,
+    positions: &[f64],
+    peak: Option<f64>,
+    frequency: f64,
+    size: f64,
+) -> Simulated {
     let [cosine, sine] = first_harmonic(positions);
-    let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(positions));
+    let amplitude = cosine.hypot(sine);
+    let peak = peak.unwrap_or_else(|| half_of_peak_to_peak(positions));
     let of_size = relative_error([point.amplitude, point.peak], [amplitude, peak], size);
     Simulated {
         parameter: point.parameter,

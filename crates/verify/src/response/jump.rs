@@ -15,7 +15,7 @@
 //! legs located as events, and M(t). Without jumps the motion is followed in one piece by its Taylor
 //! series, where it has one.
 
-use super::driven::Driven;
+use super::driven::{Driven, TimedStart};
 use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, Trajectory, integrate_first_order,
 };
@@ -63,6 +63,12 @@ impl StopCondition {
 }
 
 impl VariationalMotion {
+    /// The motion from its Taylor series with the variations.
+    pub(super) fn from_series(path: Path) -> Option<Self> {
+        let end = path.states_at(path.end())?.try_into().ok()?;
+        Some(Self { course: Course::Series(Box::new(path)), stuck: 0.0, turned: false, end })
+    }
+
     /// Positions at equal steps of the duration, its end left out.
     pub fn positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = self.span();
@@ -153,16 +159,11 @@ pub fn follow(
 ) -> Option<VariationalMotion> {
     /// Largest number of legs of a period, beyond which the motion is given up.
     const MOST: usize = 400;
-    if let StopCondition::Time(time) = until
-        && let Some(path) = driven.varied_by_series(start, parameter, time)
-    {
-        let end = path.states_at(path.end())?.try_into().ok()?;
-        return Some(VariationalMotion {
-            course: Course::Series(Box::new(path)),
-            stuck: 0.0,
-            turned: false,
-            end,
-        });
+    if let StopCondition::Time(duration) = until {
+        let motion = TimedStart { start, parameter, duration };
+        if let Some(path) = driven.varied_by_series(&[motion]).pop().flatten() {
+            return VariationalMotion::from_series(path);
+        }
     }
     let mut run = NonsmoothRun::new(driven, start, parameter);
     let mut legs = Vec::new();

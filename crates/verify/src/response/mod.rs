@@ -15,6 +15,8 @@
 //! - [`balance`]: its equations for Fourier coefficients.
 //! - [`continuation`]: the branches.
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
+//! - `series`: the motion and the map of a period by Taylor series; `shooting`: branches by that map
+//!   where the force has corners; `free_swing`: the free motion there.
 //! - [`jump`]: motions across dry friction, sticking included; `sticking`: their branches.
 //! - [`bifurcation`]: where a branch changes.
 //! - [`backbone`]: the free motion without damping.
@@ -36,12 +38,15 @@ pub mod continuation;
 pub mod cycle;
 pub mod driven;
 mod error;
+mod free_swing;
 pub mod hopf;
 mod judgement;
 pub mod jump;
 mod ripple;
 mod seeds;
 mod self_excited;
+mod series;
+mod shooting;
 pub mod slow;
 pub mod stability;
 mod sticking;
@@ -70,7 +75,8 @@ use continuation::{BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use driven::Driven;
 use judgement::PointJudgement;
 use ripple::LocatedBifurcation;
-use seeds::{Seed, size_of};
+use seeds::{InitialMotions, Seed, size_of};
+use series::PeriodSeries;
 use slow::SlowResponse;
 use stability::SimulationBudget;
 
@@ -230,8 +236,8 @@ pub struct ResponseDiagram {
     pub undamped: bool,
     /// Whether the force jumps with the velocity, as dry friction does, or with the position.
     pub jumps: bool,
-    /// Whether all branches are those of the map of a period, because harmonic balance cannot treat
-    /// the jumps.
+    /// Whether all branches are those of the map of a period, because the force has corners, or
+    /// jumps that harmonic balance cannot treat.
     pub by_map: bool,
     /// Number of harmonics kept.
     pub harmonics: usize,
@@ -297,62 +303,26 @@ const MOST_BRANCHES: usize = 12;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
-    const FIRST: usize = 8;
     let asked = PreparedRequest::new(question)?;
-    // For the map of a period harmonics are only output, so that the largest number costs nothing.
-    let automatic = match asked.driven.is_balanced() {
-        true => FIRST,
-        false => MOST_HARMONICS,
+    if asked.period_series.is_none() {
+        return asked.balanced_response();
+    }
+    let shot = asked.shot_response();
+    // Where nearly all orbits are right a balance would not have smaller errors.
+    let is_answer = match &shot {
+        Ok(response) => {
+            response.verdict == Verdict::Pass || !response.complete || response.has_right_points()
+        }
+        Err(_) => question.interrupt.is_requested(),
     };
-    let first = question.harmonics.unwrap_or(automatic);
-    let (seeds, elsewhere) = asked.seeds(first)?;
-    let mut harmonics = first;
-    let mut before = (f64::INFINITY, usize::MAX);
-    let mut fewer: Option<ResponseDiagram> = None;
-    loop {
-        let attempt = asked.attempt(harmonics, &seeds);
-        let may_have_more = question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
-        if matches!(attempt, Err(ResponseError::NotFollowed { .. }))
-            && may_have_more
-            && fewer.is_none()
-        {
-            harmonics *= 2;
-            continue;
-        }
-        // If the computation is interrupted on the way to more harmonics, the result with fewer of
-        // them is the answer.
-        let mut response = match (attempt, fewer.take()) {
-            (Ok(response), None) => response,
-            (Ok(response), Some(_)) if response.complete => response,
-            (_, Some(response)) => ResponseDiagram { complete: false, ..response },
-            (Err(error), None) => return Err(error),
-        };
-        let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
-        let judged = 100 * response.unjudged <= points;
-        let resolved = !response.ends_with(BranchEnd::Harmonics);
-        let followed = response.elsewhere.is_empty();
-        let good = resolved
-            && judged
-            && followed
-            && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
-        // An error that more harmonics do not reduce has another cause, such as a jump of the
-        // force.
-        let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
-        let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
-        // Without a branch there is no error either.
-        before = if followed { now } else { (f64::INFINITY, usize::MAX) };
-        let fixed = question.harmonics.is_some() || !response.complete;
-        let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
-        if last {
-            response.elsewhere.extend(elsewhere);
-            response.elsewhere.sort_by(Elsewhere::in_order);
-            return match response.self_excited {
-                true => asked.without_tails(response),
-                false => Ok(response),
-            };
-        }
-        harmonics *= 2;
-        fewer = Some(response);
+    if is_answer {
+        return shot;
+    }
+    let balanced = PreparedRequest { period_series: None, ..asked }.balanced_response();
+    match (&shot, &balanced) {
+        (Ok(_), Ok(response)) if response.verdict != Verdict::Pass => shot,
+        (Ok(_), Err(_)) => shot,
+        _ => balanced,
     }
 }
 
@@ -360,6 +330,18 @@ impl ResponseDiagram {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
+    }
+
+    /// Whether all but one in twenty of the points are within the tolerance of a true motion, and no
+    /// motion is missed.
+    fn has_right_points(&self) -> bool {
+        let points = self.branches.iter().flat_map(|branch| &branch.points);
+        let is_right = |point: &SteadyMotion| {
+            point.error.is_some_and(|error| error <= self.question.tolerance)
+        };
+        let (all, wrong) = points
+            .fold((0, 0), |(all, wrong), point| (all + 1, wrong + usize::from(!is_right(point))));
+        20 * wrong <= all && !self.elsewhere.iter().any(|place| place.periods == Some(1))
     }
 
     /// This response with the largest error of its points and simulations, and the verdict on it.
@@ -413,6 +395,8 @@ struct PreparedRequest<'a> {
     /// The equation with all values but one.
     oscillator: Oscillator,
     driven: Driven,
+    /// The map of a period, if branches are found by shooting.
+    period_series: Option<PeriodSeries>,
     /// Progress of the search for initial motions.
     tried: Cell<SeedSearch>,
 }
@@ -460,8 +444,86 @@ impl<'a> PreparedRequest<'a> {
         if driven.self_excited && driven.undamped {
             return Err(ResponseError::NoDrive);
         }
-        let asked = Self { question, oscillator, driven, tried: Cell::default() };
+        // A number of harmonics is a wish for a balance of so many.
+        let shot = question.harmonics.is_none()
+            && !driven.smooth
+            && driven.jumps() == 0
+            && !driven.self_excited
+            && !driven.undamped;
+        let period_series = shot.then(|| PeriodSeries::new(&driven)).flatten();
+        let asked = Self { question, oscillator, driven, period_series, tried: Cell::default() };
         asked.has_frequency()
+    }
+
+    /// The response by shooting: harmonics are only output.
+    fn shot_response(&self) -> Result<ResponseDiagram, ResponseError> {
+        let InitialMotions { seeds, elsewhere, branches } = self.seeds(MOST_HARMONICS)?;
+        let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?;
+        response.elsewhere.extend(elsewhere);
+        response.elsewhere.sort_by(Elsewhere::in_order);
+        Ok(response)
+    }
+
+    /// The response by harmonic balance, with as many harmonics as it takes, or by the map of a
+    /// period from jump to jump.
+    fn balanced_response(&self) -> Result<ResponseDiagram, ResponseError> {
+        const FIRST: usize = 8;
+        // For the map of a period harmonics are only output, so that the largest number costs nothing.
+        let automatic = match self.driven.is_balanced() {
+            true => FIRST,
+            false => MOST_HARMONICS,
+        };
+        let first = self.question.harmonics.unwrap_or(automatic);
+        let InitialMotions { seeds, elsewhere, .. } = self.seeds(first)?;
+        let mut harmonics = first;
+        let mut before = (f64::INFINITY, usize::MAX);
+        let mut fewer: Option<ResponseDiagram> = None;
+        loop {
+            let attempt = self.attempt(harmonics, &seeds, &[]);
+            let may_have_more =
+                self.question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
+            if matches!(attempt, Err(ResponseError::NotFollowed { .. }))
+                && may_have_more
+                && fewer.is_none()
+            {
+                harmonics *= 2;
+                continue;
+            }
+            // If the computation is interrupted on the way to more harmonics, the result with fewer of
+            // them is the answer.
+            let mut response = match (attempt, fewer.take()) {
+                (Ok(response), None) => response,
+                (Ok(response), Some(_)) if response.complete => response,
+                (_, Some(response)) => ResponseDiagram { complete: false, ..response },
+                (Err(error), None) => return Err(error),
+            };
+            let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
+            let judged = 100 * response.unjudged <= points;
+            let resolved = !response.ends_with(BranchEnd::Harmonics);
+            let followed = response.elsewhere.is_empty();
+            let good = resolved
+                && judged
+                && followed
+                && response.error.is_some_and(|error| error <= 0.1 * self.question.tolerance);
+            // An error that more harmonics do not reduce has another cause, such as a jump of the
+            // force.
+            let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
+            let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
+            // Without a branch there is no error either.
+            before = if followed { now } else { (f64::INFINITY, usize::MAX) };
+            let fixed = self.question.harmonics.is_some() || !response.complete;
+            let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
+            if last {
+                response.elsewhere.extend(elsewhere);
+                response.elsewhere.sort_by(Elsewhere::in_order);
+                return match response.self_excited {
+                    true => self.without_tails(response),
+                    false => Ok(response),
+                };
+            }
+            harmonics *= 2;
+            fewer = Some(response);
+        }
     }
 
     /// Checks that the frequency of the drive is positive in all of the range.
@@ -503,14 +565,16 @@ impl<'a> PreparedRequest<'a> {
         }
     }
 
-    /// The whole diagram with this many harmonics.
-    fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
+    /// The whole diagram with this many harmonics; shooting knows some branches already.
+    fn attempt(
+        &self,
+        harmonics: usize,
+        seeds: &[Seed],
+        known: &[BranchPath],
+    ) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
         let balance = DrivenBalance::new(&self.driven, harmonics);
-        let mut paths = match self.driven.is_balanced() {
-            true => self.branches(&balance, seeds, size_of(seeds)),
-            false => vec![],
-        };
+        let mut paths = self.branches_through(&balance, seeds, size_of(seeds), known);
         let largest_motion = paths.iter().map(|path| largest(&balance, path));
         let size = largest_motion.fold(size_of(seeds), f64::max);
         self.follow_sticking(&balance, seeds, &mut paths, size);
@@ -552,12 +616,12 @@ impl<'a> PreparedRequest<'a> {
             self_excited: self.driven.self_excited,
             undamped: self.driven.undamped,
             jumps: self.driven.jumps() > 0,
-            by_map: !self.driven.is_balanced(),
+            by_map: !self.driven.is_balanced() || self.period_series.is_some(),
             harmonics: balance.core.harmonics,
             backbone: backbones(
                 &self.oscillator,
                 &self.driven,
-                harmonics,
+                (harmonics, self.period_series.is_some()),
                 question.range,
                 1.15 * amplitude,
             )?,
@@ -645,7 +709,10 @@ impl<'a> PreparedRequest<'a> {
         let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
         // Multipliers have a meaning only for a true motion.
         let of_true_motion = |judged: PointJudgement| judged.1.map(|truth| truth.floquet);
-        let floquet = |node: &BranchNode| of_true_motion(self.judged(balance, node));
+        let floquet = |node: &BranchNode| match node.truth {
+            Some(truth) => Some(truth.floquet),
+            None => of_true_motion(self.judged(balance, node)),
+        };
         let mut all_judged: Vec<Vec<PointJudgement>> = Vec::new();
         let mut changes = Vec::new();
         let mut ripple = None;
@@ -654,12 +721,7 @@ impl<'a> PreparedRequest<'a> {
             let points: usize = paths.iter().map(|path| path.nodes.len()).sum();
             let before: usize = all_judged.iter().map(Vec::len).sum();
             self.question.progress.begin(points - before);
-            let judged: Vec<PointJudgement> = path
-                .nodes
-                .iter()
-                .inspect(|_| self.question.progress.advance())
-                .map(|node| self.judged_in_time(balance, node))
-                .collect();
+            let judged = self.judged_in_time(balance, &path.nodes);
             let mut own: Vec<LocatedBifurcation> = Vec::new();
             for (index, (pair, known)) in path.nodes.windows(2).zip(judged.windows(2)).enumerate() {
                 let ([from, to], [before, after]) = (pair, known) else {
@@ -669,6 +731,9 @@ impl<'a> PreparedRequest<'a> {
                     break;
                 }
                 let between = |part: f64| match from.truth.or(to.truth) {
+                    Some(_) if self.period_series.is_some() => {
+                        self.shot_between(balance, from, to, part)
+                    }
                     Some(_) => self.stuck_between(balance, from, to, part),
                     None => walk.between(balance, from, to, part),
                 };

@@ -11,18 +11,24 @@
 //! equation as it was given, by Taylor series, or by Runge-Kutta where it has none; only the start is
 //! taken from the balance.
 
-use nalgebra::{DMatrix, Matrix2};
+use nalgebra::{Matrix2, Vector2};
 use num_complex::Complex;
 
-use super::driven::Driven;
+use super::driven::{Driven, TimedStart};
 use super::jump::{StopCondition, VariationalMotion, evaluations_of, follow, positions_on};
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
-use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
-use crate::system::Path;
+use crate::numeric::ode::{
+    Action, Event, IntegrationOptions, Point, Trajectory, integrate_first_order,
+};
+use crate::numeric::periodic::{PeriodicOrbit, SearchStep, Shooting, eigenvalues_of_two};
+use crate::system::{LANES, Path};
 
 /// Number of samples of a period for its harmonics and peaks.
 pub(super) const SAMPLES: usize = 256;
+
+/// Number of samples of an orbit that meets corners: harmonics beyond half of them are added to the
+/// lower ones.
+pub(super) const ORBIT_SAMPLES: usize = 1024;
 
 /// The monodromy matrix: the image of a small disturbance of a periodic motion after one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,29 +123,89 @@ pub(super) fn convergence_test(closely: f64) -> impl FnMut(f64, f64) -> bool {
     }
 }
 
+/// A guess of a driven periodic motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionGuess {
+    /// Position and velocity at phase zero.
+    pub start: [f64; 2],
+    /// The parameter.
+    pub parameter: f64,
+    /// The approximate amplitude.
+    pub size: f64,
+}
+
 /// The periodic motion whose start is near this one; `None` if shooting does not converge, or moves
 /// far away.
-pub fn periodic_motion(
-    driven: &Driven,
-    guess: [f64; 2],
-    parameter: f64,
-    size: f64,
-) -> Option<TrueMotion> {
-    let omega = driven.frequency_at(parameter);
-    let (period, sizes) = (std::f64::consts::TAU / omega, [size, size * omega]);
-    let follow = |start: [f64; 2], period: f64| {
-        let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
-        let course = follow(driven, start, parameter, StopCondition::Time(period), &options)?;
-        let [x, v, variations @ ..] = course.end;
-        Some(([x, v], Matrix2::from_column_slice(&variations), course))
+pub fn periodic_motion(driven: &Driven, guess: MotionGuess) -> Option<TrueMotion> {
+    periodic_motions(driven, &[guess]).pop().flatten()
+}
+
+/// The periodic motions near several guesses, as [`periodic_motion`] finds each; they are followed
+/// side by side where they have Taylor series.
+///
+/// A motion costs two to four periods with their variations; eight side by side cost little more
+/// than one.
+pub fn periodic_motions(driven: &Driven, guesses: &[MotionGuess]) -> Vec<Option<TrueMotion>> {
+    let shooting = |guess: &MotionGuess| {
+        let omega = driven.frequency_at(guess.parameter);
+        Shooting {
+            guess: guess.start,
+            period: std::f64::consts::TAU / omega,
+            rates: None,
+            sizes: [guess.size, guess.size * omega],
+            solve: |matrix, missed| matrix.lu().solve(&missed),
+            most: 12,
+            far: FAR,
+            known: &[],
+        }
     };
-    let solve = |matrix: DMatrix<f64>, missed| matrix.lu().solve(&missed);
-    let shooting =
-        Shooting { guess, period, rates: None, sizes, solve, most: 12, far: FAR, known: &[] };
-    let PeriodicOrbit { start, monodromy, path, .. } =
-        shooting.orbit(follow, convergence_test(1e-9))?;
-    let floquet = Floquet { monodromy, self_excited: false };
-    Some(TrueMotion::new(start, omega, floquet, &path.positions(SAMPLES), path.stuck()))
+    let shootings: Vec<Shooting<2>> = guesses.iter().map(shooting).collect();
+    let mut searches: Vec<_> = shootings.iter().map(Shooting::begin).collect();
+    let mut tests: Vec<_> = guesses.iter().map(|_| convergence_test(1e-9)).collect();
+    let mut found: Vec<Option<TrueMotion>> = vec![None; guesses.len()];
+    let mut going: Vec<usize> = (0..guesses.len()).collect();
+    while !going.is_empty() {
+        let motion = |index: &usize| TimedStart {
+            start: searches[*index].start(),
+            parameter: guesses[*index].parameter,
+            duration: searches[*index].period(),
+        };
+        let motions: Vec<TimedStart> = going.iter().map(motion).collect();
+        let mut followed = followed_together(driven, &motions).into_iter();
+        going.retain(|&index| {
+            let Some(course) = followed.next().flatten() else { return false };
+            let [x, v, variations @ ..] = course.end;
+            let image = ([x, v], Matrix2::from_column_slice(&variations), course);
+            match searches[index].advance(image, &mut tests[index]) {
+                SearchStep::Going => true,
+                SearchStep::Failed => false,
+                SearchStep::Found(PeriodicOrbit { start, monodromy, path, .. }) => {
+                    let omega = driven.frequency_at(guesses[index].parameter);
+                    let floquet = Floquet { monodromy, self_excited: false };
+                    let (positions, stuck) = (path.positions(SAMPLES), path.stuck());
+                    found[index] = Some(TrueMotion::new(start, omega, floquet, &positions, stuck));
+                    false
+                }
+            }
+        });
+    }
+    found
+}
+
+/// Several motions with their variations, by Taylor series side by side, or each by itself where it
+/// has none; `None` for one that cannot be followed.
+fn followed_together(driven: &Driven, motions: &[TimedStart]) -> Vec<Option<VariationalMotion>> {
+    let paths = driven.varied_by_series(motions);
+    let course = |(path, motion): (Option<Path>, &TimedStart)| match path {
+        Some(path) => VariationalMotion::from_series(path),
+        None => {
+            let &TimedStart { start, parameter, duration } = motion;
+            let omega = driven.frequency_at(parameter);
+            let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
+            follow(driven, start, parameter, StopCondition::Time(duration), &options)
+        }
+    };
+    paths.into_iter().zip(motions).map(course).collect()
 }
 
 /// The multipliers of a motion that is given with its frequency, not followed: `motion` has
@@ -210,6 +276,108 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     0.5 * (top(1.0) + top(-1.0))
 }
 
+/// Half of the way from the lowest to the highest point of a path by series, from its turning
+/// points; `None` if it does not turn twice.
+pub(super) fn half_of_travel(path: &Path) -> Option<f64> {
+    let turns = path.zeros(1, 0.0)?;
+    let positions = turns.iter().filter_map(|time| path.state_at(*time, 0));
+    // A turn at the very ends may be missed by rounding, and is their position.
+    let ends = [path.state_at(0.0, 0)?, path.state_at(path.end(), 0)?];
+    let [low, high] = positions
+        .chain(ends)
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    (turns.len() >= 2).then_some(0.5 * (high - low))
+}
+
+/// The motion near an orbit that was found by series, followed over a period in time by a
+/// Runge-Kutta method, which evaluates the force as it was given and uses no series; it begins where
+/// one step of Newton's method puts the closed orbit. Where that is not close, the motion is
+/// followed once more with finer steps. `None` if it cannot be followed.
+///
+/// A step ends at every corner of the force, so that the touch of a stop is not stepped over. A touch
+/// costs some 20 to 60 steps of 16 evaluations, hardly dependent on the stiffness.
+pub fn checked_orbit(driven: &Driven, orbit: &TrueMotion, parameter: f64) -> Option<TrueMotion> {
+    /// Tolerance of a step where the motion does not close: beside a grazing one small errors grow
+    /// a thousand times, and a touch may be so short that it hides between two steps.
+    const FINEST: f64 = 1e-2 * TOLERANCE;
+    /// Ratio to the size of the distance of the closed orbit above which the finer steps count.
+    const CLOSE: f64 = 1e-6;
+    let ([x, v], omega) = (orbit.start, orbit.frequency);
+    let followed = |tolerance: f64| {
+        let legs = legs_of_a_period(driven, orbit, parameter, tolerance)?;
+        let end = legs.last()?.end().y;
+        let missed = Vector2::new(end[0] - x, end[1] - v);
+        let away = Matrix2::identity() - orbit.floquet.monodromy;
+        let step = away.lu().solve(&missed)?;
+        Some((legs, end, step))
+    };
+    let is_close = |step: &Vector2<f64>| step[0].hypot(step[1] / omega) <= CLOSE * orbit.peak;
+    let (legs, end, step) = match followed(TOLERANCE) {
+        Some(found) if is_close(&found.2) => found,
+        first => followed(FINEST).or(first)?,
+    };
+    let time = |sample: usize| std::f64::consts::TAU / omega * sample as f64 / ORBIT_SAMPLES as f64;
+    let mut leg = 0;
+    let position = |sample: usize| {
+        while leg + 1 < legs.len() && time(sample) >= legs[leg].end().t {
+            leg += 1;
+        }
+        Some(legs[leg].state_at(time(sample))?.y[0])
+    };
+    let positions: Vec<f64> = (0..ORBIT_SAMPLES).map_while(position).collect();
+    if positions.len() < ORBIT_SAMPLES {
+        return None;
+    }
+    let start = [x + step[0], v + step[1]];
+    let truth = TrueMotion::new(start, omega, orbit.floquet, &positions, 0.0);
+    let turns = legs.iter().flat_map(|leg| leg.occurrences()).filter(|turn| turn.event == 0);
+    let [low, high] = turns
+        .map(|turn| turn.state.y[0])
+        .chain([x, end[0]])
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    Some(TrueMotion { peak: 0.5 * (high - low), ..truth })
+}
+
+/// A period of a motion by Runge-Kutta, leg by leg between the corners of the force; the first event
+/// of each leg is a turning point. `None` if it cannot be followed.
+fn legs_of_a_period(
+    driven: &Driven,
+    orbit: &TrueMotion,
+    parameter: f64,
+    tolerance: f64,
+) -> Option<Vec<Trajectory<Point<[f64; 2]>>>> {
+    /// Largest number of legs.
+    const MOST: usize = 400;
+    let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
+        *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
+    };
+    let turns = || Event::new(|point: &Point<[f64; 2]>| point.y[1], Action::Record);
+    let corner = |index: usize| {
+        let guard = move |point: &Point<[f64; 2]>| {
+            driven.corner(index, &[point.y[0], point.y[1], point.t, parameter])
+        };
+        Event::new(guard, Action::Stop)
+    };
+    let period = std::f64::consts::TAU / orbit.frequency;
+    let options = options(orbit.peak, tolerance);
+    let mut begin = Point { t: 0.0, y: orbit.start };
+    let mut legs = Vec::new();
+    for _ in 0..MOST {
+        let events: Vec<_> =
+            [turns()].into_iter().chain((0..driven.corners()).map(corner)).collect();
+        let leg = integrate_first_order(rates, begin, period, &events, &options).ok()?;
+        if !leg.is_complete() {
+            return None;
+        }
+        begin = leg.end();
+        legs.push(leg);
+        if begin.t >= period {
+            return Some(legs);
+        }
+    }
+    None
+}
+
 /// The budget of several simulations together: the evaluations of the force that are left, and the
 /// interrupt.
 #[derive(Clone, Copy, Debug)]
@@ -238,6 +406,8 @@ pub struct Settled {
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
+    /// Half of the way from the lowest to the highest point.
+    pub peak: f64,
 }
 
 /// A period of a simulation, in one piece or in legs between the jumps of the force.
@@ -276,43 +446,109 @@ impl Period {
     }
 }
 
-/// Follows the equation as it was given from a start, period by period, until it repeats itself to
-/// `closely` (of its size), or `most` periods are over; the tolerance of a step is a thousandth of
-/// that. `None` if it cannot be followed: it escapes, or the `budget` is spent.
-pub fn settle(
+/// A simulation that is to settle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SettlingStart {
+    /// Position and velocity at phase zero.
+    pub start: [f64; 2],
+    /// The parameter.
+    pub parameter: f64,
+    /// The largest number of periods.
+    pub most: usize,
+}
+
+/// Follows the equation as it was given from several starts, period by period, each until it repeats
+/// itself to `closely` (of its size), or its largest number of periods is over; the tolerance of a
+/// step is a thousandth of that. Those that have Taylor series go side by side. `None` for one that
+/// cannot be followed: it escapes, or the `budget` is spent.
+pub fn settle_together(
     driven: &Driven,
-    start: [f64; 2],
-    parameter: f64,
-    (most, closely): (usize, f64),
+    starts: &[SettlingStart],
+    closely: f64,
     budget: &mut SimulationBudget,
-) -> Option<Settled> {
-    /// Largest number of periods within which a motion may repeat itself.
-    const LONGEST: usize = 8;
-    const BOUND: f64 = 1e8;
-    /// Number of periods over which the largest difference is taken, and the largest fraction of it
-    /// that may remain a quarter of the run later.
-    const WINDOW: usize = 16;
-    const FALLING: f64 = 0.9;
-    let omega = driven.frequency_at(parameter);
-    let period = std::f64::consts::TAU / omega;
-    let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
-        *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
-    };
-    let settings = |size: f64| options(size, (1e-3 * closely).clamp(1e-13, 1e-6));
-    let mut states = vec![start];
-    let mut quiet = 0;
-    let mut last = None;
-    for _ in 0..most {
-        let begin = states.last().copied()?;
+) -> Vec<Option<Settled>> {
+    // Without series nothing is gained side by side, and a budget that is spent should leave the
+    // first of them settled.
+    let together = if driven.has_series() { 4 * LANES } else { 1 };
+    let mut all = Vec::new();
+    for starts in starts.chunks(together) {
+        let mut runs: Vec<Settling> = starts.iter().map(Settling::new).collect();
+        let mut going: Vec<usize> = (0..runs.len()).collect();
+        while !going.is_empty() {
+            let motions: Vec<TimedStart> =
+                going.iter().map(|index| runs[*index].next_period(driven)).collect();
+            let mut paths = driven.by_series(&motions).into_iter();
+            going.retain(|&index| {
+                let path = paths.next().flatten().map(Period::Series);
+                runs[index].advance(driven, path, closely, budget)
+            });
+        }
+        all.extend(runs.into_iter().map(|run| run.settled(driven)));
+    }
+    all
+}
+
+/// A simulation in progress.
+struct Settling {
+    parameter: f64,
+    /// The number of periods that are left.
+    left: usize,
+    /// The states at the beginning of each period.
+    states: Vec<[f64; 2]>,
+    /// The number of consecutive periods after which it has repeated itself.
+    quiet: usize,
+    last: Option<Period>,
+}
+
+impl Settling {
+    fn new(start: &SettlingStart) -> Self {
+        let &SettlingStart { start, parameter, most } = start;
+        Self { parameter, left: most, states: vec![start], quiet: 0, last: None }
+    }
+
+    fn next_period(&self, driven: &Driven) -> TimedStart {
+        let duration = std::f64::consts::TAU / driven.frequency_at(self.parameter);
+        let start = self.states[self.states.len() - 1];
+        TimedStart { start, parameter: self.parameter, duration }
+    }
+
+    /// Takes a period, given by its series if it has one. Returns whether another one follows; a
+    /// simulation that fails keeps no period.
+    fn advance(
+        &mut self,
+        driven: &Driven,
+        series: Option<Period>,
+        closely: f64,
+        budget: &mut SimulationBudget,
+    ) -> bool {
+        self.last = if self.left == 0 { None } else { self.taken(driven, series, closely, budget) };
+        self.left = self.left.saturating_sub(1);
+        self.last.is_some() && self.quiet < 3 && self.left > 0
+    }
+
+    fn taken(
+        &mut self,
+        driven: &Driven,
+        series: Option<Period>,
+        closely: f64,
+        budget: &mut SimulationBudget,
+    ) -> Option<Period> {
+        const BOUND: f64 = 1e8;
+        let TimedStart { start: begin, parameter, duration } = self.next_period(driven);
+        let omega = driven.frequency_at(parameter);
         let size = begin[0].abs().max(begin[1].abs() / omega);
+        let settings = options(size, (1e-3 * closely).clamp(1e-13, 1e-6));
         let path = if driven.jumps() > 0 {
-            let until = StopCondition::Time(period);
-            Period::Legs(follow(driven, begin, parameter, until, &settings(size))?)
-        } else if let Some(path) = driven.by_series(begin, parameter, period) {
-            Period::Series(path)
+            let until = StopCondition::Time(duration);
+            Period::Legs(follow(driven, begin, parameter, until, &settings)?)
+        } else if let Some(path) = series {
+            path
         } else {
+            let rates = |t: f64, y: &[f64; 2], rates: &mut [f64; 2]| {
+                *rates = [y[1], -driven.force_in_time(&[y[0], y[1], t, parameter])];
+            };
             let begin = Point { t: 0.0, y: begin };
-            Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
+            Period::One(integrate_first_order(rates, begin, duration, &[], &settings).ok()?)
         };
         let end = path.end()?;
         if !budget.spend(path.evaluations()) || size > BOUND {
@@ -321,38 +557,55 @@ pub fn settle(
         let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);
         let away = path.positions(32).into_iter().chain([end[0]]);
         let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
-        states.push(end);
-        last = Some(path);
+        self.states.push(end);
         // A state of rest counts as periodic.
-        quiet = if moved <= closely * extent.max(1e-12) { quiet + 1 } else { 0 };
-        if quiet >= 3 {
-            break;
-        }
+        self.quiet = if moved <= closely * extent.max(1e-12) { self.quiet + 1 } else { 0 };
+        Some(path)
     }
-    let positions = last?.positions(SAMPLES);
-    let state = states.last().copied()?;
-    let extent = half_of_peak_to_peak(&positions).max(1e-12);
-    let apart = |index: usize, count: usize| {
-        let [one, other] = [states.get(index)?, states.get(index.checked_sub(count)?)?];
-        Some((one[0] - other[0]).hypot((one[1] - other[1]) / omega))
-    };
-    let end = states.len() - 1;
-    let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
-    // A slowly decaying disturbance repeats itself, too, if its frequency is a fraction of that of
-    // the drive.
-    let dies_out = |count: usize| {
-        let around = |quarter: usize| {
-            let last = end * quarter / 4;
-            let differences =
-                (last.saturating_sub(WINDOW)..=last).filter_map(|index| apart(index, count));
-            differences.fold(0.0_f64, f64::max)
+
+    /// The steady state; `None` if the simulation failed.
+    fn settled(self, driven: &Driven) -> Option<Settled> {
+        /// Largest number of periods within which a motion may repeat itself.
+        const LONGEST: usize = 8;
+        /// Number of periods over which the largest difference is taken, and the largest fraction
+        /// of it that may remain a quarter of the run later.
+        const WINDOW: usize = 16;
+        const FALLING: f64 = 0.9;
+        let Self { parameter, states, last, .. } = self;
+        let omega = driven.frequency_at(parameter);
+        let last = last?;
+        let positions = last.positions(SAMPLES);
+        let state = states.last().copied()?;
+        // At a stiff stop a motion turns between two samples.
+        let turns = match &last {
+            Period::Series(path) if !driven.smooth => half_of_travel(path),
+            _ => None,
         };
-        let sizes = [1, 2, 3, 4].map(around);
-        end > 8 * WINDOW && sizes.windows(2).all(|pair| pair[1] < FALLING * pair[0])
-    };
-    Some(Settled {
-        state,
-        returns_after: (1..=LONGEST).find(|count| repeats(*count) || dies_out(*count)),
-        positions,
-    })
+        let peak = turns.unwrap_or_else(|| half_of_peak_to_peak(&positions));
+        let extent = peak.max(1e-12);
+        let apart = |index: usize, count: usize| {
+            let [one, other] = [states.get(index)?, states.get(index.checked_sub(count)?)?];
+            Some((one[0] - other[0]).hypot((one[1] - other[1]) / omega))
+        };
+        let end = states.len() - 1;
+        let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
+        // A slowly decaying disturbance repeats itself, too, if its frequency is a fraction of that of
+        // the drive.
+        let dies_out = |count: usize| {
+            let around = |quarter: usize| {
+                let last = end * quarter / 4;
+                let differences =
+                    (last.saturating_sub(WINDOW)..=last).filter_map(|index| apart(index, count));
+                differences.fold(0.0_f64, f64::max)
+            };
+            let sizes = [1, 2, 3, 4].map(around);
+            end > 8 * WINDOW && sizes.windows(2).all(|pair| pair[1] < FALLING * pair[0])
+        };
+        Some(Settled {
+            state,
+            returns_after: (1..=LONGEST).find(|count| repeats(*count) || dies_out(*count)),
+            positions,
+            peak,
+        })
+    }
 }

@@ -8,7 +8,7 @@ use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
 use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
-use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
+use super::stability::{MotionGuess, TOLERANCE, options, periodic_motion, periodic_motions};
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
 
 /// A motion at a value of the parameter, by its start and those of its images, shifted by a drive
@@ -32,17 +32,25 @@ impl PreparedRequest<'_> {
         const NOTHING: f64 = 1e-6;
         let mut known: Vec<MotionWithImages> = Vec::new();
         let mut found = Vec::new();
-        for seed in seeds {
-            let Some(start) = seed.start.filter(|_| !self.driven.self_excited) else {
-                continue;
-            };
+        let is_meant = |seed: &&Seed| !self.driven.self_excited && seed.start.is_some();
+        let guess = |seed: &Seed| {
+            Some(MotionGuess { start: seed.start?, parameter: seed.parameter, size: seed.extent() })
+        };
+        let guesses: Vec<MotionGuess> = seeds.iter().filter(is_meant).filter_map(guess).collect();
+        // A simulation ends before it has settled completely, so that shooting refines it.
+        let together = if self.driven.has_series() { guesses.len().max(1) } else { 1 };
+        let truths = guesses.chunks(together).flat_map(|guesses| {
+            match self.question.interrupt.is_requested() {
+                true => vec![None; guesses.len()],
+                false => periodic_motions(&self.driven, guesses),
+            }
+        });
+        for (guess, truth) in guesses.iter().zip(truths) {
             if self.question.interrupt.is_requested() {
                 return found;
             }
-            let (parameter, extent) = (seed.parameter, half_of_peak_to_peak(&seed.positions));
-            // A simulation ends before it has settled completely, so that shooting refines it.
-            let truth = periodic_motion(&self.driven, start, parameter, extent)
-                .filter(|_| extent > NOTHING * size);
+            let MotionGuess { parameter, size: extent, .. } = *guess;
+            let truth = truth.filter(|_| extent > NOTHING * size);
             let Some(start) = truth.map(|truth| truth.start) else {
                 continue;
             };
@@ -104,9 +112,10 @@ impl PreparedRequest<'_> {
         let [low, high] = self.question.range;
         let parameter = motion.parameter;
         let is_it = |guess: [f64; 2]| {
-            let truth = periodic_motion(&self.driven, guess, parameter, motion.size);
+            let guess = MotionGuess { start: guess, parameter, size: motion.size };
+            let truth = periodic_motion(&self.driven, guess);
             // A motion to which shooting does not converge is taken as simulated.
-            self.is_one(motion, truth.map_or(guess, |truth| truth.start))
+            self.is_one(motion, truth.map_or(guess.start, |truth| truth.start))
         };
         // A branch may end a little before an end of the range.
         let ends = [path.nodes.first(), path.nodes.last()].into_iter().flatten();

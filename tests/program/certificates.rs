@@ -598,7 +598,7 @@ fn a_proved_impact_is_a_document() {
     };
     let (text, json) = (printed("text"), printed("json"));
     let proof: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-    let phases = run(&["impact", "--format", "json"]);
+    let phases = run(&["impact", "--compare", "--format", "json"]);
     let phases: serde_json::Value = serde_json::from_slice(&phases.stdout).expect("JSON");
     for key in ["time_to_contact", "speed", "penetration", "duration", "period"] {
         let middle = proof["proved"][key]["middle"].as_str().expect("digits");

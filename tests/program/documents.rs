@@ -245,6 +245,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",
+        Some("lindstedt/impact-certificate/1") => "/closed_forms/0",
         Some("lindstedt/study/1" | "lindstedt/point/1") => "",
         _ => "/entries/0/methods/0",
     };

@@ -311,7 +311,7 @@ def modules() -> dict[str, str]:
 RESULTS = {
     "derive": "Law",
     "compare": "Comparison",
-    "impact": "Impact | ImpactComparison",
+    "impact": "Impact | ImpactCertificate | ImpactComparison",
     "simulate": "Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep",
     "response": "Response",
     "friction": "Friction",

@@ -27,12 +27,15 @@ OWN = {
     "Audit": ("audits", "Audit"),
     "CertificateDocument": ("certificates", "Certificate"),
     "Comparison": ("comparison", "Comparison"),
+    "Friction": ("tabulated", "Friction"),
+    "Materials": ("tabulated", "Materials"),
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),
     "Response": ("branches", "Response"),
     "Simulation": ("motions", "Simulation"),
     "Solution": ("law", "Law"),
+    "Stability": ("tabulated", "Stability"),
     "Sweep": ("motions", "Sweep"),
 }
 

@@ -15,16 +15,14 @@ if TYPE_CHECKING:
     from .comparison import Comparison
     from .designs import Optimization
     from .documents.certificate import DampedCertificateDocument
-    from .documents.friction import Friction
     from .documents.impact import Impact
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
-    from .documents.materials import Materials
     from .documents.primary import Primary
     from .documents.primary_sweep import PrimarySweep
-    from .documents.stability import Stability
     from .law import Law
     from .motions import Motion, MotionSweep, Simulation, Sweep
+    from .tabulated import Friction, Materials, Stability
 
 
 def derive(

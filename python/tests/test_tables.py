@@ -53,5 +53,10 @@ def test_pictures():
     ls.response("x'' + x'/10 + x + x^3/10 = F*cos(W*t)", vary={"W": (0.8, 1.2)}, F=0.1).plot()
     ls.simulate("duffing", x=1, eps=0.1, until=5).plot()
     ls.simulate().plot()
+    ls.friction().plot()
+    materials = ls.materials().plot()
+    assert len(materials.lines) == 5 and materials.get_xscale() == "log"
+    curves = ls.stability("x'' + (delta + eps*cos(t))*x = 0", eps=1).plot()
+    assert len(curves.lines) == 14
     ls.simulate(sweep={"zeta": (0.01, 0.03, 3)}).plot(what="penetration")
     pyplot.close("all")

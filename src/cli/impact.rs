@@ -122,12 +122,6 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             "--certify draws no picture: leave it out, or the picture".to_owned(),
         ));
     }
-    if common.format() == Format::Json {
-        return Err(Failure::Usage(
-            "--certify has no JSON: everything is proved again from A, xc and gamma; print it as text, LaTeX or a page"
-                .to_owned(),
-        ));
-    }
     let tolerance = tolerance(common);
     let towards = match setup.side {
         Side::Right => 1.0,
@@ -150,7 +144,10 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         document: &report::impact_certificate(&report),
         width: width(common.output.as_deref()),
         picture: None,
-        other: &no_such,
+        other: &|format| match format {
+            Format::Json => json_text(&json::impact_certificate(&report)),
+            format => no_such(format),
+        },
     };
     let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
     Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })

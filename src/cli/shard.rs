@@ -40,7 +40,7 @@ pub(super) struct Points<'a> {
     pub(super) together: usize,
     /// The template of the bar.
     pub(super) bar: &'a str,
-    /// What varies, at the point of this index.
+    /// Returns the values of what varies, at the point of this index.
     pub(super) inputs: &'a dyn Fn(usize) -> Map<String, Value>,
 }
 
@@ -129,7 +129,7 @@ pub(super) fn unreadable(index: usize) -> Failure {
 /// that an interrupt kept from its end.
 ///
 /// # Errors
-/// Those of `follow`; a row that JSON cannot hold.
+/// The errors of `follow`, and a row that JSON cannot hold.
 pub(super) fn write<R: Serialize + DeserializeOwned>(
     shard: Shard,
     common: &Common,

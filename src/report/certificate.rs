@@ -504,6 +504,12 @@ fn stability(exponent: &Enclosure) -> String {
 
 /// The number with its known digits, and a bound of its distance from the printed one.
 pub(super) fn enclosed(enclosure: &Enclosure) -> String {
+    let (text, radius) = known_digits(enclosure);
+    format!("{text} +- {}", rounded_up(radius, 4))
+}
+
+/// The known digits of a number, and a bound of its distance from what they say.
+pub(crate) fn known_digits(enclosure: &Enclosure) -> (String, f64) {
     /// Largest number of printed digits.
     const MOST: i32 = 34;
     let radius = enclosure.radius.value();
@@ -512,8 +518,7 @@ pub(super) fn enclosed(enclosure: &Enclosure) -> String {
     let text = plain_decimal(&enclosure.middle, decimals);
     let rounding = (&enclosure.middle - plain_fraction(&enclosure.middle, decimals)).abs();
     // The bound of a sum is rounded up, as its parts are.
-    let printed = enclosure.radius + Bound::of_fraction(&rounding);
-    format!("{text} +- {}", rounded_up(printed.value(), 4))
+    (text, (enclosure.radius + Bound::of_fraction(&rounding)).value())
 }
 
 /// A tolerance in percent, exactly.

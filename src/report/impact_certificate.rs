@@ -24,7 +24,7 @@ pub struct ImpactCertificateReport<'a> {
 impl ImpactCertificateReport<'_> {
     /// The names of the numbers, and the relative errors of Runge-Kutta and of each closed form
     /// from both sides.
-    fn errors(&self) -> Vec<(&'static str, Vec<SizeBounds>)> {
+    pub fn errors(&self) -> Vec<(&'static str, Vec<SizeBounds>)> {
         let proved = self.enclosure.in_order();
         let quantities = self.impact.quantities().into_iter().zip(proved);
         let errors = quantities.map(|(quantity, (name, truth))| {

@@ -29,6 +29,8 @@ pub use audit::audit;
 pub(crate) use audit::{
     computed as audit_computed, entry as audit_entry, printed as audit_printed,
 };
+#[cfg(feature = "json")]
+pub(crate) use certificate::known_digits;
 pub use certificate::{AnyCertificate, CertificateReport, certificate};
 pub use comparison::comparison;
 pub use friction::friction;

@@ -559,7 +559,9 @@ fn forces_that_jump_on_no_line_are_refused() {
         let error = ask(force).expect_err(force).to_string();
         assert!(error.contains("jumps with the velocity"), "{force}: {error}");
     }
-    assert!(ask("x'^2*sgn(x')/20").is_ok_and(|found| !found.by_map));
+    let corner = ask("x'^2*sgn(x')/20").expect("a response");
+    assert!(!corner.jumps && corner.unjudged == 0);
+    assert!(corner.error.is_some_and(|error| error < 1e-5), "{:?}", corner.error);
     assert!(
         ask("(sgn(x') + sgn(x' - 1))/20").is_ok_and(|found| found.by_map && found.unjudged == 0)
     );

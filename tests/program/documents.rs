@@ -9,10 +9,11 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
-    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
+    MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
+    StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -95,6 +96,7 @@ fn reads_back(document: &Value) {
         DocumentKind::Comparison => again::<ComparisonDocument>(document),
         DocumentKind::Impact => again::<ImpactDocument>(document),
         DocumentKind::ImpactComparison => again::<ImpactComparisonDocument>(document),
+        DocumentKind::ImpactCertificate => again::<ImpactCertificateDocument>(document),
         DocumentKind::Simulation => again::<SimulationDocument>(document),
         DocumentKind::Sweep => again::<SweepDocument>(document),
         DocumentKind::Friction => again::<FrictionDocument>(document),
@@ -146,6 +148,7 @@ fn documents() -> Vec<(String, Value)> {
     }
     add(&["paper"]);
     add(&["impact", "--compare"]);
+    add(&["impact", "--certify"]);
     for file in files("examples/lagrange", ".toml") {
         add(&["lagrange", &file.to_string_lossy()]);
     }
@@ -242,6 +245,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",
+        Some("lindstedt/impact-certificate/1") => "/closed_forms/0",
         Some("lindstedt/study/1" | "lindstedt/point/1") => "",
         _ => "/entries/0/methods/0",
     };

@@ -9,10 +9,11 @@ use serde_json::Value;
 
 use super::{
     AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactComparisonDocument,
-    ImpactDocument, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
-    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
+    MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
+    StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -25,6 +26,9 @@ impl DocumentKind {
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
+            Self::ImpactCertificate => {
+                generator.into_root_schema_for::<ImpactCertificateDocument>()
+            }
             Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
             Self::Motion => generator.into_root_schema_for::<MotionDocument>(),
             Self::MotionSweep => generator.into_root_schema_for::<MotionSweepDocument>(),

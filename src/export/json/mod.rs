@@ -22,6 +22,7 @@ pub mod friction;
 #[cfg(feature = "schema")]
 mod generated_schema;
 pub mod impact;
+pub mod impact_certificate;
 pub mod impact_comparison;
 pub mod lagrangian;
 pub mod materials;
@@ -53,6 +54,7 @@ pub use damped_certificate::{
 };
 pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};
+pub use impact_certificate::{ImpactCertificateDocument, impact_certificate};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use lagrangian::{LagrangianDocument, lagrangian};
 pub use materials::{MaterialsDocument, materials};

@@ -21,14 +21,14 @@ use crate::trajectory::{Crossing, SweptMotion, in_words};
 /// A number, which JSON has only where it is finite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Number {
+pub enum AnyNumber {
     /// A finite number.
     Finite(f64),
     /// `inf`, `-inf` or `NaN`.
     Word(String),
 }
 
-impl From<f64> for Number {
+impl From<f64> for AnyNumber {
     fn from(value: f64) -> Self {
         match value.is_finite() {
             true => Self::Finite(value),
@@ -37,7 +37,7 @@ impl From<f64> for Number {
     }
 }
 
-impl Number {
+impl AnyNumber {
     fn read(&self) -> Option<f64> {
         match self {
             Self::Finite(value) => Some(*value),
@@ -46,35 +46,35 @@ impl Number {
     }
 }
 
-fn numbers(values: &[f64]) -> Vec<Number> {
-    values.iter().copied().map(Number::from).collect()
+fn numbers(values: &[f64]) -> Vec<AnyNumber> {
+    values.iter().copied().map(AnyNumber::from).collect()
 }
 
-fn read_numbers(values: &[Number]) -> Option<Vec<f64>> {
-    values.iter().map(Number::read).collect()
+fn read_numbers(values: &[AnyNumber]) -> Option<Vec<f64>> {
+    values.iter().map(AnyNumber::read).collect()
 }
 
 /// A rest time in units of time, or the name of the reason why there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum RestTime {
+pub enum RestOrReason {
     /// The time.
     Time(f64),
     /// The reason.
     Reason(NoRest),
 }
 
-impl From<Result<f64, NoRest>> for RestTime {
+impl From<Result<f64, NoRest>> for RestOrReason {
     fn from(found: Result<f64, NoRest>) -> Self {
         found.map_or_else(Self::Reason, Self::Time)
     }
 }
 
-impl From<RestTime> for Result<f64, NoRest> {
-    fn from(found: RestTime) -> Self {
+impl From<RestOrReason> for Result<f64, NoRest> {
+    fn from(found: RestOrReason) -> Self {
         match found {
-            RestTime::Time(time) => Ok(time),
-            RestTime::Reason(reason) => Err(reason),
+            RestOrReason::Time(time) => Ok(time),
+            RestOrReason::Reason(reason) => Err(reason),
         }
     }
 }
@@ -85,19 +85,19 @@ pub struct SweepPoint {
     /// The number of contacts.
     pub impacts: usize,
     /// The rest time.
-    pub rest_time: RestTime,
+    pub rest_time: RestOrReason,
     /// The same without a barrier; null where it was not asked for.
-    pub rest_no_barrier: Option<RestTime>,
+    pub rest_no_barrier: Option<RestOrReason>,
     /// The same with a barrier that loses nothing; null likewise.
-    pub rest_lossless: Option<RestTime>,
+    pub rest_lossless: Option<RestOrReason>,
     /// The greatest depth in a barrier.
-    pub penetration: Number,
+    pub penetration: AnyNumber,
     /// The greatest speed at a touch.
-    pub speed_in: Number,
+    pub speed_in: AnyNumber,
     /// The energy lost in contacts.
-    pub energy_lost: Number,
+    pub energy_lost: AnyNumber,
     /// Time, displacement and velocity at the end.
-    pub end: [Number; 3],
+    pub end: [AnyNumber; 3],
     /// The reason why it ended.
     pub stop: SimulationStop,
 }
@@ -106,7 +106,7 @@ impl SweepPoint {
     /// The row of a motion.
     pub fn from_summary(summary: &Summary) -> Self {
         let [without, lossless] = match summary.baseline {
-            Some(baseline) => baseline.map(|time| Some(RestTime::from(time))),
+            Some(baseline) => baseline.map(|time| Some(RestOrReason::from(time))),
             None => [None, None],
         };
         Self {
@@ -117,7 +117,7 @@ impl SweepPoint {
             penetration: summary.deepest.into(),
             speed_in: summary.fastest.into(),
             energy_lost: summary.energy_lost.into(),
-            end: [summary.end_time, summary.end_x, summary.end_velocity].map(Number::from),
+            end: [summary.end_time, summary.end_x, summary.end_velocity].map(AnyNumber::from),
             stop: summary.stop,
         }
     }
@@ -145,15 +145,15 @@ impl SweepPoint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionPoint {
     /// The time at which it ended.
-    pub end: Number,
+    pub end: AnyNumber,
     /// Coordinates, then velocities there.
-    pub state: Vec<Number>,
+    pub state: Vec<AnyNumber>,
     /// The least and the greatest value of each coordinate.
-    pub extremes: Vec<[Number; 2]>,
+    pub extremes: Vec<[AnyNumber; 2]>,
     /// The states on the section, each after its time.
-    pub crossings: Vec<(Number, Vec<Number>)>,
+    pub crossings: Vec<(AnyNumber, Vec<AnyNumber>)>,
     /// The times at which it touches the section without crossing it.
-    pub touches: Vec<Number>,
+    pub touches: Vec<AnyNumber>,
     /// The reason why it ended, in words.
     pub stopped: String,
 }
@@ -165,7 +165,7 @@ impl MotionPoint {
         Self {
             end: motion.end.into(),
             state: numbers(&motion.state),
-            extremes: motion.extremes.iter().map(|ends| ends.map(Number::from)).collect(),
+            extremes: motion.extremes.iter().map(|ends| ends.map(AnyNumber::from)).collect(),
             crossings: motion.crossings.iter().map(crossing).collect(),
             touches: numbers(&motion.touches),
             stopped: in_words(motion.reason).to_owned(),
@@ -183,7 +183,7 @@ impl MotionPoint {
             PathEnd::Sticks,
             PathEnd::Interrupted,
         ];
-        let crossing = |(time, state): &(Number, Vec<Number>)| {
+        let crossing = |(time, state): &(AnyNumber, Vec<AnyNumber>)| {
             Some(Crossing { time: time.read()?, state: read_numbers(state)? })
         };
         Some(SweptMotion {
@@ -206,15 +206,15 @@ impl MotionPoint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrimaryPoint {
     /// The time at which it ended.
-    pub end: Number,
+    pub end: AnyNumber,
     /// The largest displacement of the main mass in the long run.
-    pub amplitude: Number,
+    pub amplitude: AnyNumber,
     /// The number of impacts then.
     pub impacts: usize,
     /// The number of impacts in the whole run.
     pub all_impacts: usize,
     /// The rest time.
-    pub rest_time: RestTime,
+    pub rest_time: RestOrReason,
     /// The reason why it ended.
     pub stop: PrimaryStop,
 }
@@ -253,17 +253,17 @@ pub struct MaterialPoint {
     /// The first contact; null where the barrier is not touched, or not left again.
     pub first_contact: Option<FirstContact>,
     /// The rest time.
-    pub rest_time: RestTime,
+    pub rest_time: RestOrReason,
     /// The contacts until then.
     pub impacts: Vec<ContactRecord>,
     /// The energy of the swing after each of them that ended.
-    pub energies: Vec<Number>,
+    pub energies: Vec<AnyNumber>,
     /// The reason why it was followed no further.
     pub stop: SimulationStop,
     /// The rest time where the contact loses nothing.
-    pub lossless: RestTime,
+    pub lossless: RestOrReason,
     /// The rest time under every form of the damping of the contact.
-    pub held_fixed: Vec<RestTime>,
+    pub held_fixed: Vec<RestOrReason>,
 }
 
 impl MaterialPoint {
@@ -276,7 +276,7 @@ impl MaterialPoint {
             energies: numbers(&motions.course.energies),
             stop: motions.course.stop,
             lossless: motions.lossless.into(),
-            held_fixed: motions.held.iter().copied().map(RestTime::from).collect(),
+            held_fixed: motions.held.iter().copied().map(RestOrReason::from).collect(),
         }
     }
 
@@ -305,7 +305,7 @@ pub struct ClaimPoint {
     pub tried: Vec<AttemptPoint>,
     /// The value that an unknown must have, the ends of the range around it, and whether it may have
     /// it; null where none was solved for.
-    pub demand: Option<(Number, [Number; 2], bool)>,
+    pub demand: Option<(AnyNumber, [AnyNumber; 2], bool)>,
     /// Quantities that are needed and not printed.
     pub missing: Vec<String>,
     /// The reasons for the verdict.
@@ -330,7 +330,7 @@ pub struct AttemptPoint {
 #[serde(rename_all = "kebab-case")]
 pub enum EntryPoint {
     /// A number.
-    Number(Number),
+    Number(AnyNumber),
     /// A fraction.
     Exact(String),
     /// The coefficient of a term that does not occur.
@@ -395,7 +395,7 @@ impl ClaimPoint {
             verdict: finding.verdict.name().to_owned(),
             tried: finding.tried.iter().map(attempt).collect(),
             demand: finding.demand.map(|demand| {
-                (demand.value.into(), demand.range.map(Number::from), demand.is_within)
+                (demand.value.into(), demand.range.map(AnyNumber::from), demand.is_within)
             }),
             missing: finding.missing.clone(),
             evidence: finding.evidence.clone(),

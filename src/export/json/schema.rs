@@ -13,6 +13,8 @@ pub enum DocumentKind {
     Impact,
     /// `impact --compare`.
     ImpactComparison,
+    /// `impact --certify`.
+    ImpactCertificate,
     /// `simulate`.
     Simulation,
     /// `simulate` of an equation or a mechanism.
@@ -51,11 +53,12 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
+        Self::ImpactCertificate,
         Self::Simulation,
         Self::Motion,
         Self::MotionSweep,
@@ -83,6 +86,9 @@ impl DocumentKind {
             Self::Impact => ["lindstedt/impact/1", include_str!("schemas/impact.json")],
             Self::ImpactComparison => {
                 ["lindstedt/impact-comparison/1", include_str!("schemas/impact-comparison.json")]
+            }
+            Self::ImpactCertificate => {
+                ["lindstedt/impact-certificate/1", include_str!("schemas/impact-certificate.json")]
             }
             Self::Simulation => ["lindstedt/simulation/1", include_str!("schemas/simulation.json")],
             Self::Motion => ["lindstedt/motion/1", include_str!("schemas/motion.json")],

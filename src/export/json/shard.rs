@@ -363,7 +363,7 @@ impl JoinedLines {
     }
 }
 
-/// What two studies differ in, in words.
+/// Returns the difference of two studies in words; `None` if there is none.
 fn difference(one: &StudyDocument, other: &StudyDocument) -> Option<String> {
     let versions = || format!("version {} and {}", one.version, other.version);
     let commands = || format!("`{}` and `{}`", one.command.join(" "), other.command.join(" "));

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .designs import Optimization
     from .documents.certificate import DampedCertificateDocument
     from .documents.impact import Impact
+    from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
     from .documents.primary import Primary
@@ -134,7 +135,7 @@ def impact(
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Impact | ImpactComparison:
+) -> Impact | ImpactCertificate | ImpactComparison:
     """The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta.
 
     Args:

@@ -29,6 +29,7 @@ CALLS = {
     "compare": lambda: ls.compare("pendulum", A=1),
     "impact": lambda: ls.impact(EXAMPLES / "impact-paper.toml"),
     "impact-comparison": lambda: ls.impact(compare=True),
+    "impact-certificate": lambda: ls.impact(certify=True),
     "simulation": lambda: ls.simulate(),
     "chain": lambda: ls.simulate(chain=True),
     "sweep": lambda: ls.simulate(sweep={"zeta": (0.01, 0.03, 3)}),

@@ -10,6 +10,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument",)),
     "lindstedt/comparison/1": ("comparison", ("Comparison",)),
     "lindstedt/friction/1": ("friction", ("Friction",)),
+    "lindstedt/impact-certificate/1": ("impact_certificate", ("ImpactCertificate",)),
     "lindstedt/impact-comparison/1": ("impact_comparison", ("ImpactComparison",)),
     "lindstedt/impact/1": ("impact", ("Impact",)),
     "lindstedt/lagrangian/1": ("lagrangian", ("Lagrangian",)),

@@ -287,7 +287,7 @@ class Response(Answer):
         parameter: The name of the parameter that varies.
         range: Its lowest and its highest value.
         method: How the branches were found: `harmonic-balance`, or `period-map` where the force
-            has jumps that harmonic balance does not take.
+            has corners, or jumps that harmonic balance does not take.
         harmonics: The highest harmonic kept.
         periods: How many periods of the drive a period of the motion takes.
         frequency: theta/t: the frequency of the motion, that of the drive over `periods`; a name

@@ -17,14 +17,14 @@ pub(in crate::impact) struct Lanes<const L: usize>(pub [f64; L]);
 pub(in crate::impact) struct Mask<const L: usize>(pub [bool; L]);
 
 macro_rules! operator {
-    ($trait:ident, $name:ident, $sign:tt) => {
+    ($trait:ident, $name:ident, $sign:tt, $assign:tt) => {
         impl<const L: usize> $trait for Lanes<L> {
             type Output = Self;
 
             #[inline(always)]
             fn $name(mut self, other: Self) -> Self {
                 for lane in 0..L {
-                    self.0[lane] = self.0[lane] $sign other.0[lane];
+                    self.0[lane] $assign other.0[lane];
                 }
                 self
             }
@@ -50,10 +50,10 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
-operator!(Div, div, /);
+operator!(Add, add, +, +=);
+operator!(Sub, sub, -, -=);
+operator!(Mul, mul, *, *=);
+operator!(Div, div, /, /=);
 
 impl<const L: usize> Neg for Lanes<L> {
     type Output = Self;
@@ -147,8 +147,8 @@ impl<const L: usize> Lanes<L> {
     #[inline(always)]
     pub fn exp_m1(self) -> Self {
         const ROUND: f64 = 6_755_399_441_055_744.0;
-        const LN_2_HIGH: f64 = 0.693_147_180_369_123_816_49;
-        const LN_2_LOW: f64 = 1.908_214_929_270_587_700_02e-10;
+        const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
+        const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
         let shifted = self * LOG2_E + ROUND;
         let count = shifted - ROUND;
         let rest = self - count * LN_2_HIGH - count * LN_2_LOW;
@@ -183,7 +183,7 @@ impl<const L: usize> Lanes<L> {
         // (asin x - x)/x^3 for |x| < 1/2 (FDLIBM, e_asin.c).
         let ratio = |square: Self| {
             let above = square.polynomial([
-                3.479_331_075_960_211_7e-5,
+                3.479_331_075_960_212e-5,
                 7.915_349_942_898_145e-4,
                 -4.005_553_450_067_941e-2,
                 2.012_125_321_348_629_3e-1,
@@ -191,7 +191,7 @@ impl<const L: usize> Lanes<L> {
                 1.666_666_666_666_666_6e-1,
             ]);
             let below = square.polynomial([
-                7.703_815_055_590_193_5e-2,
+                7.703_815_055_590_194e-2,
                 -6.882_839_716_054_533e-1,
                 2.020_945_760_233_505_7,
                 -2.403_394_911_734_414,

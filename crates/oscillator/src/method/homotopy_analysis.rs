@@ -15,8 +15,8 @@
 //! With hbar = -1 this is the homotopy in which omega itself, not omega0^2, is expanded. Order 1 is
 //! `w_0` alone.
 //!
-//! Cost: that of the products of the force in `m` orders; at an amplitude, that of [the search for
-//! hbar](super::convergence_control).
+//! Cost: that of the products of the force in `m` orders; at an amplitude, that of the search for hbar
+//! (`convergence_control`).
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;

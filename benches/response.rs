@@ -11,7 +11,7 @@ fn duffing(harmonics: Option<usize>) -> ResponseRequest {
     ResponseRequest { harmonics, ..question }
 }
 
-/// The same oscillator with a contact in place of the cubic spring.
+/// Duffing's oscillator with a contact in place of the cubic spring.
 fn contact(stiffness: &str) -> ResponseRequest {
     let equation = "x'' + x'/10 + x + g*max(x - 0.5, 0)^1.5 - F*cos(Omega*t) = 0";
     let values = format!("F = 3/10, g = {stiffness}");

@@ -39,7 +39,7 @@ struct Asked {
     study: AskedStudy,
 }
 
-/// What a study that is split over shards is known by, and the rows of one that is put together.
+/// A study that is split over shards, by its identity, and the rows of one that is put together.
 #[derive(Default)]
 struct AskedStudy {
     command: Vec<String>,

@@ -89,7 +89,7 @@ fn method(response: &ResponseDiagram) -> &'static str {
     }
 }
 
-/// What judges the points of the branches.
+/// The judge of the points of the branches.
 fn judge(response: &ResponseDiagram) -> &'static str {
     match response.by_map && !response.jumps {
         true => "a period by Runge-Kutta",

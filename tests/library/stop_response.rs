@@ -208,7 +208,7 @@ fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     assert_eq!(by_few.verdict, Verdict::Fail);
 }
 
-/// Where the branch of a stiff contact changes: by shooting as by harmonic balance of 64 harmonics,
+/// The branch of a stiff contact changes by shooting where it does by harmonic balance of 64 harmonics,
 /// whose largest error is a hundredth of the peak, and whose list is pinned here.
 #[test]
 fn a_stiff_contact_changes_where_harmonic_balance_says() {

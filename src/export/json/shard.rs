@@ -228,7 +228,7 @@ pub enum ShardError {
         place: String,
         /// The file and the line of the first study.
         first: String,
-        /// What differs.
+        /// The difference.
         difference: String,
     },
     /// Two lines of one point that differ.

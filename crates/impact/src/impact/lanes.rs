@@ -65,7 +65,7 @@ impl<const L: usize> Neg for Lanes<L> {
 }
 
 impl<const L: usize> Lanes<L> {
-    /// The same number in every lane.
+    /// One number in every lane.
     #[inline(always)]
     pub fn all(value: f64) -> Self {
         Self([value; L])

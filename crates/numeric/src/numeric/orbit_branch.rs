@@ -51,7 +51,7 @@ pub struct OrbitPoint<Kept> {
     /// The sign of the determinant of the bordered equations: it changes where branches cross, and
     /// not at a fold.
     pub orientation: f64,
-    /// What the caller keeps of the motion.
+    /// The data of the motion that the caller keeps.
     pub kept: Kept,
 }
 
@@ -71,7 +71,7 @@ impl<Kept> OrbitPoint<Kept> {
         &self.unknowns.as_slice()[..self.monodromy.nrows()]
     }
 
-    /// The same orbit on a branch that is passed the other way.
+    /// Reverses the direction in which the branch is passed.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self { tangent: -self.tangent, orientation: -self.orientation, ..self }
@@ -152,7 +152,7 @@ pub struct OrbitEquations<'a, Path, Kept> {
     /// The motion over a period from a state, with the period and the parameter; `None` if it
     /// cannot be followed.
     pub map: &'a PeriodMap<'a, Path>,
-    /// What is kept of an orbit with these unknowns.
+    /// The data that are kept of an orbit with these unknowns.
     pub keep: &'a dyn Fn(&DVector<f64>, &PeriodImage<Path>) -> Kept,
     /// The positive sizes in which changes of the unknowns are measured near an orbit.
     pub sizes: &'a dyn Fn(&OrbitPoint<Kept>) -> DVector<f64>,

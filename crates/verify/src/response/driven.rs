@@ -50,7 +50,7 @@ pub struct Driven {
     base: [CompiledFunction; 2],
     /// Whether the force is even in the velocity.
     pub undamped: bool,
-    /// What changes its sign at each corner of f(x, x', t; p).
+    /// The expressions that change their signs at the corners of f(x, x', t; p).
     corners: Vec<CompiledFunction>,
     /// Whether the force has no corner or jump: no `abs`, `sgn`, `H`, `max` or `min`.
     pub smooth: bool,
@@ -496,7 +496,7 @@ impl Driven {
         self.corners.len()
     }
 
-    /// What changes its sign at a corner, in time.
+    /// The expressions that change their signs at corners, in time.
     pub fn corner(&self, index: usize, at: &[f64; 4]) -> f64 {
         self.corners[index].call(at)
     }
@@ -507,7 +507,7 @@ impl Driven {
     }
 }
 
-/// What changes its sign at each corner of a force, each once.
+/// The expressions that change their signs at the corners of a force, each once.
 fn corners_of(
     oscillator: &Oscillator,
     parameter: Symbol,

@@ -33,7 +33,7 @@ use crate::numeric::orbit_branch::{
 };
 use crate::system::Path;
 
-/// What a branch keeps of an orbit.
+/// The data of an orbit that a branch keeps.
 #[derive(Clone, Debug)]
 struct KeptOrbit {
     coefficients: DVector<f64>,

@@ -133,7 +133,7 @@ pub(super) struct Bounces<const L: usize> {
     depth: Lanes<L>,
     duration: Lanes<L>,
     speed_out: Lanes<L>,
-    /// Where the pendulum leaves the barrier and does not go deep.
+    /// The lanes in which the pendulum leaves the barrier and does not go deep.
     is_bounce: Mask<L>,
 }
 

@@ -9,7 +9,7 @@ use super::number::{Constant, finite};
 use crate::certificate::{Enclosure, SizeBounds};
 use crate::decimal::not_above_typed;
 use crate::exact::Rational;
-use crate::expr::Expr;
+use crate::exact::rational::to_f64;
 use crate::impact::PhaseReading;
 use crate::report::{ImpactCertificateReport, known_digits};
 use crate::verify::Verdict;
@@ -98,7 +98,10 @@ pub struct ProvedClosedForm {
 
 /// The document of kind `impact-certificate`.
 pub fn impact_certificate(report: &ImpactCertificateReport) -> ImpactCertificateDocument {
-    let constant = |value: &Rational| Constant::from_expr(&Expr::number(value.clone()));
+    let constant = |value: &Rational| Constant {
+        exact: value.to_string(),
+        value: finite(Some(to_f64(value))),
+    };
     let [amplitude, barrier, stiffness] = report.exact.map(constant);
     let enclosed = |enclosure: &Enclosure| {
         let (middle, radius) = known_digits(enclosure);

@@ -1,5 +1,5 @@
-//! What a command that runs has in common with whoever asked for it: the request to stop, the
-//! progress, its words, and a place for notes.
+//! A session joins a command that runs with its caller: the request to stop, the progress, the words
+//! of the command, and a place for notes.
 //!
 //! The program has one session. A caller inside another process has one for each call, so that
 //! calls on several threads do not meet; a thread that runs a command knows its session.

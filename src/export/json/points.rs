@@ -86,9 +86,9 @@ pub struct SweepPoint {
     pub impacts: usize,
     /// The rest time.
     pub rest_time: RestOrReason,
-    /// The same without a barrier; null where it was not asked for.
+    /// The rest time without a barrier; null where it was not asked for.
     pub rest_no_barrier: Option<RestOrReason>,
-    /// The same with a barrier that loses nothing; null likewise.
+    /// The rest time with a barrier that loses nothing; null where it was not asked for.
     pub rest_lossless: Option<RestOrReason>,
     /// The greatest depth in a barrier.
     pub penetration: AnyNumber,
@@ -317,7 +317,7 @@ pub struct ClaimPoint {
 pub struct AttemptPoint {
     /// The suppositions: the number of the subject in the claim, and of the alternative.
     pub supposing: Vec<[usize; 2]>,
-    /// The same in words.
+    /// These suppositions, in words.
     pub words: Vec<String>,
     /// The value of each entry.
     pub computed: Vec<EntryPoint>,

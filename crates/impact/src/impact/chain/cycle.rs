@@ -13,8 +13,9 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::bounce::{Bounce, Bounces, ChainBarrier, Contacts};
+use super::leg::rub_lag;
 use super::swing::{Stretches, SwingAngle, phases, quarters, stretches};
-use super::{MOST_NEWTON, NEAR, rub_lag};
+use super::{MOST_NEWTON, NEAR};
 use crate::impact::lanes::{Lanes, Mask};
 
 /// Number of motions side by side: they fill a register of 512 bits, or two or four smaller ones.

@@ -171,8 +171,9 @@ fn writable(path: &Path) -> Result<(), String> {
 fn replace(path: &Path, result: Writer) -> Result<(), String> {
     let refused = |error: std::io::Error| cannot(path, &error);
     if is_special(path) {
-        let mut device = OpenOptions::new().write(true).open(path).map_err(refused)?;
-        return result(&mut device).map_err(refused);
+        let mut device =
+            BufWriter::new(OpenOptions::new().write(true).open(path).map_err(refused)?);
+        return result(&mut device).and_then(|()| device.flush()).map_err(refused);
     }
     let file = new_temporary(path).map_err(refused)?;
     let mut output = BufWriter::new(file.as_file());

@@ -1,5 +1,7 @@
 //! The options of the command line.
 
+use crate::NO_TIME;
+
 use super::{path, run};
 
 /// The long options that the help of a command lists.
@@ -12,9 +14,6 @@ fn options_of(command: &str) -> Vec<String> {
     });
     names.filter(|name| name != "help").collect()
 }
-
-/// Less than a nanosecond: this time is up before the work begins, on however busy a machine.
-const NO_TIME: &str = "1e-10";
 
 /// A file of claims.
 const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequencies.toml");

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::export::{self, json};
+use crate::expr::Expr;
 use crate::problem::{Order, ReadingCommand};
 use crate::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
 use crate::solution::{Method, Solution};
@@ -95,7 +96,12 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     };
     let slow = match method {
         Method::HarmonicBalance => None,
-        method => Some(slow_equations(&question, method, order)?),
+        method => {
+            let asked = arguments.periods.or(problem.periods);
+            let solution = slow_equations(&question, method, order, asked)?;
+            question.periods = periods_of(&solution).unwrap_or(question.periods);
+            Some(solution)
+        }
     };
     // Slow equations relative to a base that moves are held against motions in that coordinate.
     if let Some(slow) =
@@ -147,11 +153,14 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
     }
 }
 
-/// The slow equations of the primary resonance.
+/// The slow equations of the resonance whose motions take this number of drive periods. Where none
+/// is asked for it is the primary resonance, or, without a force, the likeliest one, such as the
+/// principal parametric resonance with motions of two drive periods.
 fn slow_equations(
     question: &ResponseRequest,
     method: Method,
     order: Option<u32>,
+    periods: Option<u32>,
 ) -> Result<Solution, Failure> {
     if !question.oscillator.force.contains(Symbol::new("t")) {
         return Err(Failure::Usage(format!(
@@ -159,16 +168,29 @@ fn slow_equations(
             method.name()
         )));
     }
-    if question.periods != 1 {
-        return Err(Failure::Usage(format!(
-            "--method {} is held against motions of the period of the drive: leave out --periods",
-            method.name()
-        )));
-    }
-    let options =
-        Options { method: Some(method), order, resonance: Some((1, 1)), ..Options::default() };
-    solve(&question.oscillator, &options)
-        .map_err(|refusal| refused_term(&question.oscillator, &refusal))
+    let at = |resonance: Option<(u32, u32)>| {
+        let options = Options { method: Some(method), order, resonance, ..Options::default() };
+        solve(&question.oscillator, &options)
+    };
+    // Without a force a motion of the drive's own period is at rest.
+    let oscillator = &question.oscillator;
+    let own = [oscillator.coordinate, oscillator.velocity()];
+    let at_rest = oscillator.force.substitute_all(&own.map(|name| (name, Expr::zero())).into());
+    let is_forced = at_rest.is_ok_and(|force| force.contains(Symbol::new("t")));
+    let likeliest = match periods.is_none() && !is_forced {
+        true => at(None).ok().filter(|found| periods_of(found).is_some()),
+        false => None,
+    };
+    likeliest
+        .map_or_else(|| at(Some((periods.unwrap_or(1), 1))), Ok)
+        .map_err(|refusal| refused_term(oscillator, &refusal))
+}
+
+/// The number of drive periods in a period of the motion of these slow equations; `None` if its
+/// amplitude is not that of the first harmonic.
+fn periods_of(solution: &Solution) -> Option<usize> {
+    let resonance = solution.modulation.as_ref()?.resonance.as_ref()?;
+    (resonance.times_driving == 1).then_some(resonance.times_linear as usize)
 }
 
 /// A name and a range: `Omega=0.5:1.5`.
@@ -207,6 +229,9 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::TwoFrequencies(_) => {
             Some("choose frequencies in the ratio of whole numbers, such as Omega and 2*Omega".to_owned())
         }
+        ResponseError::FarFrequencies { .. } => Some(
+            "choose a ratio of small whole numbers, such as 11/8 for 1.37, or follow the motion: `lindstedt simulate`".to_owned(),
+        ),
         ResponseError::Missing(names) => {
             Some(format!("add {}", values_of(names)))
         }

@@ -10,7 +10,7 @@ use crate::expr::Expr;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::slow::SlowResponse;
-use crate::response::{Branch, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
+use crate::response::{Branch, Elsewhere, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -505,20 +505,36 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     ));
     let mut blocks =
         vec![Block::Heading("judged against the true motion".to_owned()), Block::Facts(facts)];
-    let mut periods: Vec<Option<usize>> =
-        response.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
-    periods.sort();
-    periods.dedup();
-    for count in periods {
-        let places = response.elsewhere.iter().filter(|elsewhere| elsewhere.periods == count);
-        let mut places: Vec<String> =
-            places.map(|elsewhere| significant(elsewhere.parameter, 4)).collect();
-        places.dedup();
-        let places = places.join(", ");
+    let mut kinds: Vec<(Option<usize>, Option<usize>)> =
+        response.elsewhere.iter().map(|place| (place.periods, place.drive_periods)).collect();
+    kinds.sort();
+    kinds.dedup();
+    let x = response.question.oscillator.coordinate;
+    for (count, drive_periods) in kinds {
+        let places = response
+            .elsewhere
+            .iter()
+            .filter(|place| (place.periods, place.drive_periods) == (count, drive_periods));
+        let places: Vec<&Elsewhere> = places.collect();
+        let mut values: Vec<String> =
+            places.iter().map(|place| significant(place.parameter, 4)).collect();
+        values.dedup();
+        let mut largest: Vec<&Elsewhere> = places.clone();
+        largest.sort_by(|one, other| other.peak.total_cmp(&one.peak));
+        let example = largest.first().map_or_else(String::new, |place| {
+            format!(
+                " The largest has the peak {} at {name} = {} and begins at {x} = {}, {x}' = {}.",
+                significant(place.peak, 4),
+                significant(place.parameter, 4),
+                significant(place.start[0], 6),
+                significant(place.start[1], 6)
+            )
+        });
+        let places = values.join(", ");
         blocks.push(Block::Sentence(match count {
             Some(1) => format!(
                 "At {name} = {places} a simulation settles on a motion that lies on none of these branches: {} has not come to it. {} may \
-                 find its branch.",
+                 find its branch.{example}",
                 method(response),
                 match response.by_map || response.harmonics >= MOST_HARMONICS {
                     true => "Another range".to_owned(),
@@ -526,10 +542,12 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
                 }
             ),
             Some(count) => format!(
-                "At {name} = {places} a simulation settles on a motion of {} periods of the drive, which is not among these branches.",
-                count * response.question.periods
+                "At {name} = {places} a simulation settles on a motion of {} periods of the drive, which is not among these branches.{example}",
+                drive_periods.unwrap_or(count * response.question.periods)
             ),
-            None => format!("At {name} = {places} a simulation does not come to repeat itself."),
+            None => format!(
+                "At {name} = {places} a simulation does not come to repeat itself.{example}"
+            ),
         }));
     }
     blocks

@@ -20,6 +20,7 @@ mod section;
 mod sensitivity;
 mod surplus;
 mod sweep;
+mod two_sided;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,6 +42,7 @@ pub use sweep::{SweptMotion, sweep};
 use hold::{Layout, StateEquations};
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
+pub(crate) use two_sided::by_sides;
 
 /// An initial value problem: equations, initial state and duration.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Families of random forces.
 
 use super::force::{Force, Number, Shape, Term};
-use super::random::Random;
+use crate::random::Random;
 
 /// Draws the terms of one force.
 type Family = fn(&mut Random) -> Vec<Term>;

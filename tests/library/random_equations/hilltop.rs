@@ -18,8 +18,8 @@ use super::definitions::{Answer, Question};
 use super::families::number;
 use super::force::{Force, Number, Shape, Term};
 use super::quadrature::{bisect, integrate};
-use super::random::Random;
 use super::{AGREEMENT, setting};
+use crate::random::Random;
 
 fn term(coefficient: Number, shape: Shape) -> Term {
     Term { coefficient, shape, name: None }

@@ -29,12 +29,12 @@ mod homotopy;
 mod judgement;
 mod motion;
 mod quadrature;
-mod random;
 mod velocities;
 mod wells;
 
 use std::collections::BTreeMap;
 
+use crate::random::Random;
 use definitions::{Answer, Question};
 use families::Case;
 use force::Shape;
@@ -44,7 +44,6 @@ use lindstedt::method::numbers::{self, NoNumbers};
 use lindstedt::method::{Options, Reason, Refusal, solve};
 use lindstedt::solution::{Degrees, Method};
 use lindstedt::{Oscillator, Symbol};
-use random::Random;
 
 /// Agreement asked for, relatively, of omega^2, beyond what rounding explains.
 const AGREEMENT: f64 = 1e-9;

@@ -10,7 +10,7 @@ use lindstedt::{Oscillator, Solution, Symbol};
 
 use super::families::number;
 use super::quadrature::{bisect, integrate};
-use super::random::Random;
+use crate::random::Random;
 
 /// One period of `x'' = acceleration(x, x')` between two maxima, and the maximum, after the
 /// transient has gone.

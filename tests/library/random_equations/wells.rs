@@ -25,7 +25,7 @@ use lindstedt::verify::{Well, WellEnd};
 use lindstedt::{Oscillator, Symbol};
 
 use super::quadrature::bisect;
-use super::random::Random;
+use crate::random::Random;
 
 /// Equations of each kind.
 const EACH: u64 = 12;

@@ -18,14 +18,15 @@ pub(super) enum KnownMotion {
 }
 
 impl PreparedRequest<'_> {
-    /// The branches through these motions, each once.
+    /// The branches that are known and those through these motions, each once.
     pub(super) fn branches(
         &self,
         balance: &DrivenBalance,
         seeds: &[Seed],
         size: f64,
+        known: &[BranchPath],
     ) -> Vec<BranchPath> {
-        let mut paths: Vec<BranchPath> = Vec::new();
+        let mut paths = known.to_vec();
         for seed in seeds {
             if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
                 break;
@@ -52,7 +53,7 @@ impl PreparedRequest<'_> {
                 self.keep(balance, path, &mut paths);
             }
         }
-        for index in 0..paths.len() {
+        for index in known.len()..paths.len() {
             self.mark_mirrored(balance, &mut paths, index);
         }
         paths
@@ -127,11 +128,26 @@ impl PreparedRequest<'_> {
     fn cut_at_crossing(&self, balance: &DrivenBalance, path: &mut BranchPath) {
         /// Largest number of crossings that are looked at.
         const MOST: usize = 8;
-        let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
-        let turns = path.nodes.windows(2).enumerate().filter(|(_, pair)| turns(pair));
-        let turns: Vec<usize> = turns.map(|(index, _)| index).collect();
+        let turns_of = |nodes: &[BranchNode]| -> Vec<usize> {
+            let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
+            let turns = nodes.windows(2).enumerate().filter(|(_, pair)| turns(pair));
+            turns.map(|(index, _)| index).collect()
+        };
+        let mut turns = turns_of(&path.nodes);
+        // A closed branch may go through two crossings and back as its image: it is begun at the last
+        // one, so that the way to the first is not divided. The first point beyond comes again at
+        // the end.
+        if let ([_, .., last], BranchEnd::Closed) = (turns.as_slice(), path.ends[0]) {
+            path.nodes.pop();
+            path.nodes.rotate_left(*last);
+            let again: Vec<BranchNode> = path.nodes[..2].to_vec();
+            path.nodes.extend(again);
+            turns = turns_of(&path.nodes);
+        }
+        let is_begun_at_crossing = path.ends[0] == BranchEnd::Closed && turns.first() == Some(&0);
+        let begins = usize::from(is_begun_at_crossing);
         let looked_at = if self.period_series.is_some() { MOST } else { 1 };
-        for (count, &index) in turns.iter().enumerate().take(looked_at) {
+        for (count, &index) in turns.iter().enumerate().skip(begins).take(looked_at) {
             let next = match self.period_series {
                 Some(_) => turns.get(count + 1).map_or(path.nodes.len(), |next| next + 1),
                 None => path.nodes.len(),
@@ -146,8 +162,14 @@ impl PreparedRequest<'_> {
                 // The first point beyond stays, so that the crossing lies between two points.
                 path.nodes.truncate(index + 2);
                 path.ends[1] = BranchEnd::Crossing;
+                if is_begun_at_crossing {
+                    path.ends[0] = BranchEnd::Crossing;
+                }
                 return;
             }
+        }
+        if is_begun_at_crossing {
+            path.nodes.pop();
         }
     }
 
@@ -178,6 +200,7 @@ impl PreparedRequest<'_> {
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
         let size = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let size = size.max(smallest(balance, paths));
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
         let shifted: Vec<DVector<f64>> =
@@ -266,6 +289,13 @@ impl PreparedRequest<'_> {
         let moves = |node: &BranchNode| (node.parameter - first).abs() > NOTHING * (high - low);
         (self.driven.self_excited || self.driven.undamped) && !path.nodes.iter().any(moves)
     }
+}
+
+/// The size below which motions are compared as if they were as large: Newton's method ends at a
+/// motion at rest with the rounding of its last step.
+pub(super) fn smallest(balance: &DrivenBalance, paths: &[BranchPath]) -> f64 {
+    const SMALLEST: f64 = 1e-3;
+    SMALLEST * paths.iter().map(|path| largest(balance, path)).fold(0.0, f64::max)
 }
 
 /// The size of the largest motion of a branch, or of a typical one if the branch grows without

@@ -13,8 +13,8 @@
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};
 
-use super::ResponseError;
 use super::series::{PhaseEquations, solver_in_time};
+use super::{MOST_HARMONICS, ResponseError};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, CompiledFunctions, Expr, Function, Node};
@@ -563,6 +563,10 @@ fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, Resp
     })?)
 }
 
+/// Largest number of waves of a drive in the common period of all drives: a motion has twice as many
+/// harmonics at most.
+const MOST_WAVES: u32 = MOST_HARMONICS as u32 / 2;
+
 /// The frequency of which all frequencies of the drive are whole multiples.
 fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
     let time = Symbol::new("t");
@@ -596,12 +600,16 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
         return Err(ResponseError::NoDrive);
     };
     let mut common: Option<Rational> = None;
+    let mut fastest = (Rational::zero(), first.clone());
     for frequency in &found {
         let ratio = Expr::divide(frequency, &first)?.expand()?;
         let Some(ratio) = ratio.as_number().filter(|ratio| !ratio.is_zero()) else {
             return Err(ResponseError::TwoFrequencies([first.to_string(), frequency.to_string()]));
         };
         let ratio = ratio.abs();
+        if ratio > fastest.0 {
+            fastest = (ratio.clone(), frequency.clone());
+        }
         common = Some(match common {
             None => ratio,
             Some(common) => {
@@ -610,6 +618,11 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
         });
     }
     let factor = common.unwrap_or_else(num_traits::One::one);
+    let waves = &fastest.0 / &factor;
+    if waves > Rational::from_integer(MOST_WAVES.into()) {
+        let frequencies = [first.to_string(), fastest.1.to_string()];
+        return Err(ResponseError::FarFrequencies { frequencies, waves: waves.to_string() });
+    }
     let frequency = Expr::number(factor) * first;
     Ok(if frequency.has_leading_minus() { -frequency } else { frequency })
 }
@@ -644,6 +657,7 @@ mod tests {
             ("x'' + x = cos(t^2)", "cos(t^2)"),
             ("x'' + x = cos(t) + cos(pi*t)", "no whole multiples"),
             ("x'' + x = cos(Omega*t) + cos(t)", "no whole multiples"),
+            ("x'' + x = cos(Omega*t) + cos(1.37*Omega*t)", "holds 137 waves"),
         ] {
             let refused = frequency(text).unwrap_err();
             assert!(refused.contains(words), "{text}: {refused}");

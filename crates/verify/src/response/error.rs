@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::MOST_HARMONICS;
 use crate::decimal::decimal;
 use crate::expr::{EvaluationError, ExprError};
 use crate::oscillator::OscillatorError;
@@ -39,6 +40,17 @@ pub enum ResponseError {
     /// Two frequencies without a common period for every value of the parameter.
     #[error("the frequencies `{}` and `{}` are no whole multiples of one frequency", .0[0], .0[1])]
     TwoFrequencies([String; 2]),
+    /// Frequencies whose common period holds so many waves that a balance has too few harmonics.
+    #[error(
+        "the common period of the frequencies `{}` and `{}` holds {waves} waves of the faster one: a motion with its own harmonics takes more than \
+         the {MOST_HARMONICS} of a balance", frequencies[0], frequencies[1]
+    )]
+    FarFrequencies {
+        /// The first frequency and the fastest.
+        frequencies: [String; 2],
+        /// The number of waves.
+        waves: String,
+    },
     /// The frequency of the drive is not positive in all of the range.
     #[error("the frequency `{frequency}` of the drive is {} at {parameter} = {}: it must be positive", decimal(*.value), decimal(*.at))]
     Frequency {

@@ -12,29 +12,63 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::series::swing_solver;
+use super::series::{ANY, swing_solver};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
-use crate::system::{PathEnd, Solver};
+use crate::system::{Path, PathEnd, Solver};
 
 /// The free motions of an oscillator.
 pub(super) struct FreeSwings(Solver);
 
+/// The longest half of a period.
+const LONGEST: f64 = 1e4;
+
 impl FreeSwings {
     /// Prepares the series; `None` if there are none.
     pub(super) fn new(free: &Oscillator, parameter: Symbol) -> Option<Self> {
-        swing_solver(free, parameter).map(Self)
+        swing_solver(free, (parameter, ANY)).map(Self)
+    }
+
+    /// These motions at a value of the parameter, which may stand in the force.
+    pub(super) fn at(free: &Oscillator, (parameter, value): (Symbol, f64)) -> Option<Self> {
+        let solver = swing_solver(free, (parameter, value))?;
+        let own = solver.with_numbers(&[(parameter, value)].into());
+        Some(Self(own.unwrap_or(solver)))
+    }
+
+    /// The first half of the motion that begins at rest at a place below the equilibrium; `None` if
+    /// it does not come back.
+    fn half(&self, start: f64) -> Option<Path> {
+        let path = self.0.solve([0.0, LONGEST], &[start, 0.0]).ok()?;
+        let turns = matches!(path.reason(), PathEnd::Event(_)) && path.end() > 0.0;
+        turns.then_some(path)
+    }
+
+    /// Half of the period of the motion that begins at rest at a place below the equilibrium; `None`
+    /// if it does not come back.
+    pub(super) fn half_period(&self, start: f64) -> Option<f64> {
+        Some(self.half(start)?.end())
+    }
+
+    /// Position and velocity at so many equal steps of a period of this motion, an even number.
+    pub(super) fn orbit(&self, start: f64, samples: usize) -> Option<Vec<[f64; 2]>> {
+        let path = self.half(start)?;
+        let half = samples / 2;
+        let state = |sample: usize| {
+            // The second half is the first one backwards.
+            let there = if sample <= half { sample } else { samples - sample };
+            let time = path.end() * there as f64 / half as f64;
+            let [x, v] = [path.state_at(time, 0)?, path.state_at(time, 1)?];
+            Some([x, if sample <= half { v } else { -v }])
+        };
+        (0..samples).map(state).collect()
     }
 
     /// Half of the period of the motion that begins at rest at a place below the equilibrium, and
     /// the amplitude of its first harmonic; `None` if it does not come back.
     fn swing(&self, start: f64) -> Option<[f64; 2]> {
-        const LONGEST: f64 = 1e4;
         const SAMPLES: usize = 512;
-        let path = self.0.solve([0.0, LONGEST], &[start, 0.0]).ok()?;
-        if !matches!(path.reason(), PathEnd::Event(_)) || path.end() <= 0.0 {
-            return None;
-        }
+        let path = self.half(start)?;
         let half = path.end();
         let part = |sample: usize| sample as f64 / SAMPLES as f64;
         let times: Vec<f64> = (0..=SAMPLES).map(|sample| half * part(sample)).collect();

@@ -25,10 +25,13 @@
 //! - [`cycle`]: the true motion without a drive, by shooting for start and period together;
 //!   [`hopf`]: the Hopf point at which it begins.
 //!
+//! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
+//!   of every size; `narrow`: bifurcations between two points of a branch.
+//!
 //! Branches start where a simulation settles, from rest and from a ring of starts at several values
-//! of the parameter, and where others cross. So closed and disconnected branches are found if a
-//! simulation reaches them. Limit cycles are found by the return map of their turning points,
-//! forward and backward in time.
+//! of the parameter, where a balance or shooting comes to a motion from a guess, at more values, and
+//! where others cross. So closed and disconnected branches are found as well. Limit cycles are found
+//! by the return map of their turning points, forward and backward in time.
 
 pub mod backbone;
 pub mod balance;
@@ -42,6 +45,9 @@ mod free_swing;
 pub mod hopf;
 mod judgement;
 pub mod jump;
+mod melnikov;
+mod narrow;
+mod one_harmonic;
 mod ripple;
 mod seeds;
 mod self_excited;
@@ -61,6 +67,7 @@ use crate::expr::Expr;
 use crate::interrupt::{Interrupt, Progress};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
+use crate::trajectory::by_sides;
 use crate::values::Values;
 use crate::verify::Verdict;
 
@@ -213,12 +220,34 @@ pub struct Elsewhere {
     /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not
     /// come to it; null where it does not within eight.
     pub periods: Option<usize>,
+    /// After how many periods of the drive it repeats itself; null where it does not.
+    pub drive_periods: Option<usize>,
+    /// Position and velocity at t = 0 or a whole number of periods later, from where it goes on as it
+    /// has settled.
+    pub start: [f64; 2],
+    /// The amplitude of the first harmonic of a period of the motion from there.
+    pub amplitude: f64,
+    /// Half of the way from the lowest to the highest point of this period.
+    pub peak: f64,
 }
 
 impl Elsewhere {
-    fn in_order(one: &Self, other: &Self) -> std::cmp::Ordering {
-        let parameters = one.parameter.total_cmp(&other.parameter);
-        parameters.then(one.periods.cmp(&other.periods))
+    /// Sorts by parameter, number of periods and size, and leaves out what has settled on the same
+    /// motion, or does not settle at the same value of the parameter.
+    fn sort(all: &mut Vec<Self>) {
+        /// Relative difference of the sizes below which two motions are one.
+        const SAME: f64 = 1e-3;
+        all.sort_by(|one, other| {
+            let parameters = one.parameter.total_cmp(&other.parameter);
+            let periods = one.drive_periods.cmp(&other.drive_periods);
+            parameters.then(periods).then(one.peak.total_cmp(&other.peak))
+        });
+        all.dedup_by(|one, other| {
+            let same_size = (one.peak - other.peak).abs() <= SAME * one.peak.max(other.peak);
+            one.parameter == other.parameter
+                && one.drive_periods == other.drive_periods
+                && (same_size || one.periods.is_none())
+        });
     }
 }
 
@@ -283,7 +312,7 @@ const MOST_POINTS: usize = 1500;
 const MOST_EVALUATIONS: usize = 10_000_000;
 
 /// Largest number of branches that are followed.
-const MOST_BRANCHES: usize = 12;
+const MOST_BRANCHES: usize = 32;
 
 /// Computes and verifies all steady states that are found.
 ///
@@ -440,6 +469,8 @@ impl<'a> PreparedRequest<'a> {
         }
         let values: BTreeMap<Symbol, Expr> = question.values.split(known).0;
         let oscillator = oscillator.with_values(&values)?;
+        let force = by_sides(&oscillator.force, oscillator.coordinate, &BTreeMap::new())?;
+        let oscillator = Oscillator { force, ..oscillator };
         let driven = Driven::new(&oscillator, *parameter, question.periods)?;
         if driven.self_excited && driven.undamped {
             return Err(ResponseError::NoDrive);
@@ -460,7 +491,7 @@ impl<'a> PreparedRequest<'a> {
         let InitialMotions { seeds, elsewhere, branches } = self.seeds(MOST_HARMONICS)?;
         let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?;
         response.elsewhere.extend(elsewhere);
-        response.elsewhere.sort_by(Elsewhere::in_order);
+        Elsewhere::sort(&mut response.elsewhere);
         Ok(response)
     }
 
@@ -474,12 +505,14 @@ impl<'a> PreparedRequest<'a> {
             false => MOST_HARMONICS,
         };
         let first = self.question.harmonics.unwrap_or(automatic);
-        let InitialMotions { seeds, elsewhere, .. } = self.seeds(first)?;
+        let InitialMotions { seeds, elsewhere, branches } = self.seeds(first)?;
         let mut harmonics = first;
         let mut before = (f64::INFINITY, usize::MAX);
         let mut fewer: Option<ResponseDiagram> = None;
         loop {
-            let attempt = self.attempt(harmonics, &seeds, &[]);
+            // The search has followed branches with the first number of harmonics.
+            let known = if harmonics == first { &branches[..] } else { &[] };
+            let attempt = self.attempt(harmonics, &seeds, known);
             let may_have_more =
                 self.question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
             if matches!(attempt, Err(ResponseError::NotFollowed { .. }))
@@ -515,7 +548,7 @@ impl<'a> PreparedRequest<'a> {
             let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
             if last {
                 response.elsewhere.extend(elsewhere);
-                response.elsewhere.sort_by(Elsewhere::in_order);
+                Elsewhere::sort(&mut response.elsewhere);
                 return match response.self_excited {
                     true => self.without_tails(response),
                     false => Ok(response),
@@ -565,7 +598,7 @@ impl<'a> PreparedRequest<'a> {
         }
     }
 
-    /// The whole diagram with this many harmonics; shooting knows some branches already.
+    /// The whole diagram with this many harmonics; some of its branches may be known already.
     fn attempt(
         &self,
         harmonics: usize,
@@ -722,21 +755,28 @@ impl<'a> PreparedRequest<'a> {
             let before: usize = all_judged.iter().map(Vec::len).sum();
             self.question.progress.begin(points - before);
             let judged = self.judged_in_time(balance, &path.nodes);
-            let mut own: Vec<LocatedBifurcation> = Vec::new();
-            for (index, (pair, known)) in path.nodes.windows(2).zip(judged.windows(2)).enumerate() {
-                let ([from, to], [before, after]) = (pair, known) else {
-                    continue;
-                };
-                if self.question.interrupt.is_requested() {
-                    break;
-                }
-                let between = |part: f64| match from.truth.or(to.truth) {
+            let between_two =
+                |from: &BranchNode, to: &BranchNode, part: f64| match from.truth.or(to.truth) {
                     Some(_) if self.period_series.is_some() => {
                         self.shot_between(balance, from, to, part)
                     }
                     Some(_) => self.stuck_between(balance, from, to, part),
                     None => walk.between(balance, from, to, part),
                 };
+            let points = path.nodes.into_iter().zip(judged).collect();
+            let points = self.add_narrow(balance, points, &between_two);
+            let (nodes, judged): (Vec<BranchNode>, Vec<PointJudgement>) =
+                points.into_iter().unzip();
+            paths[branch].nodes.clone_from(&nodes);
+            let mut own: Vec<LocatedBifurcation> = Vec::new();
+            for (index, (pair, known)) in nodes.windows(2).zip(judged.windows(2)).enumerate() {
+                let ([from, to], [before, after]) = (pair, known) else {
+                    continue;
+                };
+                if self.question.interrupt.is_requested() {
+                    break;
+                }
+                let between = |part: f64| between_two(from, to, part);
                 let known = [(from, of_true_motion(*before)), (to, of_true_motion(*after))];
                 let found = bifurcation::between(balance, known, &between, &floquet);
                 for (mut kind, node) in found {
@@ -748,10 +788,10 @@ impl<'a> PreparedRequest<'a> {
                     own.push((index, kind, node));
                 }
             }
-            let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
+            let (own, left_out) = ripple::without_ripple(own, &nodes, &judged);
             ripple = Ripple::merged_with(ripple, &left_out);
             changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
-            let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
+            let ends = path.ends.iter().zip([nodes.first(), nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
             changes.extend(
                 born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))),

@@ -5,8 +5,15 @@ use nalgebra::DVector;
 use super::backbone::places_of_rest;
 use super::balance::DrivenBalance;
 use super::continuation::BranchPath;
-use super::stability::{SettlingStart, SimulationBudget, half_of_peak_to_peak, settle_together};
+use super::free_swing::FreeSwings;
+use super::stability::{
+    MotionGuess, Settled, SettlingStart, SimulationBudget, first_harmonic, half_of_peak_to_peak,
+    periodic_motions, settle_together,
+};
 use super::{Elsewhere, PreparedRequest, ResponseError};
+use super::{melnikov, one_harmonic};
+use crate::expr::Expr;
+use crate::oscillator::Oscillator;
 use crate::system::LANES;
 
 /// An initial motion of a branch.
@@ -36,6 +43,12 @@ impl Seed {
     pub(super) fn extent(&self) -> f64 {
         half_of_peak_to_peak(&self.positions)
     }
+
+    /// Whether the positions differ by no more than this part of the size.
+    fn is_near(&self, other: &Self, within: f64) -> bool {
+        let apart = self.positions.iter().zip(&other.positions).map(|(one, two)| (one - two).abs());
+        apart.fold(0.0, f64::max) <= within * self.extent().max(other.extent())
+    }
 }
 
 impl PreparedRequest<'_> {
@@ -44,6 +57,8 @@ impl PreparedRequest<'_> {
     pub(super) fn seeds(&self, harmonics: usize) -> Result<InitialMotions, ResponseError> {
         /// Number of values of the parameter at which simulations begin.
         const VALUES: u32 = 5;
+        /// For each of them, number of values at which motions are sought from guesses alone.
+        const BETWEEN: u32 = 3;
         const RINGS: [f64; 2] = [0.5, 1.3];
         if self.driven.self_excited {
             return Ok(InitialMotions { seeds: self.cycles()?, ..InitialMotions::default() });
@@ -61,6 +76,8 @@ impl PreparedRequest<'_> {
         let mut seeds = Vec::new();
         let mut elsewhere = Vec::new();
         let mut planned = Vec::new();
+        // The motions about which larger ones are looked for.
+        let mut known: Vec<KnownMotion> = Vec::new();
         let mut budget = self.budget();
         let rings = if self.driven.undamped { 0 } else { 4 * RINGS.len() };
         self.question.progress.begin(values.len() * (1 + rings));
@@ -68,27 +85,39 @@ impl PreparedRequest<'_> {
         for parameter in &values {
             self.count([1, 0], seeds.len());
             self.question.progress.advance();
-            let mut places = places_of_rest(&self.driven, *parameter, size.max(1.0));
-            // There is a motion about the maximum between two wells as well, though it is unstable.
-            if !places.contains(&0.0) {
-                places.push(0.0);
-            }
-            for place in places {
-                // The simulation starts near the motion that a balance finds from rest, if it finds
-                // one.
-                let found = self.balanced_from_rest(&balance, place, *parameter);
-                let (seed, extent) = found.unzip();
-                size = size.max(extent.unwrap_or(0.0));
-                planned.push(PlannedSimulation {
-                    seed,
-                    start: [place, 0.0],
-                    parameter: *parameter,
-                });
+            for (motion, seed) in self.motions_from_rest(&balance, *parameter, &mut size) {
+                // The simulation starts near the motion that is found from rest, if one is.
+                let start = [motion.place, 0.0];
+                planned.push(PlannedSimulation { seed, start, parameter: *parameter });
+                known.push(motion);
             }
         }
         // Simulations that have Taylor series are followed side by side.
         let together = if self.driven.has_series() { 4 * LANES } else { 1 };
         for planned in planned.chunks(together) {
+            elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
+        }
+        // Guesses cost little, and are made at more values: an isolated branch may be short.
+        let between = (0..BETWEEN * VALUES).map(|index| {
+            let part = (f64::from(index) + 0.5) / f64::from(BETWEEN * VALUES);
+            low + (high - low) * part
+        });
+        for parameter in between {
+            let motions = self.motions_from_rest(&balance, parameter, &mut size);
+            known.extend(motions.into_iter().map(|(motion, _)| motion));
+        }
+        let mut without = Vec::new();
+        for motion in &known {
+            if self.question.interrupt.is_requested() {
+                break;
+            }
+            let (found, starts) = self.of_every_size(&balance, motion, size);
+            seeds.extend(found);
+            if values.contains(&motion.parameter) {
+                without.extend(starts);
+            }
+        }
+        for planned in without.chunks(together) {
             elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
         }
         size = size.max(size_of(&seeds));
@@ -126,8 +155,7 @@ impl PreparedRequest<'_> {
             planned.iter().for_each(|_| self.question.progress.advance());
             elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
         }
-        elsewhere.sort_by(Elsewhere::in_order);
-        elsewhere.dedup();
+        Elsewhere::sort(&mut elsewhere);
         if seeds.is_empty() {
             return Err(self.no_motion_error());
         }
@@ -135,7 +163,7 @@ impl PreparedRequest<'_> {
     }
 
     /// The branches through these motions, by the method that finds them; none across jumps that
-    /// harmonic balance cannot treat. Those that shooting knows already are not followed again.
+    /// harmonic balance cannot treat. Those that are known already are not followed again.
     pub(super) fn branches_through(
         &self,
         balance: &DrivenBalance,
@@ -145,7 +173,7 @@ impl PreparedRequest<'_> {
     ) -> Vec<BranchPath> {
         match self.period_series {
             Some(_) => self.shot_branches(balance, seeds, size, known),
-            None if self.driven.is_balanced() => self.branches(balance, seeds, size),
+            None if self.driven.is_balanced() => self.branches(balance, seeds, size, known),
             None => vec![],
         }
     }
@@ -168,6 +196,125 @@ impl PreparedRequest<'_> {
         found.into_iter().map(seed).collect()
     }
 
+    /// The motions about the equilibria, each with what a balance, or shooting, finds from rest, if it
+    /// finds something; `size` grows with them.
+    fn motions_from_rest(
+        &self,
+        balance: &DrivenBalance,
+        parameter: f64,
+        size: &mut f64,
+    ) -> Vec<(KnownMotion, Option<Seed>)> {
+        let mut places = places_of_rest(&self.driven, parameter, size.max(1.0));
+        // There is a motion about the maximum between two wells as well, though it is unstable.
+        if !places.iter().any(|place| place.abs() <= 1e-9 * size.max(1.0)) {
+            places.push(0.0);
+        }
+        let mut motion = |place: f64| {
+            let (seed, extent) = self.balanced_from_rest(balance, place, parameter).unzip();
+            *size = size.max(extent.unwrap_or(0.0));
+            let coefficients = match &seed {
+                Some(seed) => balance.core.coefficients_of(&[&seed.positions]),
+                None => at_rest(balance, place),
+            };
+            (KnownMotion { place, parameter, coefficients }, seed)
+        };
+        places.into_iter().map(&mut motion).collect()
+    }
+
+    /// Motions of every size about a known one, each once: those found from guesses in which a single
+    /// harmonic balances the forces, if shooting finds the true motion beside them, or, where the
+    /// force has corners, from free motions. Where none is found from a guess, a simulation is to
+    /// start there.
+    fn of_every_size(
+        &self,
+        balance: &DrivenBalance,
+        known: &KnownMotion,
+        size: f64,
+    ) -> (Vec<Seed>, Vec<PlannedSimulation>) {
+        /// Harmonics that may be in resonance.
+        const HARMONICS: usize = 3;
+        /// Relative difference below which two motions are one.
+        const SAME: f64 = 1e-6;
+        let most = HARMONICS.max(self.question.periods);
+        let &KnownMotion { place, parameter, ref coefficients } = known;
+        let size = if size > 0.0 { size } else { 1.0 };
+        let mut motions: Vec<Seed> = vec![self.seed(balance, coefficients, parameter)];
+        let mut without = Vec::new();
+        let mut add = |start: [f64; 2], found: Option<(Seed, f64)>| match found {
+            Some((seed, _)) if motions.iter().any(|known| known.is_near(&seed, SAME)) => {}
+            Some((seed, _)) => motions.push(seed),
+            None => without.push(PlannedSimulation { seed: None, start, parameter }),
+        };
+        let swings = || FreeSwings::at(&self.free()?, (self.question.parameter, parameter));
+        match self.period_series.as_ref().and_then(|_| swings()) {
+            Some(swings) => {
+                let at = (place, parameter);
+                for (start, extent) in melnikov::guesses(&self.driven, &swings, at, most, size) {
+                    add(start, self.shot_near(balance, start, parameter, extent));
+                }
+            }
+            None => {
+                let guesses = |number: usize| {
+                    one_harmonic::guesses(balance, coefficients, (parameter, number), size)
+                };
+                for guess in (1..=most).flat_map(guesses) {
+                    let start = balance.phase_point_at(&guess, parameter, 0.0);
+                    add(start, self.motion_near(balance, &guess, parameter));
+                }
+            }
+        }
+        motions.remove(0);
+        if self.period_series.is_none() {
+            self.keep_true(balance, &mut motions);
+        }
+        (motions, without)
+    }
+
+    /// The oscillator without damping and drive.
+    pub(super) fn free(&self) -> Option<Oscillator> {
+        let parts = self.oscillator.parts().ok()?;
+        let force = Expr::sum([parts.restoring, parts.inertia]);
+        Some(Oscillator { force, ..self.oscillator.clone() })
+    }
+
+    /// Keeps the motions of a balance beside which shooting finds a true one: with few harmonics a
+    /// balance has motions of its own.
+    fn keep_true(&self, balance: &DrivenBalance, motions: &mut Vec<Seed>) {
+        let guess = |seed: &Seed| MotionGuess {
+            start: self.begins(balance, seed),
+            parameter: seed.parameter,
+            size: seed.extent(),
+        };
+        let guesses: Vec<MotionGuess> = motions.iter().map(guess).collect();
+        let mut truths = periodic_motions(&self.driven, &guesses).into_iter();
+        motions.retain(|_| truths.next().flatten().is_some());
+    }
+
+    /// Position and velocity at phase zero of an initial motion.
+    fn begins(&self, balance: &DrivenBalance, seed: &Seed) -> [f64; 2] {
+        let coefficients = balance.core.coefficients_of(&[&seed.positions]);
+        balance.phase_point_at(&coefficients, seed.parameter, 0.0)
+    }
+
+    /// The motion that a balance, or shooting, finds from these coefficients, and its extent; `None`
+    /// if it finds none.
+    fn motion_near(
+        &self,
+        balance: &DrivenBalance,
+        guess: &DVector<f64>,
+        parameter: f64,
+    ) -> Option<(Seed, f64)> {
+        if self.period_series.is_some() {
+            let start = balance.phase_point_at(guess, parameter, 0.0);
+            return self.shot_near(balance, start, parameter, balance.core.extent(guess));
+        }
+        if !self.driven.is_balanced() {
+            return None;
+        }
+        let found = balance.solve(guess, parameter)?;
+        Some((self.seed(balance, &found, parameter), balance.core.extent(&found)))
+    }
+
     /// The motion that a balance, or shooting, finds from rest at an equilibrium, and its extent;
     /// `None` if it finds none.
     fn balanced_from_rest(
@@ -176,16 +323,10 @@ impl PreparedRequest<'_> {
         place: f64,
         parameter: f64,
     ) -> Option<(Seed, f64)> {
-        if self.period_series.is_some() {
-            return self.shot_from_rest(balance, place, parameter);
+        match self.period_series {
+            Some(_) => self.shot_from_rest(balance, place, parameter),
+            None => self.motion_near(balance, &at_rest(balance, place), parameter),
         }
-        if !self.driven.is_balanced() {
-            return None;
-        }
-        let mut still = DVector::zeros(balance.core.size());
-        still[0] = place;
-        let found = balance.solve(&still, parameter)?;
-        Some((self.seed(balance, &found, parameter), balance.core.extent(&found)))
     }
 
     /// An initial motion from the solution of a balance.
@@ -247,7 +388,13 @@ impl PreparedRequest<'_> {
             seeds.extend(planned.seed.clone());
             let Some(settled) = settled else { continue };
             if settled.returns_after != Some(1) {
-                elsewhere.push(Elsewhere { parameter, periods: settled.returns_after });
+                let Settled { state, returns_after, positions, peak } = &settled;
+                elsewhere.push(self.elsewhere(
+                    (*state, parameter),
+                    *returns_after,
+                    first_harmonic(positions),
+                    *peak,
+                ));
                 continue;
             }
             seeds.push(Seed {
@@ -267,6 +414,21 @@ struct PlannedSimulation {
     seed: Option<Seed>,
     start: [f64; 2],
     parameter: f64,
+}
+
+/// A motion at a value of the parameter, or rest, about which larger ones are looked for.
+struct KnownMotion {
+    /// The equilibrium.
+    place: f64,
+    parameter: f64,
+    coefficients: DVector<f64>,
+}
+
+/// The coefficients of rest at a place.
+fn at_rest(balance: &DrivenBalance, place: f64) -> DVector<f64> {
+    let mut still = DVector::zeros(balance.core.size());
+    still[0] = place;
+    still
 }
 
 /// The size of the largest initial motion.

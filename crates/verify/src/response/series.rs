@@ -29,7 +29,7 @@ use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions, Variati
 use crate::trajectory::roots_across_corners;
 
 /// A value of the parameter with which nothing cancels; every motion has its own.
-const ANY: f64 = 0.618_034;
+pub(super) const ANY: f64 = 0.618_034;
 
 /// Prepares the Taylor series in time of a motion, or of the motion with its variations; `None` if
 /// it has none.
@@ -53,11 +53,11 @@ pub(super) fn solver_in_time(
 
 /// Prepares the Taylor series in time of a motion that ends where its velocity falls through zero;
 /// `None` if it has none.
-pub(super) fn swing_solver(oscillator: &Oscillator, parameter: Symbol) -> Option<Solver> {
+pub(super) fn swing_solver(oscillator: &Oscillator, parameter: (Symbol, f64)) -> Option<Solver> {
     let states = [oscillator.coordinate, oscillator.velocity()];
     let right = [Expr::from(states[1]), -&oscillator.force];
     let turns = Event::stop(Expr::from(states[1])).falling();
-    solver_until(&states, Symbol::new("t"), &right, (parameter, ANY), &[turns])
+    solver_until(&states, Symbol::new("t"), &right, parameter, &[turns])
 }
 
 /// Prepares the Taylor series of a system with a parameter.

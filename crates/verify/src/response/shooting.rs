@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, Matrix2};
 
 use super::balance::DrivenBalance;
-use super::branches::{KnownMotion, largest};
+use super::branches::{KnownMotion, largest, smallest};
 use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::positions_on;
 use super::seeds::Seed;
@@ -155,12 +155,23 @@ impl PreparedRequest<'_> {
         place: f64,
         parameter: f64,
     ) -> Option<(Seed, f64)> {
+        // The first search does not know the size of the motion.
+        let (first, extent) = self.shot_near(balance, [place, 0.0], parameter, 1.0)?;
+        self.shot_near(balance, first.start?, parameter, extent)
+    }
+
+    /// The motion that shooting finds from a start, of about this extent, and its own extent; `None`
+    /// if it finds none.
+    pub(super) fn shot_near(
+        &self,
+        balance: &DrivenBalance,
+        start: [f64; 2],
+        parameter: f64,
+        extent: f64,
+    ) -> Option<(Seed, f64)> {
         self.with_orbits(balance, 0.0, |equations| {
-            // The first search does not know the size of the motion.
-            let first = self.orbit_near(equations, [place, 0.0], parameter, [1.0, 0.0])?;
-            let extent = balance.core.extent(&first.kept.coefficients);
-            let start = first.kept.truth.start;
             let orbit = self.orbit_near(equations, start, parameter, [extent, 0.0])?;
+            let extent = balance.core.extent(&orbit.kept.coefficients);
             Some((self.seed_of(balance, &node_of(orbit)), extent))
         })?
     }
@@ -356,7 +367,7 @@ impl PreparedRequest<'_> {
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
         let (truth, parameter) = (node.truth?, node.parameter);
-        let size = balance.core.extent(&node.coefficients);
+        let size = balance.core.extent(&node.coefficients).max(smallest(balance, paths));
         let [shifted, mirrored] = self.starts_of_images(truth.start, parameter)?;
         let is_one = |[x, v]: [f64; 2], starts: &[[f64; 2]], within: f64| {
             starts.iter().any(|start| {

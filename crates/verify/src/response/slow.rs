@@ -14,6 +14,9 @@ use crate::verify::Verdict;
 /// branch folds back too early.
 const OTHER: f64 = 0.3;
 
+/// Ratio to the largest amplitude below which an amplitude is zero.
+const NOTHING: f64 = 1e-9;
+
 /// One in so many stable points may be missing, because folds are shifted.
 const MISSING: usize = 20;
 
@@ -119,15 +122,18 @@ impl ResponseDiagram {
             spurious.extend(found.spurious);
         }
         let (mut error, mut worst, mut missing, mut count) = (None::<f64>, None, 0, 0);
-        let points = self.branches.iter().flat_map(|branch| &branch.points);
-        for point in points.filter(|point| point.stable == Some(true)) {
+        let points = || self.branches.iter().flat_map(|branch| &branch.points);
+        // At rest an amplitude is zero up to rounding.
+        let smallest = NOTHING * points().map(|point| point.amplitude).fold(0.0, f64::max);
+        for point in points().filter(|point| point.stable == Some(true)) {
             count += 1;
             let stable = motions_at(question, &solution, point.parameter).states.into_iter();
             let apart = stable
                 .filter(SteadyState::is_stable)
                 .map(|state| (state.amplitude - point.amplitude).abs())
                 .min_by(f64::total_cmp);
-            let relative = apart.map(|apart| apart / point.amplitude.max(f64::MIN_POSITIVE));
+            let relative =
+                apart.map(|apart| apart / point.amplitude.max(smallest.max(f64::MIN_POSITIVE)));
             let Some(relative) = relative.filter(|relative| *relative <= OTHER) else {
                 missing += 1;
                 continue;

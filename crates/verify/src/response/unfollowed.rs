@@ -8,7 +8,9 @@ use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
 use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
-use super::stability::{MotionGuess, TOLERANCE, options, periodic_motion, periodic_motions};
+use super::stability::{
+    MotionGuess, TOLERANCE, TrueMotion, options, periodic_motion, periodic_motions,
+};
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
 
 /// A motion at a value of the parameter, by its start and those of its images, shifted by a drive
@@ -51,9 +53,8 @@ impl PreparedRequest<'_> {
             }
             let MotionGuess { parameter, size: extent, .. } = *guess;
             let truth = truth.filter(|_| extent > NOTHING * size);
-            let Some(start) = truth.map(|truth| truth.start) else {
-                continue;
-            };
+            let Some(truth) = truth else { continue };
+            let start = truth.start;
             let is_known = |motion: &MotionWithImages| {
                 motion.parameter == parameter && self.is_one(motion, start)
             };
@@ -66,11 +67,46 @@ impl PreparedRequest<'_> {
                 size: extent,
             };
             if !paths.iter().any(|path| self.passes(balance, path, &motion)) {
-                found.push(Elsewhere { parameter, periods: Some(1) });
+                let TrueMotion { first_harmonic, peak, .. } = truth;
+                found.push(self.elsewhere((start, parameter), Some(1), first_harmonic, peak));
             }
             known.push(motion);
         }
         found
+    }
+
+    /// A motion that lies on no branch, by its start at a value of the parameter, the number of
+    /// its periods, the first harmonic and the size of one of them.
+    pub(super) fn elsewhere(
+        &self,
+        (start, parameter): ([f64; 2], f64),
+        periods: Option<usize>,
+        [cosine, sine]: [f64; 2],
+        peak: f64,
+    ) -> Elsewhere {
+        /// Ratio of a difference to the size below which a motion has come back.
+        const SAME: f64 = 1e-3;
+        let omega = self.driven.frequency_at(parameter);
+        let drive_period = std::f64::consts::TAU / omega / self.question.periods as f64;
+        let settings = options(peak, TOLERANCE);
+        let returns = |count: usize| {
+            let time = StopCondition::Time(count as f64 * drive_period);
+            let end = follow(&self.driven, start, parameter, time, &settings);
+            end.is_some_and(|path| {
+                let [x, v, ..] = path.end;
+                (x - start[0]).hypot((v - start[1]) / omega) <= SAME * peak
+            })
+        };
+        // An odd number of drive periods is found after twice as many where the motion takes two.
+        let drive_periods = periods.map(|periods| {
+            let all = periods * self.question.periods;
+            let mut fewer = (1..all).filter(|count| {
+                all.is_multiple_of(*count) && !count.is_multiple_of(self.question.periods)
+            });
+            fewer.find(|count| returns(*count)).unwrap_or(all)
+        });
+        let amplitude = cosine.hypot(sine);
+        Elsewhere { parameter, periods, drive_periods, start, amplitude, peak }
     }
 
     /// The starts of a motion, of its shifts by drive periods, and of their mirror images.

@@ -1,0 +1,260 @@
+//! Guesses of motions of every size: where the balance of a single harmonic has a solution.
+//!
+//! ```text
+//! x = X(theta) + m + a cos(k theta - phi),   m(a, phi): the mean of f is zero
+//! (k omega)^2 a = 2 <f cos(k theta - phi)>,   0 = 2 <f sin(k theta - phi)>
+//! ```
+//!
+//! (A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 4.) The first
+//! equation says at which amplitudes the harmonic k of the motion is in resonance, the second at
+//! which of them the drive makes up for what the damping takes: together they have the large
+//! motions that no simulation from rest comes to, isolated ones as well. X is a motion that is
+//! known, about which the harmonic k grows: a place of rest, or the motion that is forced about it.
+//!
+//! In: the equation, X and a value of the parameter. Out: motions from which a balance of all
+//! harmonics, or shooting, is to start. Amplitudes and phases are looked at on a grid over four
+//! decades, and a guess is a cell in which both equations change their signs: ten thousand
+//! evaluations of the force for each harmonic up to the number of drive periods, more for higher ones.
+
+use std::f64::consts::TAU;
+
+use nalgebra::DVector;
+
+use super::balance::DrivenBalance;
+
+/// Number of amplitudes in a decade, and of phases.
+const EACH_DECADE: i32 = 8;
+const PHASES: usize = 12;
+
+/// Decades of amplitudes below and above the size of the motions that are known.
+const BELOW: i32 = 1;
+const ABOVE: i32 = 3;
+
+/// Samples in a period of the fastest of the harmonics.
+const SAMPLES: usize = 16;
+
+/// A motion X and one of its harmonics.
+struct Harmonic<'a> {
+    balance: &'a DrivenBalance<'a>,
+    /// The coefficients of X, the harmonic itself left out.
+    known: DVector<f64>,
+    samples: Vec<Sample>,
+    /// k.
+    number: usize,
+    /// The frequency omega of the motion.
+    omega: f64,
+    parameter: f64,
+}
+
+/// A phase, with position and velocity of X and cosine and sine of the harmonic there.
+struct Sample {
+    theta: f64,
+    known: [f64; 2],
+    wave: [f64; 2],
+}
+
+/// The residuals of the two equations, with the mean that goes with them.
+#[derive(Clone, Copy)]
+struct Residuals {
+    in_phase: f64,
+    out_of_phase: f64,
+    mean: f64,
+}
+
+/// Motions about a known one whose harmonic k balances the forces, as coefficients of `balance`;
+/// `size` is that of the motions that are known.
+pub(super) fn guesses(
+    balance: &DrivenBalance,
+    known: &DVector<f64>,
+    (parameter, number): (f64, usize),
+    size: f64,
+) -> Vec<DVector<f64>> {
+    if !(size > 0.0 && size.is_finite()) || number > balance.core.harmonics {
+        return vec![];
+    }
+    let harmonic = Harmonic::new(balance, known, parameter, number);
+    let amplitude = |step: i32| size * 10_f64.powf(f64::from(step) / f64::from(EACH_DECADE));
+    let phase = |index: usize| TAU * index as f64 / PHASES as f64;
+    // A row has the phases at one amplitude; the mean goes on from one amplitude to the next.
+    let row = |before: &[Option<Residuals>], step: i32| -> Vec<Option<Residuals>> {
+        let at = |index: usize| {
+            let mean = before[index].map_or(0.0, |before| before.mean);
+            harmonic.residuals(amplitude(step), phase(index), mean)
+        };
+        (0..PHASES).map(at).collect()
+    };
+    let mut found = Vec::new();
+    let mut before = row(&[None; PHASES], -BELOW * EACH_DECADE);
+    for step in 1 - BELOW * EACH_DECADE..=ABOVE * EACH_DECADE {
+        let here = row(&before, step);
+        for index in 0..PHASES {
+            let next = (index + 1) % PHASES;
+            let Some(mean) = root_within([before[index], before[next], here[index], here[next]])
+            else {
+                continue;
+            };
+            let middle = (amplitude(step - 1) * amplitude(step)).sqrt();
+            found.push(harmonic.with(middle, phase(index) + 0.5 * phase(1), mean));
+        }
+        before = here;
+    }
+    found
+}
+
+/// The mean in a cell in which both residuals change their signs.
+fn root_within(corners: [Option<Residuals>; 4]) -> Option<f64> {
+    let [one, two, three, four] = corners;
+    let corners = [one?, two?, three?, four?];
+    let changes = |residual: fn(&Residuals) -> f64| {
+        let above = corners.iter().filter(|corner| residual(corner) > 0.0).count();
+        (1..corners.len()).contains(&above)
+    };
+    let is_root = changes(|corner| corner.in_phase) && changes(|corner| corner.out_of_phase);
+    is_root.then(|| corners.iter().map(|corner| corner.mean).sum::<f64>() / corners.len() as f64)
+}
+
+impl<'a> Harmonic<'a> {
+    fn new(
+        balance: &'a DrivenBalance<'a>,
+        known: &DVector<f64>,
+        parameter: f64,
+        number: usize,
+    ) -> Self {
+        let mut known = known.clone();
+        known.rows_mut(2 * number - 1, 2).fill(0.0);
+        let count = SAMPLES * number.max(balance.driven.periods);
+        let sample = |index: usize| {
+            let theta = TAU * index as f64 / count as f64;
+            let (sine, cosine) = (number as f64 * theta).sin_cos();
+            let known = balance.phase_point_at(&known, parameter, theta);
+            Sample { theta, known, wave: [cosine, sine] }
+        };
+        let samples = (0..count).map(sample).collect();
+        let omega = balance.driven.frequency_at(parameter);
+        Self { balance, known, samples, number, omega, parameter }
+    }
+
+    /// X with this harmonic and mean.
+    fn with(&self, amplitude: f64, phase: f64, mean: f64) -> DVector<f64> {
+        let mut motion = self.known.clone();
+        let (sine, cosine) = phase.sin_cos();
+        motion[0] += mean;
+        motion[2 * self.number - 1] = amplitude * cosine;
+        motion[2 * self.number] = amplitude * sine;
+        motion
+    }
+
+    /// The residuals at an amplitude and a phase, with the mean of the force made zero by the secant
+    /// method from a guess; `None` if the force has no value.
+    fn residuals(&self, amplitude: f64, phase: f64, mean: f64) -> Option<Residuals> {
+        /// Ratio to the amplitude of a first step of the mean, and the largest number of steps.
+        const STEP: f64 = 1e-2;
+        const STEPS: usize = 4;
+        /// Ratio of the mean of the force to its size below which it is zero.
+        const NOTHING: f64 = 1e-3;
+        let (mut mean, mut before) = (mean, None);
+        let mut sums = self.sums(amplitude, phase, mean)?;
+        for _ in 0..STEPS {
+            if sums.mean.abs() <= NOTHING * sums.size {
+                break;
+            }
+            let step = match before {
+                None => STEP * amplitude,
+                Some((last, force)) => sums.mean * (last - mean) / (sums.mean - force),
+            };
+            before = Some((mean, sums.mean));
+            // A mean that runs away is none.
+            mean += step.clamp(-amplitude, amplitude);
+            sums = self.sums(amplitude, phase, mean)?;
+        }
+        let speed = self.number as f64 * self.omega;
+        let in_phase = 2.0 * sums.cosine - speed * speed * amplitude;
+        Some(Residuals { in_phase, out_of_phase: 2.0 * sums.sine, mean })
+    }
+
+    /// The means of the force, of its products with cosine and sine, and of its size.
+    fn sums(&self, amplitude: f64, phase: f64, mean: f64) -> Option<Sums> {
+        let count = self.samples.len() as f64;
+        let speed = self.number as f64 * self.omega;
+        let mut sums = Sums::default();
+        let (phase_sine, phase_cosine) = phase.sin_cos();
+        for &Sample { theta, known: [x, v], wave } in &self.samples {
+            // cos(k theta - phi) and sin(k theta - phi)
+            let cosine = wave[0] * phase_cosine + wave[1] * phase_sine;
+            let sine = wave[1] * phase_cosine - wave[0] * phase_sine;
+            let position = x + mean + amplitude * cosine;
+            let at = [position, v - amplitude * speed * sine, theta, self.parameter];
+            let force = self.balance.driven.force(&at);
+            sums.mean += force / count;
+            sums.cosine += force * cosine / count;
+            sums.sine += force * sine / count;
+            sums.size += force.abs() / count;
+        }
+        sums.size.is_finite().then_some(sums)
+    }
+}
+
+/// Means over a period.
+#[derive(Default)]
+struct Sums {
+    mean: f64,
+    cosine: f64,
+    sine: f64,
+    size: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::{PreparedRequest, ResponseRequest};
+
+    /// The cubic equation of Duffing's oscillator for the squared amplitude,
+    /// `((3/4 a^2 + 1 - w^2)^2 + c^2 w^2) a^2 = F^2`, has three roots; beside each there is a guess,
+    /// and none elsewhere.
+    #[test]
+    fn every_amplitude_of_duffing_is_guessed() {
+        let (c, drive, w) = (0.047, 0.3, 1.5);
+        let equation = "x'' + c*x' + x + x^3 = 0.3*cos(1.5*t)";
+        let question = ResponseRequest::new(equation, "c", [0.02, 0.4], "").expect("a request");
+        let asked = PreparedRequest::new(&question).expect("a request");
+        let balance = DrivenBalance::new(&asked.driven, 3);
+        let still = DVector::zeros(balance.core.size());
+        let residual = |a: f64| {
+            let bent = 0.75 * a * a + 1.0 - w * w;
+            (bent * bent + c * c * w * w) * a * a - drive * drive
+        };
+        let step = 10_f64.powf(1.0 / f64::from(EACH_DECADE));
+        let guesses = guesses(&balance, &still, (c, 1), 0.25);
+        let amplitudes = guesses.iter().map(|guess| guess[1].hypot(guess[2]));
+        let amplitudes: Vec<f64> = amplitudes.collect();
+        // The signs between the roots are known: + beyond, - between.
+        let mut roots = Vec::new();
+        for pair in [[0.1, 0.5], [0.5, 1.25], [1.25, 2.0]] {
+            roots.push(
+                crate::numeric::ode::root::find_root(residual, pair[0], pair[1]).expect("a root"),
+            );
+        }
+        for root in &roots {
+            let is_near = |a: &f64| (a / root).ln().abs() <= step.ln();
+            assert!(amplitudes.iter().any(is_near), "{root} {amplitudes:?}");
+        }
+        for amplitude in &amplitudes {
+            let is_near = |root: &f64| (amplitude / root).ln().abs() <= 2.0 * step.ln();
+            assert!(roots.iter().any(is_near), "{amplitude} {roots:?}");
+        }
+    }
+
+    /// The mean moves with the amplitude: `x^2` pushes the motion aside by half of the squared
+    /// amplitude, to first order.
+    #[test]
+    fn the_mean_goes_with_the_amplitude() {
+        let equation = "x'' + x'/50 + x + x^2/10 = F*cos(t)";
+        let question = ResponseRequest::new(equation, "F", [0.01, 0.05], "").expect("a request");
+        let asked = PreparedRequest::new(&question).expect("a request");
+        let balance = DrivenBalance::new(&asked.driven, 3);
+        let still = DVector::zeros(balance.core.size());
+        let harmonic = Harmonic::new(&balance, &still, 0.02, 1);
+        let found = harmonic.residuals(0.5, 0.3, 0.0).expect("residuals");
+        assert!((found.mean + 0.1 * 0.5 * 0.25).abs() < 1e-3, "{}", found.mean);
+    }
+}

@@ -16,6 +16,13 @@ use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::system::LANES;
 
+/// Number of values of the parameter at which simulations begin.
+const VALUES: u32 = 5;
+
+/// Radii of the rings of starts, relative to the largest motion, and the number of starts on each.
+const RINGS: [f64; 2] = [0.5, 1.3];
+const TURNS: u32 = 4;
+
 /// An initial motion of a branch.
 #[derive(Clone, Debug)]
 pub(super) struct Seed {
@@ -52,114 +59,133 @@ impl Seed {
 }
 
 impl PreparedRequest<'_> {
-    /// Initial motions from simulations that settle, from rest and from a ring of starts as large
-    /// as the motions of the first branches; and the simulations that did not become periodic.
+    /// Initial motions: from simulations that settle, from rest and from a ring of starts as large as
+    /// the motions of the first branches, and from guesses of every size; and the simulations that did
+    /// not become periodic.
     pub(super) fn seeds(&self, harmonics: usize) -> Result<InitialMotions, ResponseError> {
-        /// Number of values of the parameter at which simulations begin.
-        const VALUES: u32 = 5;
-        /// For each of them, number of values at which motions are sought from guesses alone.
-        const BETWEEN: u32 = 3;
-        const RINGS: [f64; 2] = [0.5, 1.3];
         if self.driven.self_excited {
             return Ok(InitialMotions { seeds: self.cycles()?, ..InitialMotions::default() });
         }
-        let [low, high] = self.question.range;
         let balance = DrivenBalance::new(&self.driven, harmonics);
+        let values = self.values_of_search();
+        let rings = if self.driven.undamped { 0 } else { TURNS as usize * RINGS.len() };
+        self.question.progress.begin(values.len() * (1 + rings));
+        let mut found =
+            Search { motions: InitialMotions::default(), budget: self.budget(), size: 0.0 };
+        let known = self.search_from_rest(&balance, &values, &mut found);
+        self.search_from_guesses(&balance, &values, known, &mut found);
+        let seeds = &mut found.motions.seeds;
+        found.size = found.size.max(size_of(seeds));
+        let branches = self.branches_through(&balance, seeds, found.size, &[]);
+        for path in &branches {
+            for (seed, extent) in self.reentries(&balance, path, seeds, found.size) {
+                seeds.push(seed);
+                found.size = found.size.max(extent);
+            }
+            let extents = path.nodes.iter().map(|node| balance.core.extent(&node.coefficients));
+            found.size = extents.fold(found.size, f64::max);
+        }
+        found.motions.branches = branches;
+        if !self.driven.undamped {
+            self.search_from_rings(&values, &mut found);
+        }
+        Elsewhere::sort(&mut found.motions.elsewhere);
+        match found.motions.seeds.is_empty() {
+            true => Err(self.no_motion_error()),
+            false => Ok(found.motions),
+        }
+    }
+
+    /// The values of the parameter at which simulations begin.
+    fn values_of_search(&self) -> Vec<f64> {
         /// Fraction of the range at which the search starts: without damping there is no motion at
         /// a resonance, which a user is likely to place at an end or in the middle.
         const OFF: f64 = 0.382;
+        let [low, high] = self.question.range;
         let part = |index: u32| match self.driven.undamped {
             true => (f64::from(index) + OFF) / f64::from(VALUES),
             false => f64::from(index) / f64::from(VALUES - 1),
         };
-        let values: Vec<f64> = (0..VALUES).map(|index| low + (high - low) * part(index)).collect();
-        let mut seeds = Vec::new();
-        let mut elsewhere = Vec::new();
-        let mut planned = Vec::new();
-        // The motions about which larger ones are looked for.
-        let mut known: Vec<KnownMotion> = Vec::new();
-        let mut budget = self.budget();
-        let rings = if self.driven.undamped { 0 } else { 4 * RINGS.len() };
-        self.question.progress.begin(values.len() * (1 + rings));
-        let mut size = 0.0_f64;
-        for parameter in &values {
-            self.count([1, 0], seeds.len());
+        (0..VALUES).map(|index| low + (high - low) * part(index)).collect()
+    }
+
+    /// Adds the motions on which simulations from rest settle; returns the motions about the
+    /// equilibria.
+    fn search_from_rest(
+        &self,
+        balance: &DrivenBalance,
+        values: &[f64],
+        found: &mut Search,
+    ) -> Vec<KnownMotion> {
+        let (mut planned, mut known) = (Vec::new(), Vec::new());
+        for parameter in values {
+            self.count([1, 0], found.motions.seeds.len());
             self.question.progress.advance();
-            for (motion, seed) in self.motions_from_rest(&balance, *parameter, &mut size) {
+            for (motion, seed) in self.motions_from_rest(balance, *parameter, &mut found.size) {
                 // The simulation starts near the motion that is found from rest, if one is.
                 let start = [motion.place, 0.0];
                 planned.push(PlannedSimulation { seed, start, parameter: *parameter });
                 known.push(motion);
             }
         }
-        // Simulations that have Taylor series are followed side by side.
-        let together = if self.driven.has_series() { 4 * LANES } else { 1 };
-        for planned in planned.chunks(together) {
-            elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
-        }
-        // Guesses cost little, and are made at more values: an isolated branch may be short.
-        let between = (0..BETWEEN * VALUES).map(|index| {
+        self.add_settled(&planned, found);
+        known
+    }
+
+    /// Adds motions of every size about the known ones, and about others at more values: guesses cost
+    /// little, and an isolated branch may be short. Where a guess leads to none, a simulation starts.
+    fn search_from_guesses(
+        &self,
+        balance: &DrivenBalance,
+        values: &[f64],
+        mut known: Vec<KnownMotion>,
+        found: &mut Search,
+    ) {
+        /// Number of values for each of those at which simulations begin.
+        const BETWEEN: u32 = 3;
+        let [low, high] = self.question.range;
+        for index in 0..BETWEEN * VALUES {
             let part = (f64::from(index) + 0.5) / f64::from(BETWEEN * VALUES);
-            low + (high - low) * part
-        });
-        for parameter in between {
-            let motions = self.motions_from_rest(&balance, parameter, &mut size);
+            let parameter = low + (high - low) * part;
+            let motions = self.motions_from_rest(balance, parameter, &mut found.size);
             known.extend(motions.into_iter().map(|(motion, _)| motion));
         }
         let mut without = Vec::new();
         for motion in &known {
             if self.question.interrupt.is_requested() {
-                break;
+                return;
             }
-            let (found, starts) = self.of_every_size(&balance, motion, size);
-            seeds.extend(found);
+            let (motions, starts) = self.of_every_size(balance, motion, found.size);
+            found.motions.seeds.extend(motions);
             if values.contains(&motion.parameter) {
                 without.extend(starts);
             }
         }
-        for planned in without.chunks(together) {
-            elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
-        }
-        size = size.max(size_of(&seeds));
-        // The ring is as large as the motions of the branches known so far.
-        let first = self.branches_through(&balance, &seeds, size, &[]);
-        for path in &first {
-            for (seed, extent) in self.reentries(&balance, path, &seeds, size) {
-                seeds.push(seed);
-                size = size.max(extent);
-            }
-        }
-        let widest = first
-            .iter()
-            .flat_map(|path| &path.nodes)
-            .map(|node| balance.core.extent(&node.coefficients));
-        size = widest.fold(size, f64::max);
+        self.add_settled(&without, found);
+    }
+
+    /// Adds the motions on which simulations settle from rings in the plane of position and velocity,
+    /// in proportion to the size of the motions that are known.
+    fn search_from_rings(&self, values: &[f64], found: &mut Search) {
+        let size = found.size;
         let ring = |parameter: &f64| {
             let (parameter, omega) = (*parameter, self.driven.frequency_at(*parameter));
-            let turns = RINGS.iter().flat_map(|radius| (0..4_u32).map(move |turn| (radius, turn)));
+            let turns = RINGS.iter().flat_map(|radius| (0..TURNS).map(move |turn| (radius, turn)));
             turns.map(move |(radius, turn)| {
-                let (sine, cosine) =
-                    (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
+                let angle = std::f64::consts::TAU * (f64::from(turn) + 0.3) / f64::from(TURNS);
+                let (sine, cosine) = angle.sin_cos();
                 let start = [radius * size * cosine, -radius * size * omega * sine];
                 PlannedSimulation { seed: None, start, parameter }
             })
         };
-        let rings: Vec<PlannedSimulation> = match self.driven.undamped {
-            true => vec![],
-            false => values.iter().flat_map(ring).collect(),
-        };
-        for planned in rings.chunks(together) {
+        let planned: Vec<PlannedSimulation> = values.iter().flat_map(ring).collect();
+        for planned in planned.chunks(4 * LANES) {
             if self.question.interrupt.is_requested() {
-                return Ok(InitialMotions { seeds, elsewhere, branches: first });
+                return;
             }
             planned.iter().for_each(|_| self.question.progress.advance());
-            elsewhere.extend(self.add_settled(planned, &mut seeds, &mut budget));
+            self.add_settled(planned, found);
         }
-        Elsewhere::sort(&mut elsewhere);
-        if seeds.is_empty() {
-            return Err(self.no_motion_error());
-        }
-        Ok(InitialMotions { seeds, elsewhere, branches: first })
     }
 
     /// The branches through these motions, by the method that finds them; none across jumps that
@@ -360,52 +386,53 @@ impl PreparedRequest<'_> {
         [lowest, highest]
     }
 
-    /// Adds the motions on which simulations settle, each behind the motion found beside its start;
-    /// returns those that do not become periodic.
-    fn add_settled(
-        &self,
-        planned: &[PlannedSimulation],
-        seeds: &mut Vec<Seed>,
-        budget: &mut SimulationBudget,
-    ) -> Vec<Elsewhere> {
+    /// Adds the motions on which simulations settle, each behind the motion found beside its start,
+    /// and those that do not become periodic.
+    fn add_settled(&self, planned: &[PlannedSimulation], found: &mut Search) {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;
-        if self.driven.undamped || self.question.interrupt.is_requested() {
-            seeds.extend(planned.iter().filter_map(|planned| planned.seed.clone()));
-            return vec![];
-        }
-        self.count([0, planned.len()], seeds.len());
-        let start = |planned: &PlannedSimulation| SettlingStart {
-            start: planned.start,
-            parameter: planned.parameter,
-            most: PERIODS,
-        };
-        let starts: Vec<SettlingStart> = planned.iter().map(start).collect();
-        let mut elsewhere = Vec::new();
-        let all = settle_together(&self.driven, &starts, CLOSELY, budget);
-        for (planned, settled) in planned.iter().zip(all) {
-            let parameter = planned.parameter;
-            seeds.extend(planned.seed.clone());
-            let Some(settled) = settled else { continue };
-            if settled.returns_after != Some(1) {
-                let Settled { state, returns_after, positions, peak } = &settled;
-                elsewhere.push(self.elsewhere(
-                    (*state, parameter),
-                    *returns_after,
-                    first_harmonic(positions),
-                    *peak,
-                ));
+        // Those that have Taylor series are followed side by side.
+        let together = if self.driven.has_series() { 4 * LANES } else { 1 };
+        let InitialMotions { seeds, elsewhere, .. } = &mut found.motions;
+        for planned in planned.chunks(together) {
+            if self.driven.undamped || self.question.interrupt.is_requested() {
+                seeds.extend(planned.iter().filter_map(|planned| planned.seed.clone()));
                 continue;
             }
-            seeds.push(Seed {
-                parameter,
-                frequency: self.driven.frequency_at(parameter),
-                positions: settled.positions,
-                start: Some(settled.state),
-            });
+            self.count([0, planned.len()], seeds.len());
+            let start = |planned: &PlannedSimulation| SettlingStart {
+                start: planned.start,
+                parameter: planned.parameter,
+                most: PERIODS,
+            };
+            let starts: Vec<SettlingStart> = planned.iter().map(start).collect();
+            let all = settle_together(&self.driven, &starts, CLOSELY, &mut found.budget);
+            for (planned, settled) in planned.iter().zip(all) {
+                let parameter = planned.parameter;
+                seeds.extend(planned.seed.clone());
+                let Some(Settled { state, returns_after, positions, peak }) = settled else {
+                    continue;
+                };
+                if returns_after != Some(1) {
+                    let wave = first_harmonic(&positions);
+                    elsewhere.push(self.elsewhere((state, parameter), returns_after, wave, peak));
+                    continue;
+                }
+                let frequency = self.driven.frequency_at(parameter);
+                seeds.push(Seed { parameter, frequency, positions, start: Some(state) });
+            }
         }
-        elsewhere
     }
+}
+
+/// A search for initial motions.
+struct Search {
+    /// The result so far.
+    motions: InitialMotions,
+    /// The evaluations that are left for simulations.
+    budget: SimulationBudget,
+    /// The size of the largest motion.
+    size: f64,
 }
 
 /// A simulation to be followed until it settles.

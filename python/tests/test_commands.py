@@ -142,6 +142,48 @@ def test_progress_is_told_and_may_end_the_work():
     assert len(told) == 3
 
 
+#: Work that takes half a minute and more where it is not stopped, and nothing else is running.
+LONG = {
+    "derive": lambda watch: ls.derive("duffing", "hermite-pade", order=(40, 40, 40), progress=watch),
+    "simulate": lambda watch: ls.simulate(
+        "x'' + x + x^3 = 0", x=1, until=1e7, step_limit=10**7, progress=watch
+    ),
+    "response": lambda watch: ls.response(
+        "x'' + x'/1000 + sin(x) = F*cos(W*t)", vary={"W": (0.1, 3)}, F=1, progress=watch
+    ),
+    "optimize": lambda watch: ls.optimize(runs=10000, progress=watch),
+    "audit": lambda watch: ls.audit({"claim": MANY_CLAIMS}, progress=watch),
+}
+MANY_CLAIMS = [
+    {
+        "id": str(number), "where": "a page", "says": "a law", "quantity": "law", "printed": "1",
+        "equation": "x'' + x + eps*x^3 = 0", "order": 150,
+    }
+    for number in range(1000)
+]
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_work_that_is_stopped_leaves_the_processor(name):
+    told = []
+
+    def watch(done, all_parts):
+        told.append((done, all_parts))
+        if len(told) == 10:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        LONG[name](watch)
+    # Far more processor time than what was begun needs, and far less than all of it.
+    began = time.process_time()
+    while time.process_time() - began < 15:
+        before = time.process_time()
+        time.sleep(0.3)
+        if time.process_time() - before < 0.02:
+            return
+    pytest.fail("the work goes on")
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_an_interrupt_ends_the_work():
     began = time.monotonic()

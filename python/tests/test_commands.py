@@ -117,6 +117,43 @@ def test_wrong_options_are_usage_errors():
         ls.friction(unheard_of=1)
 
 
+#: Calls that are refused, with the words that say so: keywords, where the program has options.
+WRONG = {
+    "values": (lambda: ls.derive("duffing", A=1), "verification", "eps=VALUE"),
+    "no values": (lambda: ls.compare("duffing"), "verification", "add eps=VALUE,A=VALUE"),
+    "a value": (lambda: ls.derive("duffing", A="3/"), "usage", "A=3/: something is missing"),
+    "an order": (lambda: ls.derive("duffing", order=-1), "usage", "for `order`: `-1` is negative"),
+    "a high order": (lambda: ls.derive("duffing", order=9999), "refusal", "or `omega_only`, whose"),
+    "a start": (lambda: ls.simulate("pendulum"), "command", 'from_="x=1.5" for a release'),
+    "a range": (
+        lambda: ls.response("x'' + x'/10 + x^3 = F*cos(W*t)"), "command", 'vary="F=FROM:TO"'
+    ),
+    "two at once": (
+        lambda: ls.impact(certify=True, compare=True), "usage", "`compare` cannot be used with"
+    ),
+    "a term": (lambda: ls.stability("duffing"), "hill", "the term `eps*x^3` is not linear"),
+    "no material": (lambda: ls.materials(only_own=True), "materials", "leave out `only_own`"),
+    "a claim": (lambda: ls.audit({"claim": [{"id": "a"}]}), "problem", "has no quantity"),
+    "a key": (lambda: ls.derive({"equatoin": "x'' + x = 0"}), "problem", "equatoin"),
+    "a name": (lambda: ls.derive("pendulm"), "command", "did you mean `pendulum`?"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_errors_have_a_kind_and_speak_of_keywords(name):
+    call, kind, words = WRONG[name]
+    with pytest.raises(ls.LindstedtError) as caught:
+        call()
+    assert caught.value.kind == kind and words in str(caught.value)
+    assert "--" not in str(caught.value)
+
+
+def test_the_term_of_a_linear_equation_is_named():
+    with pytest.raises(ls.Refused) as caught:
+        ls.stability("duffing")
+    assert caught.value.term == "eps*x^3"
+
+
 def test_a_time_limit():
     with pytest.raises(ls.TimeLimit):
         ls.audit(EXAMPLES / "audit" / "paper.toml", timeout=1e-9)

@@ -107,7 +107,7 @@ fn outcome(
         return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
     }
     let claims: Claims = claims.parse().map_err(|error: ProblemError| {
-        Failure::refused(&format!("{name}: {error}"), error.help())
+        Failure::refused(&format!("{name}: {error}"), error.help()).of_kind(&error)
     })?;
     if let Some(shard) = own.shard.shard {
         return write_shard(shard, common, &claims);

@@ -33,6 +33,8 @@ OWN = {
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),
+    "Primary": ("motions", "Primary"),
+    "PrimarySweep": ("motions", "PrimarySweep"),
     "Response": ("branches", "Response"),
     "Simulation": ("motions", "Simulation"),
     "Solution": ("law", "Law"),

@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
-    from .documents.primary import Primary
-    from .documents.primary_sweep import PrimarySweep
     from .law import Law
-    from .motions import Motion, MotionSweep, Simulation, Sweep
+    from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .tabulated import Friction, Materials, Stability
 
 

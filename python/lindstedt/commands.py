@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .comparison import Comparison
     from .designs import Optimization
     from .documents.certificate import DampedCertificateDocument
+    from .documents.certificate_range import CertificateRange
     from .documents.impact import Impact
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
@@ -468,7 +469,7 @@ def certify(
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Certificate | DampedCertificateDocument:
+) -> Certificate | DampedCertificateDocument | CertificateRange:
     """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
     Args:
@@ -776,7 +777,7 @@ class EquationCommands:
         at: Values | None = None,
         progress: Progress | None = None,
         **values: Value,
-    ) -> Certificate | DampedCertificateDocument:
+    ) -> Certificate | DampedCertificateDocument | CertificateRange:
         """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
         Args:

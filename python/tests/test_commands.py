@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from fractions import Fraction
 from pathlib import Path
 
 import lindstedt as ls
@@ -42,6 +43,7 @@ CALLS = {
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),
     "certified cycle": lambda: ls.certify("van-der-pol", mu="1/10"),
+    "certified range": lambda: ls.certify("pendulum", A=1, range=("1/10", 3), tolerance=0.01),
     "paper": lambda: ls.paper(),
     "materials": lambda: ls.materials(),
     "lagrange": lambda: ls.lagrange(EXAMPLES / "lagrange" / "pendulum.toml"),
@@ -257,6 +259,13 @@ def test_certificates_are_written_and_checked(tmp_path):
     for _ in range(8):
         a, b = (a + b) / 2, sqrt(a * b)
     assert float(low) == pytest.approx(a, rel=1e-15) and low < high
+
+
+def test_a_range_of_amplitudes_is_proved():
+    found = result_of("certified range")
+    assert found.end == "further" and found.from_.exact == Fraction(1, 10)
+    assert found.within <= 0.01 and found.to.exact < found.beyond.exact
+    assert ls.derive("pendulum").certify(A=1, range=("1/10", 3), tolerance=0.01) == found
 
 
 def test_files_of_every_ending(tmp_path):

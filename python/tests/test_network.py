@@ -4,9 +4,9 @@ each in a network namespace with addresses of its own and a folder of its own.""
 import contextlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import lindstedt as ls
@@ -80,6 +80,12 @@ def namespaces():
     if shutil.which("ip") is None:
         pytest.skip("there is no `ip` to make network namespaces")
     names = {machine: f"lindstedt-{os.getpid()}-{machine}" for machine in MACHINES}
+
+    def ended(*_):
+        raise KeyboardInterrupt
+
+    # Who ends the tests does not leave the namespaces behind.
+    before = signal.signal(signal.SIGTERM, ended)
     try:
         try:
             for name in names.values():
@@ -102,6 +108,7 @@ def namespaces():
     finally:
         for name in names.values():
             subprocess.run(["ip", "netns", "delete", name], capture_output=True)
+        signal.signal(signal.SIGTERM, before)
 
 
 def on(name, *words):

@@ -321,7 +321,7 @@ RESULTS = {
     "stability": "Stability",
     "audit": "Audit",
     "paper": "Audit",
-    "certify": "Certificate | DampedCertificateDocument",
+    "certify": "Certificate | DampedCertificateDocument | CertificateRange",
     "check": "Certificate | DampedCertificateDocument",
 }
 #: The commands of an equation, which are methods of `Oscillator` too.

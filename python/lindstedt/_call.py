@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Union
 
+from ._keywords import in_keywords
 from ._lindstedt import read, run
 from .documents import KINDS
 
@@ -32,6 +33,8 @@ OWN = {
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),
+    "Primary": ("motions", "Primary"),
+    "PrimarySweep": ("motions", "PrimarySweep"),
     "Response": ("branches", "Response"),
     "Simulation": ("motions", "Simulation"),
     "Solution": ("law", "Law"),
@@ -54,7 +57,7 @@ class Call:
         text, notes, forms, passed, partial = run(self.worded("json"), self.input, progress)
         self.forms.update(forms)
         self.forms["json"] = text
-        return Result(tuple(notes), passed, partial)
+        return Result(tuple(map(in_keywords, notes)), passed, partial)
 
     def form(self, name: str, *more: str) -> str:
         """The result in another format; it is made once."""

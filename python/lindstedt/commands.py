@@ -15,14 +15,13 @@ if TYPE_CHECKING:
     from .comparison import Comparison
     from .designs import Optimization
     from .documents.certificate import DampedCertificateDocument
+    from .documents.certificate_range import CertificateRange
     from .documents.impact import Impact
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
-    from .documents.primary import Primary
-    from .documents.primary_sweep import PrimarySweep
     from .law import Law
-    from .motions import Motion, MotionSweep, Simulation, Sweep
+    from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .tabulated import Friction, Materials, Stability
 
 
@@ -470,7 +469,7 @@ def certify(
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Certificate | DampedCertificateDocument:
+) -> Certificate | DampedCertificateDocument | CertificateRange:
     """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
     Args:
@@ -778,7 +777,7 @@ class EquationCommands:
         at: Values | None = None,
         progress: Progress | None = None,
         **values: Value,
-    ) -> Certificate | DampedCertificateDocument:
+    ) -> Certificate | DampedCertificateDocument | CertificateRange:
         """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
         Args:

@@ -1,4 +1,4 @@
-"""Errors as exceptions, each with the words of the program.
+"""Errors as exceptions, each with the words of the program, and keywords for its options.
 
 >>> import lindstedt as ls
 >>> try:
@@ -11,6 +11,8 @@ refusal | 2*zeta*x'
 from __future__ import annotations
 
 from typing import Any
+
+from ._keywords import in_keywords
 
 
 class LindstedtError(Exception):
@@ -82,4 +84,4 @@ def from_failure(code: int, kind: str, message: str, term: str | None) -> BaseEx
     if kind == "interrupted":
         return KeyboardInterrupt(message)
     error = TimeLimit if kind == "timeout" else BY_CODE.get(code, InternalError)
-    return error(message, kind, term)
+    return error(in_keywords(message), kind, term)

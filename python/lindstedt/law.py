@@ -165,9 +165,11 @@ class Law(Solution):
     def certify(self, at: Values | None = None, **options: Any) -> Any:
         """Proves the motion at these values, and how far the law is off; returns a `Certificate`.
 
-        Options of `lindstedt.certify` are `range` and `no_formula`.
+        Options of `lindstedt.certify` are `range`, for amplitudes up to which the law is within the
+        tolerance, `tolerance` and `no_formula`.
         """
-        own = {key: options.pop(key) for key in ("range", "no_formula") if key in options}
+        known = ("range", "no_formula", "tolerance")
+        own = {key: options.pop(key) for key in known if key in options}
         words = [word for key, value in own.items() for word in option(key, value)]
         return self._again("certify", [*words, *option("at", at), *option("at", options)])
 

@@ -6,11 +6,15 @@ from functools import cached_property
 from typing import Any
 
 from ._answer import Answer
+from ._call import number
 from .documents.motion import Motion as MotionDocument
 from .documents.motion_sweep import MotionSweep as MotionSweepDocument
+from .documents.primary import Primary as PrimaryDocument
+from .documents.primary_sweep import PrimarySweep as PrimarySweepDocument
 from .documents.simulation import Impact
 from .documents.simulation import Simulation as SimulationDocument
 from .documents.sweep import Sweep as SweepDocument
+from .errors import UsageError
 from .plots import axes, labelled
 from .tables import Table, columns_of, to_xarray
 
@@ -68,6 +72,19 @@ class Simulation(Course, SimulationDocument):
         return Table(self.impacts)
 
 
+class Primary(Course, PrimaryDocument):
+    """The motion of a main mass with its pendulum.
+
+    The table has the pendulum's angle `x`, its `velocity`, the displacement `y` of the main mass and
+    its `speed`.
+    """
+
+    @property
+    def y(self) -> Any:
+        """The displacement of the main mass at these times, in lengths of the pendulum."""
+        return self.columns["y"]
+
+
 class Swept(Answer):
     """Many motions, with axes along which parameters are varied."""
 
@@ -84,11 +101,23 @@ class Swept(Answer):
         return to_xarray(self.to_pandas(), self.axis_names())
 
     def plot(self, ax: Any = None, what: str = "rest_time") -> Any:
-        """Draws a column of the table over the only axis on `ax`, and returns the axes."""
-        ax = axes(ax)
+        """Draws a column of the table over the last axis on `ax`, a line for each combination of the
+        others, and returns the axes.
+
+        Raises:
+            UsageError: The table has no such column.
+        """
         columns = columns_of(self.csv())
-        (name,) = self.axis_names()
-        ax.plot(columns[name], columns[what], ".-")
+        if what not in columns:
+            raise UsageError(f"there is no column {what}: choose one of {', '.join(columns)}")
+        ax = axes(ax)
+        *others, name = self.axis_names()
+        lines: dict[tuple[float, ...], list[int]] = {}
+        for row, key in enumerate(zip(*(columns[other].tolist() for other in others))):
+            lines.setdefault(key, []).append(row)
+        for key, rows in lines.items() if others else [((), slice(None))]:
+            at = ", ".join(f"{other} = {number(value)}" for other, value in zip(others, key))
+            ax.plot(columns[name][rows], columns[what][rows], ".-", label=at or None)
         return labelled(ax, name, what)
 
 
@@ -106,3 +135,11 @@ class MotionSweep(Swept, MotionSweepDocument):
     def axis_names(self) -> list[str]:
         """The names of what is varied; the last varies fastest."""
         return list(self.varied)
+
+
+class PrimarySweep(Swept, PrimarySweepDocument):
+    """Many motions of a main mass with its pendulum."""
+
+    def axis_names(self) -> list[str]:
+        """The names of what is varied; the last varies fastest."""
+        return [axis.name for axis in self.axes]

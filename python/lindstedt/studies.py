@@ -102,8 +102,16 @@ class Study:
 
     def words(self, shard: str) -> list[str]:
         """The words of the program for a shard, `"3/64"`."""
-        command, *rest = self.call.words
-        return [command, f"--shard={shard}", *rest]
+        return words_of_shard(self.call, shard)
+
+    def _sent(self) -> Call:
+        """The call that workers get: with the text of its file, for on their machines, or in their
+        working folders, there may be none of that name."""
+        *words, problem = self.call.words
+        if "--" not in words or not os.path.isfile(problem):
+            return self.call
+        with open(problem, encoding="utf-8") as file:
+            return Call((*words, "-"), file.read())
 
     def run(
         self,
@@ -130,13 +138,14 @@ class Study:
         if executor is None:
             return answer(self.call, progress)
         total = len(self)
+        call = self._sent()
         tasks = tasks or max(1, min(total, USUAL_TASKS))
         done: list[str] = []
         shards = [f"{place}/{tasks}" for place in range(1, tasks + 1)]
         points = 0
         for _ in range(retries + 1):
             lost: list[str] = []
-            for shard, lines in self._by(executor, shards, lost):
+            for shard, lines in by(executor, call, shards, lost):
                 done.append(lines)
                 points += lines.count("\n") - 1
                 if progress is not None:
@@ -145,45 +154,8 @@ class Study:
             if not shards:
                 break
         for shard in shards:
-            done.append(self._alone(shard))
+            done.append(alone(call, shard))
         return joined(done)
-
-    def _by(self, executor: Executor, shards: list[str], lost: list[str]) -> Iterable[tuple[str, str]]:
-        """Each shard with its lines as it is done; those whose workers are gone are added to `lost`."""
-        running: dict[Future[str], str] = {}
-        try:
-            for shard in shards:
-                running[executor.submit(lines_of, self.words(shard), self.call.input)] = shard
-        except (BrokenExecutor, RuntimeError):
-            lost += [shard for shard in shards if shard not in running.values()]
-        pending = set(running)
-        try:
-            while pending:
-                finished, pending = wait(pending, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    try:
-                        lines = future.result()
-                    except Exception as error:
-                        if not is_lost_worker(error):
-                            raise
-                        lost.append(running[future])
-                    else:
-                        yield running[future], lines
-        finally:
-            for future in pending:
-                future.cancel()
-
-    def _alone(self, shard: str) -> str:
-        """The lines of a shard by the program, in a process of its own."""
-        words = [sys.executable, "-m", "lindstedt", *self.words(shard)]
-        done = subprocess.run(words, input=self.call.input or "", capture_output=True, text=True)
-        if done.returncode != 0:
-            raise LostPoints(
-                f"the process of shard {shard} ended with code {done.returncode}: "
-                f"{done.stderr.strip() or 'it was killed'}",
-                shard,
-            )
-        return done.stdout
 
     def slurm_array(
         self,
@@ -244,6 +216,53 @@ class Study:
         ]
         with open(script, "w", encoding="utf-8") as file_of_script:
             file_of_script.write("\n".join(lines) + "\n")
+
+
+def words_of_shard(call: Call, shard: str) -> list[str]:
+    """The words of the program for a shard of a call."""
+    command, *rest = call.words
+    return [command, f"--shard={shard}", *rest]
+
+
+def by(
+    executor: Executor, call: Call, shards: list[str], lost: list[str]
+) -> Iterable[tuple[str, str]]:
+    """Each shard with its lines as it is done; those whose workers are gone are added to `lost`."""
+    running: dict[Future[str], str] = {}
+    try:
+        for shard in shards:
+            running[executor.submit(lines_of, words_of_shard(call, shard), call.input)] = shard
+    except (BrokenExecutor, RuntimeError):
+        lost += [shard for shard in shards if shard not in running.values()]
+    pending = set(running)
+    try:
+        while pending:
+            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
+            for future in finished:
+                try:
+                    lines = future.result()
+                except Exception as error:
+                    if not is_lost_worker(error):
+                        raise
+                    lost.append(running[future])
+                else:
+                    yield running[future], lines
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def alone(call: Call, shard: str) -> str:
+    """The lines of a shard by the program, in a process of its own."""
+    words = [sys.executable, "-m", "lindstedt", *words_of_shard(call, shard)]
+    done = subprocess.run(words, input=call.input or "", capture_output=True, text=True)
+    if done.returncode != 0:
+        raise LostPoints(
+            f"the process of shard {shard} ended with code {done.returncode}: "
+            f"{done.stderr.strip() or 'it was killed'}",
+            shard,
+        )
+    return done.stdout
 
 
 def is_lost_worker(error: BaseException) -> bool:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import csv
-from dataclasses import asdict
+import html
+from dataclasses import asdict, fields
 from typing import Any, Generic, TypeVar
 
 from ._optional import optional
 
 R = TypeVar("R")
+
+
+#: The rows that a notebook shows of a table.
+MOST_SHOWN = 60
 
 
 class Table(tuple[R, ...], Generic[R]):
@@ -38,6 +43,32 @@ class Table(tuple[R, ...], Generic[R]):
         """
         rows = [asdict(row) for row in self]  # type: ignore[call-overload]
         return optional("pandas", "a frame").DataFrame(rows)
+
+    def _repr_html_(self) -> str | None:
+        """The first rows as a table of a notebook."""
+        if not self:
+            return None
+        names = [field.name for field in fields(self[0])]  # type: ignore[arg-type]
+        lines = [names, *([shown(getattr(row, name)) for name in names] for row in self[:MOST_SHOWN])]
+        cells = ["".join(f"<td>{html.escape(cell)}</td>" for cell in line) for line in lines]
+        more = len(self) - MOST_SHOWN
+        below = f"<p>and {more} more rows</p>" if more > 0 else ""
+        head = cells[0].replace("td>", "th>")
+        body = "".join(f"<tr>{line}</tr>" for line in cells[1:])
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{below}"
+
+
+def shown(value: Any) -> str:
+    """A value in a cell of a table.
+
+    >>> shown(None), shown(1 / 3), shown((1.0, 2)), shown("fold")
+    ('', '0.333333', '1, 2', 'fold')
+    """
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(shown, value))
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return "" if value is None else str(value)
 
 
 def columns_of(text: str) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from fractions import Fraction
 from pathlib import Path
 
 import lindstedt as ls
@@ -42,6 +43,7 @@ CALLS = {
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),
     "certified cycle": lambda: ls.certify("van-der-pol", mu="1/10"),
+    "certified range": lambda: ls.certify("pendulum", A=1, range=("1/10", 3), tolerance=0.01),
     "paper": lambda: ls.paper(),
     "materials": lambda: ls.materials(),
     "lagrange": lambda: ls.lagrange(EXAMPLES / "lagrange" / "pendulum.toml"),
@@ -117,6 +119,43 @@ def test_wrong_options_are_usage_errors():
         ls.friction(unheard_of=1)
 
 
+#: Calls that are refused, with the words that say so: keywords, where the program has options.
+WRONG = {
+    "values": (lambda: ls.derive("duffing", A=1), "verification", "eps=VALUE"),
+    "no values": (lambda: ls.compare("duffing"), "verification", "add eps=VALUE,A=VALUE"),
+    "a value": (lambda: ls.derive("duffing", A="3/"), "usage", "A=3/: something is missing"),
+    "an order": (lambda: ls.derive("duffing", order=-1), "usage", "for `order`: `-1` is negative"),
+    "a high order": (lambda: ls.derive("duffing", order=9999), "refusal", "or `omega_only`, whose"),
+    "a start": (lambda: ls.simulate("pendulum"), "command", 'from_="x=1.5" for a release'),
+    "a range": (
+        lambda: ls.response("x'' + x'/10 + x^3 = F*cos(W*t)"), "command", 'vary="F=FROM:TO"'
+    ),
+    "two at once": (
+        lambda: ls.impact(certify=True, compare=True), "usage", "`compare` cannot be used with"
+    ),
+    "a term": (lambda: ls.stability("duffing"), "hill", "the term `eps*x^3` is not linear"),
+    "no material": (lambda: ls.materials(only_own=True), "materials", "leave out `only_own`"),
+    "a claim": (lambda: ls.audit({"claim": [{"id": "a"}]}), "problem", "has no quantity"),
+    "a key": (lambda: ls.derive({"equatoin": "x'' + x = 0"}), "problem", "equatoin"),
+    "a name": (lambda: ls.derive("pendulm"), "command", "did you mean `pendulum`?"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_errors_have_a_kind_and_speak_of_keywords(name):
+    call, kind, words = WRONG[name]
+    with pytest.raises(ls.LindstedtError) as caught:
+        call()
+    assert caught.value.kind == kind and words in str(caught.value)
+    assert "--" not in str(caught.value)
+
+
+def test_the_term_of_a_linear_equation_is_named():
+    with pytest.raises(ls.Refused) as caught:
+        ls.stability("duffing")
+    assert caught.value.term == "eps*x^3"
+
+
 def test_a_time_limit():
     with pytest.raises(ls.TimeLimit):
         ls.audit(EXAMPLES / "audit" / "paper.toml", timeout=1e-9)
@@ -140,6 +179,48 @@ def test_progress_is_told_and_may_end_the_work():
     with pytest.raises(RuntimeError, match="enough"):
         ls.derive("x'' + x + eps*x^3 = 0", order=2000, omega_only=True, progress=watch)
     assert len(told) == 3
+
+
+#: Work that takes half a minute and more where it is not stopped, and nothing else is running.
+LONG = {
+    "derive": lambda watch: ls.derive("duffing", "hermite-pade", order=(40, 40, 40), progress=watch),
+    "simulate": lambda watch: ls.simulate(
+        "x'' + x + x^3 = 0", x=1, until=1e7, step_limit=10**7, progress=watch
+    ),
+    "response": lambda watch: ls.response(
+        "x'' + x'/1000 + sin(x) = F*cos(W*t)", vary={"W": (0.1, 3)}, F=1, progress=watch
+    ),
+    "optimize": lambda watch: ls.optimize(runs=10000, progress=watch),
+    "audit": lambda watch: ls.audit({"claim": MANY_CLAIMS}, progress=watch),
+}
+MANY_CLAIMS = [
+    {
+        "id": str(number), "where": "a page", "says": "a law", "quantity": "law", "printed": "1",
+        "equation": "x'' + x + eps*x^3 = 0", "order": 150,
+    }
+    for number in range(1000)
+]
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_work_that_is_stopped_leaves_the_processor(name):
+    told = []
+
+    def watch(done, all_parts):
+        told.append((done, all_parts))
+        if len(told) == 10:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        LONG[name](watch)
+    # Far more processor time than what was begun needs, and far less than all of it.
+    began = time.process_time()
+    while time.process_time() - began < 15:
+        before = time.process_time()
+        time.sleep(0.3)
+        if time.process_time() - before < 0.02:
+            return
+    pytest.fail("the work goes on")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
@@ -178,6 +259,13 @@ def test_certificates_are_written_and_checked(tmp_path):
     for _ in range(8):
         a, b = (a + b) / 2, sqrt(a * b)
     assert float(low) == pytest.approx(a, rel=1e-15) and low < high
+
+
+def test_a_range_of_amplitudes_is_proved():
+    found = result_of("certified range")
+    assert found.end == "further" and found.from_.exact == Fraction(1, 10)
+    assert found.within <= 0.01 and found.to.exact < found.beyond.exact
+    assert ls.derive("pendulum").certify(A=1, range=("1/10", 3), tolerance=0.01) == found
 
 
 def test_files_of_every_ending(tmp_path):

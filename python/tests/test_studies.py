@@ -113,6 +113,18 @@ def test_a_worker_that_is_killed(tmp_path):
     assert (tmp_path / "killed").exists()
 
 
+def test_workers_that_do_not_have_the_file(tmp_path, monkeypatch):
+    home, away = tmp_path / "home", tmp_path / "away"
+    home.mkdir()
+    away.mkdir()
+    shutil.copy(EXAMPLES / "simulate" / "damper.toml", home)
+    monkeypatch.chdir(home)
+    study = ls.Study("damper.toml", zeta=[0.01, 0.02, 0.03])
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(2, context, initializer=os.chdir, initargs=(away,)) as pool:
+        assert study.run(executor=pool, tasks=2).equals(study.run())
+
+
 def test_an_executor_that_is_shut_down():
     pool = ThreadPoolExecutor(1)
     pool.shutdown()

@@ -1,8 +1,13 @@
 """Frames, data sets, pictures."""
 
+from pathlib import Path
+
 import lindstedt as ls
 import numpy as np
 import pytest
+from lindstedt.tables import Table
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
 
 def test_frames():
@@ -38,6 +43,28 @@ def test_a_sweep_over_several_axes():
     assert motions.sizes["eps"] == 3
 
 
+def test_a_sweep_of_a_main_mass():
+    pytest.importorskip("xarray")
+    problem = EXAMPLES / "primary" / "stick-slip.toml"
+    asked = {"displacement": [0.01, 0.0163], "zeta": [0.01, 0.02, 0.03]}
+    sweep = ls.simulate(problem, sweep=asked)
+    assert dict(sweep.to_xarray().sizes) == {"displacement": 2, "zeta": 3}
+    found = sweep.to_xarray()["rest_time"].sel(displacement=0.0163, zeta=0.02)
+    turned = ls.simulate(problem, sweep={"zeta": [0.02, 0.01], "displacement": [0.0163, 0.01]})
+    assert float(found) == turned.rows[0].rest_time
+
+
+def test_a_table_in_a_notebook():
+    duffing = ls.Oscillator("x'' + x'/10 + x + x^3 - F*cos(W*t) = 0")
+    branches = duffing.response(vary={"W": (0.5, 2.5)}, at={"F": 0.3})
+    page = branches.folds._repr_html_()
+    assert page.count("<tr>") == 3 and "<th>parameter</th>" in page
+    assert "more rows" in branches.points._repr_html_()
+    assert Table(())._repr_html_() is None
+    entries = Table(ls.catalog.entries)._repr_html_()
+    assert "<td>pendulum</td>" in entries and "x&#x27;&#x27; + sin(x) = 0" in entries
+
+
 def test_pictures():
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
@@ -58,5 +85,14 @@ def test_pictures():
     assert len(materials.lines) == 5 and materials.get_xscale() == "log"
     curves = ls.stability("x'' + (delta + eps*cos(t))*x = 0", eps=1).plot()
     assert len(curves.lines) == 14
-    ls.simulate(sweep={"zeta": (0.01, 0.03, 3)}).plot(what="penetration")
+    sweep = ls.simulate(sweep={"barrier": [0.1, 0.2], "zeta": (0.01, 0.03, 3)})
+    lines = sweep.plot(what="penetration").lines
+    assert [line.get_label() for line in lines] == ["barrier = 0.1", "barrier = 0.2"]
+    assert all(len(line.get_xdata()) == 3 for line in lines)
+    with pytest.raises(ls.UsageError, match="choose one of barrier, zeta"):
+        sweep.plot(what="depth")
+    one = ls.simulate(sweep={"zeta": (0.01, 0.03, 3)}).plot(what="penetration")
+    assert len(one.lines) == 1 and one.get_legend() is None
+    main_mass = ls.simulate(EXAMPLES / "primary" / "stick-slip.toml")
+    assert main_mass.plot().get_ylabel() == "x" and main_mass.y.shape == main_mass.t.shape
     pyplot.close("all")

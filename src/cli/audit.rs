@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::audit::{Claim, Claims, audit, audit_claim, audit_from_findings};
+use crate::audit::{Claim, ClaimFinding, Claims, audit_claim, audit_from_findings};
 use crate::export::json;
 use crate::export::json::points::ClaimPoint;
 use crate::export::json::shard::Shard;
@@ -13,11 +13,16 @@ use clap::Args;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_standard, width};
+use super::progress::PartsBar;
+use super::session;
 use super::shard::{self, Points, ShardArguments};
 use super::{Common, Failure, Format, Outcome, Work, json_text, read};
 
 /// Every claim of the paper, the file that `lindstedt paper` runs.
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
+
+/// The template of the bar of claims.
+const CLAIMS: &str = "{bar:40} {pos}/{len} claims, {eta} left";
 
 /// Claims of a publication from a file, each computed again, with a verdict
 #[derive(Args)]
@@ -102,13 +107,13 @@ fn outcome(
         return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
     }
     let claims: Claims = claims.parse().map_err(|error: ProblemError| {
-        Failure::refused(&format!("{name}: {error}"), error.help())
+        Failure::refused(&format!("{name}: {error}"), error.help()).of_kind(&error)
     })?;
     if let Some(shard) = own.shard.shard {
         return write_shard(shard, common, &claims);
     }
     let audit = match shard::known::<ClaimPoint>(claims.claims.len())? {
-        None => audit(claims),
+        None => audit_from_findings(claims.title, findings(claims.claims)?),
         Some(rows) => {
             let read = |(index, (claim, row)): (usize, (Claim, ClaimPoint))| {
                 row.read(claim).ok_or_else(|| shard::unreadable(index))
@@ -132,18 +137,33 @@ fn outcome(
     })
 }
 
+/// The findings of claims, each made by [`audit_claim`].
+///
+/// # Errors
+/// The interrupt, for which nobody waits: an audit has no parts.
+fn findings(claims: Vec<Claim>) -> Result<Vec<ClaimFinding>, Failure> {
+    let interrupt = session::interrupt();
+    let bar = PartsBar::new(claims.len(), CLAIMS);
+    let mut found = Vec::with_capacity(claims.len());
+    for claim in claims {
+        if interrupt.is_requested() {
+            bar.finish();
+            return Err(Failure::because("interrupted"));
+        }
+        found.push(audit_claim(claim));
+        bar.advance(1);
+    }
+    bar.finish();
+    Ok(found)
+}
+
 /// The lines of the claims of a shard.
 fn write_shard(shard: Shard, common: &Common, claims: &Claims) -> Result<Outcome, Failure> {
     let inputs = |index: usize| {
         let id = claims.claims.get(index).map(|claim| claim.id.clone());
         [("claim".to_owned(), id.into())].into_iter().collect()
     };
-    let points = Points {
-        total: claims.claims.len(),
-        together: 1,
-        bar: "{bar:40} {pos}/{len} claims, {eta} left",
-        inputs: &inputs,
-    };
+    let points = Points { total: claims.claims.len(), together: 1, bar: CLAIMS, inputs: &inputs };
     shard::write(shard, common, &points, |indices| {
         let claims = indices.iter().filter_map(|index| claims.claims.get(*index));
         let row = |claim: &Claim| Some(ClaimPoint::from_finding(&audit_claim(claim.clone())));

@@ -24,7 +24,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, read_at_most, tol
 /// A proof beside a formula: the motion exists, and how far the formula is off, from both sides
 #[derive(Args)]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
-#[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads")))]
+#[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads, or of a range its numbers")))]
 pub struct CertifyArguments {
     #[command(flatten)]
     pub question: EquationArguments,
@@ -82,12 +82,6 @@ impl Work for CertifyArguments {
 
 fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
-    if arguments.range.is_some() && arguments.common.format() == Format::Json {
-        return Err(Failure::Usage(
-            "--range is not in a certificate, which is of one amplitude: print it as text"
-                .to_owned(),
-        ));
-    }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
     let Solved { oscillator, values, solution, letters } = derive::solved(&arguments.question)?;
     let _letters = letters.in_force();
@@ -252,9 +246,12 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
         width: width(common.output.as_deref()),
         picture: None,
         other: &|format| match format {
-            Format::Json => match report.certificate {
-                AnyCertificate::Motion(certificate) => json_text(&json::certificate(certificate)),
-                AnyCertificate::Damped(certificate) => {
+            Format::Json => match (json::certificate_range(report), report.certificate) {
+                (Some(range), _) => json_text(&range),
+                (None, AnyCertificate::Motion(certificate)) => {
+                    json_text(&json::certificate(certificate))
+                }
+                (None, AnyCertificate::Damped(certificate)) => {
                     json_text(&json::damped_certificate(certificate))
                 }
             },

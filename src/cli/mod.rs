@@ -756,6 +756,7 @@ fn within_limits(
                 Err(RecvTimeoutError::Timeout) if left.is_none_or(|left| left > EVERY) => {
                     let (done, all) = session.progress.read();
                     if !watch(done, all) {
+                        session.abandon();
                         break Ok(Message::Interrupt);
                     }
                 }

@@ -70,7 +70,7 @@ pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
     }
     text.parse().map_err(|error: ProblemError| {
         let name = if is_standard(path) { "standard input".into() } else { path.to_string_lossy() };
-        Failure::refused(&format!("{name}: {error}"), error.help())
+        Failure::refused(&format!("{name}: {error}"), error.help()).of_kind(&error)
     })
 }
 

@@ -128,6 +128,13 @@ impl Session {
         CURRENT.set(self);
     }
 
+    /// Asks the work to stop, whose caller has no use for a part of it: what there is of a result is
+    /// not written in other formats.
+    pub(super) fn abandon(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+        locked(&self.asked).began = None;
+    }
+
     /// Whether bars and notes are left out.
     pub(super) fn is_quiet(&self) -> bool {
         self.quiet.load(Ordering::Relaxed)

@@ -127,7 +127,7 @@ fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
 fn refused(typed: &crate::expr::Typed, error: &HillError) -> Failure {
     let place = error.term().and_then(|term| typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
-    Failure::refused(&format!("{error}{shown}"), error.help())
+    Failure::refused(&format!("{error}{shown}"), error.help()).of_kind(error).naming(error.term())
 }
 
 fn unjudged(error: &HillError) -> Failure {

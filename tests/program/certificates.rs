@@ -572,11 +572,6 @@ fn what_is_asked_for_in_vain_is_said() {
             "cannot be used with",
         ),
         (&["certify", "pendulum", "--at", "A=1", "--range", "2:1"], 2, "the smaller one first"),
-        (
-            &["certify", "pendulum", "--at", "A=1", "--range", "1:2", "--format", "json"],
-            2,
-            "--range is not in a certificate",
-        ),
         (&["check", "no-such-file.json"], 1, "cannot read no-such-file.json"),
         (&["certify", "pendulum", "--at", "A=3/2", "--tolerance", "1e-4"], 3, ""),
     ] {
@@ -585,6 +580,38 @@ fn what_is_asked_for_in_vain_is_said() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
         assert!(errors.contains(expected), "{arguments:?}: {errors}");
     }
+}
+
+/// The document of a range says what the exact frequency of `x'' + x - x^3/6 = 0` says,
+/// `sqrt(1 - A^2/12) agm(1, sqrt(1 - m))` with `m = A^2/(12 - A^2)`: the formula is within the
+/// tolerance up to the end of the range, and beyond it where the range ends.
+#[test]
+fn a_range_is_a_document() {
+    let document = |range: &str| -> serde_json::Value {
+        let words = ["--method", "homotopy-perturbation", "--order", "1", "--at", "A=1"];
+        let asked = ["--range", range, "--format", "json"];
+        let output = run(&[&["certify", "x'' + x - x^3/6 = 0"], &words[..], &asked].concat());
+        assert_eq!(output.status.code(), Some(0));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let error = |amplitude: &serde_json::Value| {
+        let amplitude = amplitude["value"].as_f64().expect("an amplitude");
+        let square = amplitude * amplitude / 12.0;
+        let (mut a, mut b) = (1.0_f64, (1.0 - square / (1.0 - square)).sqrt());
+        for _ in 0..8 {
+            (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+        }
+        let truth = (1.0 - square).sqrt() * a;
+        ((1.0 - amplitude * amplitude / 8.0).sqrt() / truth - 1.0).abs()
+    };
+    let whole = document("1/10:2.4");
+    assert_eq!((&whole["end"], &whole["from"]["exact"]), (&"further".into(), &"1/10".into()));
+    assert!(error(&whole["to"]) <= 0.01 && error(&whole["beyond"]) > 0.01);
+    assert!(whole["within"].as_f64().expect("a bound") <= 0.01);
+    let short = document("1/10:3/2");
+    assert_eq!((&short["end"], &short["to"]["exact"]), (&"asked".into(), &"3/2".into()));
+    assert!(error(&short["to"]) <= short["within"].as_f64().expect("a bound"));
+    assert!(short["beyond"].is_null() && short["reason"].is_null());
 }
 
 /// The document of a proved impact has the digits that are printed, and the numbers of Runge-Kutta

@@ -8,11 +8,11 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
-    MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
+    self, AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
+    ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument,
+    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
     StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
@@ -114,6 +114,7 @@ fn reads_back(document: &Value) {
             again::<DampedCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
+        DocumentKind::CertificateRange => again::<CertificateRangeDocument>(document),
         DocumentKind::Response => again::<ResponseDocument>(document),
         DocumentKind::Study => again::<StudyDocument>(document),
         DocumentKind::Point => again::<PointDocument>(document),
@@ -149,6 +150,7 @@ fn documents() -> Vec<(String, Value)> {
     add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["impact", "--certify"]);
+    add(&["certify", "pendulum", "--at", "A=1", "--range", "1/10:3"]);
     for file in files("examples/lagrange", ".toml") {
         add(&["lagrange", &file.to_string_lossy()]);
     }
@@ -246,6 +248,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",
         Some("lindstedt/impact-certificate/1") => "/closed_forms/0",
+        Some("lindstedt/certificate-range/1") => "/to",
         Some("lindstedt/study/1" | "lindstedt/point/1") => "",
         _ => "/entries/0/methods/0",
     };

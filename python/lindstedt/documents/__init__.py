@@ -7,6 +7,7 @@ Made by `python/generate.py` from the JSON schemas: change those.
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/audit/1": ("audit", ("Audit",)),
     "lindstedt/catalog/1": ("catalog", ("Catalog",)),
+    "lindstedt/certificate-range/1": ("certificate_range", ("CertificateRange",)),
     "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument",)),
     "lindstedt/comparison/1": ("comparison", ("Comparison",)),
     "lindstedt/friction/1": ("friction", ("Friction",)),

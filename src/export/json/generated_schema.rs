@@ -8,11 +8,11 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
-    MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
+    AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
+    ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument,
+    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
     StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
@@ -44,6 +44,7 @@ impl DocumentKind {
             Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
             Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
+            Self::CertificateRange => generator.into_root_schema_for::<CertificateRangeDocument>(),
             Self::Study => generator.into_root_schema_for::<StudyDocument>(),
             Self::Point => generator.into_root_schema_for::<PointDocument>(),
         };

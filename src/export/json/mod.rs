@@ -16,6 +16,7 @@
 pub mod audit;
 pub mod catalog;
 pub mod certificate;
+pub mod certificate_range;
 pub mod comparison;
 pub mod damped_certificate;
 pub mod friction;
@@ -48,6 +49,7 @@ use serde_json::Value;
 pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};
 pub use certificate::{CertificateDocument, certificate};
+pub use certificate_range::{CertificateRangeDocument, certificate_range};
 pub use comparison::{ComparisonDocument, comparison};
 pub use damped_certificate::{
     DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate,

@@ -45,6 +45,8 @@ pub enum DocumentKind {
     Catalog,
     /// `certify`.
     Certificate,
+    /// `certify --range`.
+    CertificateRange,
     /// The first line of a shard.
     Study,
     /// Another line of a shard.
@@ -53,7 +55,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Solution,
         Self::Comparison,
         Self::Impact,
@@ -74,6 +76,7 @@ impl DocumentKind {
         Self::Audit,
         Self::Catalog,
         Self::Certificate,
+        Self::CertificateRange,
         Self::Study,
         Self::Point,
     ];
@@ -112,6 +115,9 @@ impl DocumentKind {
             Self::Catalog => ["lindstedt/catalog/1", include_str!("schemas/catalog.json")],
             Self::Certificate => {
                 ["lindstedt/certificate/1", include_str!("schemas/certificate.json")]
+            }
+            Self::CertificateRange => {
+                ["lindstedt/certificate-range/1", include_str!("schemas/certificate-range.json")]
             }
             Self::Study => ["lindstedt/study/1", include_str!("schemas/study.json")],
             Self::Point => ["lindstedt/point/1", include_str!("schemas/point.json")],

@@ -26,9 +26,9 @@ pub struct Cluster {
 }
 
 /// All zeros on the positive axis, and the pairs beside it that are closer to each other than to
-/// all others, nearest first; `None` if rounding or a multiple zero hides them, or if zero is a
-/// zero.
-pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
+/// all others, nearest first; `None` if rounding or a multiple zero hides them, if zero is a
+/// zero, or if `stopped`, which is asked before each step, says so.
+pub fn clusters(polynomial: &[BigFloat], stopped: impl Fn() -> bool) -> Option<Vec<Cluster>> {
     /// Largest number of steps, far more than any search needs: some ten for each zero, wherever it
     /// is.
     const MOST_STEPS: usize = 20_000;
@@ -42,6 +42,9 @@ pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     for _ in 0..MOST_STEPS {
         if walk.is_last(&at) {
             return Some(found);
+        }
+        if stopped() {
+            return None;
         }
         let near = walk.about(&at);
         let step = near.radius_of_none()?;
@@ -279,7 +282,7 @@ mod tests {
     }
 
     fn found(polynomial: &[BigFloat]) -> Vec<(f64, usize, f64)> {
-        let clusters = clusters(polynomial).expect("zeros that are told apart");
+        let clusters = clusters(polynomial, || false).expect("zeros that are told apart");
         clusters.iter().map(|own| (own.place.to_f64(), own.count, own.distance)).collect()
     }
 
@@ -355,8 +358,10 @@ mod tests {
     #[test]
     fn what_cannot_be_told_is_not_said() {
         // A fourfold zero, a zero at the origin, nothing at all.
-        assert!(clusters(&product(&[[1.0, -2.0, 1.0], [1.0, -2.0, 1.0]])).is_none());
-        assert!(clusters(&product(&[[0.0, 1.0, 1.0]])).is_none());
-        assert!(clusters(&[]).is_none());
+        assert!(clusters(&product(&[[1.0, -2.0, 1.0], [1.0, -2.0, 1.0]]), || false).is_none());
+        assert!(clusters(&product(&[[0.0, 1.0, 1.0]]), || false).is_none());
+        assert!(clusters(&[], || false).is_none());
+        // Zeros that are told apart, by a search that is stopped.
+        assert!(clusters(&product(&[[1.0, -3.0, 2.0]]), || true).is_none());
     }
 }

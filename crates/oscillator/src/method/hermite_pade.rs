@@ -47,6 +47,7 @@ use crate::exact::big_float::BigFloat;
 use crate::exact::zero_clusters::{Cluster, clusters};
 use crate::exact::{Integer, Monomial, Polynomial, Rational, convergent, to_f64};
 use crate::expr::{Expr, ExprError, Function};
+use crate::interrupt::Interrupt;
 use crate::oscillator::Oscillator;
 use crate::series::hermite_pade::by_primes::exact;
 use crate::solution::note::{FollowedRoot, RootEnd};
@@ -114,10 +115,14 @@ fn of_degrees(
     // A squared variable has one sign.
     let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
-    let root = quadratic.followed(sides).ok_or_else(|| {
-        refused(
-            "its root cannot be followed: zeros of its discriminant are too close to each other",
-        )
+    let interrupt = options.supervision.interrupt;
+    let root = quadratic.followed(sides, interrupt).ok_or_else(|| {
+        refused(match interrupt.is_requested() {
+            true => "the search for the zeros of its discriminant was stopped",
+            false => {
+                "its root cannot be followed: zeros of its discriminant are too close to each other"
+            }
+        })
     })?;
     let in_words = ApproximantNames::new(&resummed.names(), variable);
     let (value, definitions) = in_words.law(&quadratic, &root)?;
@@ -202,21 +207,22 @@ impl Quadratic {
         sum
     }
 
-    /// The root on these sides of zero; `None` if it cannot be followed with certainty.
-    fn followed(&self, sides: &[i64]) -> Option<RootCourse> {
+    /// The root on these sides of zero; `None` if it cannot be followed with certainty, or was
+    /// interrupted.
+    fn followed(&self, sides: &[i64], interrupt: Interrupt) -> Option<RootCourse> {
         let mut followed = RootCourse {
             crossings: vec![],
             ends: vec![],
             indeterminate: [2, 0].map(|list: usize| self.lists[list][0].is_zero()),
         };
         for side in sides {
-            self.follow(*side, &mut followed)?;
+            self.follow(*side, &mut followed, interrupt)?;
         }
         Some(followed)
     }
 
     /// The root on one side of zero.
-    fn follow(&self, side: i64, followed: &mut RootCourse) -> Option<()> {
+    fn follow(&self, side: i64, followed: &mut RootCourse, interrupt: Interrupt) -> Option<()> {
         /// Largest distance, relative to their position, of two zeros of D that count as a
         /// crossing; zeros farther apart are ends.
         const CROSSES: f64 = 0.01;
@@ -235,9 +241,9 @@ impl Quadratic {
         // A common factor of all coefficients of P or of R vanishes at zero alone.
         let zeros = |list: &[BigFloat]| match list.iter().position(|value| !value.is_zero()) {
             None => Some(vec![]),
-            Some(first) => clusters(&list[first..]),
+            Some(first) => clusters(&list[first..], || interrupt.is_requested()),
         };
-        let meetings = clusters(&floats(&self.discriminant()))?;
+        let meetings = clusters(&floats(&self.discriminant()), || interrupt.is_requested())?;
         let (zeros_of_p, zeros_of_r) = (zeros(&p), zeros(&r)?);
         // The zeros of P only tell which form is written.
         followed.indeterminate[1] |= zeros_of_p.is_none();
@@ -575,7 +581,7 @@ mod tests {
             let quadratic = Quadratic {
                 lists: lists.map(|list| list.into_iter().map(Integer::from).collect()),
             };
-            let followed = quadratic.followed(&[1, -1]).expect("a way");
+            let followed = quadratic.followed(&[1, -1], Interrupt::default()).expect("a way");
             assert_eq!(followed.crossings.len(), 1, "{gap}");
             assert!((to_f64(&followed.crossings[0]) - 1.0).abs() < 1e-6, "{gap}");
             assert!(followed.ends.is_empty(), "{gap}");
@@ -602,7 +608,7 @@ mod tests {
             let quadratic = Quadratic {
                 lists: lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect()),
             };
-            let followed = quadratic.followed(&[1, -1]).expect("a way");
+            let followed = quadratic.followed(&[1, -1], Interrupt::default()).expect("a way");
             let ends: Vec<(f64, RootEnd)> =
                 followed.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
             let words = ApproximantNames::new(&[], Monomial::power_of("s".into(), 1));

@@ -87,6 +87,12 @@ fn symbols(criterion: &mut Criterion) {
                     .expect("an expansion")
             });
         });
+        group.bench_function(BenchmarkId::new("frequency alone", order), |bencher| {
+            bencher.iter(|| {
+                expand_polynomials(&force, order, &scheme, ExpansionScope::Frequency)
+                    .expect("an expansion")
+            });
+        });
         group.bench_function(BenchmarkId::new("over polynomials", order), |bencher| {
             bencher.iter(|| expand(&ring, &force, order, &scheme).expect("an expansion"));
         });

@@ -15,6 +15,31 @@ const BOUND: f64 = (1_u128 << 126) as f64;
 /// room.
 const WORD: f64 = (1_u64 << 62) as f64;
 
+/// Zeros to be overwritten, once; few of them need no heap memory.
+struct Zeros {
+    few: [i128; Self::FEW],
+    many: Vec<i128>,
+}
+
+impl Zeros {
+    const FEW: usize = 64;
+
+    fn new() -> Self {
+        Self { few: [0; Self::FEW], many: vec![] }
+    }
+
+    /// So many of them.
+    fn take(&mut self, count: usize) -> &mut [i128] {
+        match self.few.get_mut(..count) {
+            Some(few) => few,
+            None => {
+                self.many.resize(count, 0);
+                &mut self.many
+            }
+        }
+    }
+}
+
 /// A fraction in lowest terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShortFraction {
@@ -60,10 +85,31 @@ impl ShortFraction {
         Self { numerator: -self.numerator, ..self }
     }
 
+    /// The least common denominator of some fractions, and their numerators over it; `None` if a
+    /// number is too long.
+    pub fn over_common_denominator(fractions: &[Self]) -> Option<(i128, Vec<i128>)> {
+        let lengthened =
+            |common, fraction: &Self| least_common_multiple(common, fraction.denominator);
+        let common = fractions.iter().try_fold(1, lengthened)?;
+        let numerators = fractions.iter().map(|fraction| {
+            product(fraction.numerator, exact_quotient(common, fraction.denominator))
+        });
+        Some((common, numerators.collect::<Option<_>>()?))
+    }
+
+    /// Half of the number; `None` if it is too long.
+    pub fn half(self) -> Option<Self> {
+        // The other part is odd or keeps its factors of two, so the result is in lowest terms.
+        match self.numerator & 1 {
+            0 => Some(Self { numerator: self.numerator >> 1, ..self }),
+            _ => Some(Self { denominator: product(self.denominator, 2)?, ..self }),
+        }
+    }
+
     /// The product; `None` if it is too long.
     pub fn product(self, other: Self) -> Option<Self> {
-        let numerator = self.numerator.checked_mul(other.numerator)?;
-        Self::new(numerator, self.denominator.checked_mul(other.denominator)?)
+        let numerator = product(self.numerator, other.numerator)?;
+        Self::new(numerator, product(self.denominator, other.denominator)?)
     }
 
     /// The quotient; `None` if it is too long, or the divisor is zero.
@@ -77,7 +123,7 @@ impl ShortFraction {
     pub fn sum(self, other: Self) -> Option<Self> {
         let common = least_common_multiple(self.denominator, other.denominator)?;
         let [own, other] = [self, other].map(|fraction| {
-            fraction.numerator.checked_mul(exact_quotient(common, fraction.denominator))
+            product(fraction.numerator, exact_quotient(common, fraction.denominator))
         });
         Self::new(own?.checked_add(other?)?, common)
     }
@@ -233,45 +279,42 @@ impl ShortSeries {
         let mut numerators = Vec::with_capacity(self.numerators.len());
         for (index, numerator) in self.numerators.iter().enumerate() {
             let harmonic = u32::try_from(self.harmonics.harmonic(index)).ok()?;
-            numerators.push(numerator.checked_mul(factor(harmonic.into()))?);
+            numerators.push(product(*numerator, factor(harmonic.into()))?);
         }
         Self::new(wave, self.harmonics, self.denominator, numerators)
     }
 
     /// The solution of `u'' + u = self` without first harmonic: every coefficient divided by
     /// `1 - k^2`.
-    pub fn without_resonance_over_divisors(&self) -> Option<Self> {
-        let divisor = |index: usize| {
-            let harmonic = i128::from(u32::try_from(self.harmonics.harmonic(index)).ok()?);
-            Some(harmonic * harmonic - 1)
-        };
+    pub fn without_resonance_over_divisors(mut self) -> Option<Self> {
         // The remaining factor of each divisor after its common factor with the numerator is
         // cancelled.
-        let mut left = Vec::with_capacity(self.numerators.len());
-        let mut numerators = Vec::with_capacity(self.numerators.len());
+        let mut zeros = Zeros::new();
+        let left = zeros.take(self.numerators.len());
         let mut common = 1_i128;
-        for (index, &numerator) in self.numerators.iter().enumerate() {
-            let divisor = divisor(index)?;
-            if divisor == 0 || numerator == 0 {
-                numerators.push(0);
-                left.push(1);
+        for (index, (numerator, left)) in self.numerators.iter_mut().zip(&mut *left).enumerate() {
+            let harmonic = self.harmonics.harmonic(index) as i128;
+            let divisor = harmonic * harmonic - 1;
+            if divisor == 0 || *numerator == 0 {
+                (*numerator, *left) = (0, 1);
                 continue;
             }
             // The divisor of the zeroth harmonic is minus one, hence the absolute value.
-            let shared = greatest_common_divisor(divisor.abs(), numerator);
-            let rest = exact_quotient(divisor.abs(), shared);
-            numerators.push(exact_quotient(numerator, shared) * -divisor.signum());
-            left.push(rest);
-            common = least_common_multiple(common, rest)?;
+            let shared = greatest_common_divisor(divisor.abs(), *numerator);
+            *left = exact_quotient(divisor.abs(), shared);
+            *numerator = exact_quotient(*numerator, shared) * -divisor.signum();
+            common = least_common_multiple(common, *left)?;
         }
         if self.largest * size(common.unsigned_abs()) >= BOUND {
             return None;
         }
-        for (numerator, left) in numerators.iter_mut().zip(left) {
-            *numerator *= exact_quotient(common, left);
+        if common > 1 {
+            for (numerator, left) in self.numerators.iter_mut().zip(left) {
+                *numerator = numerator.wrapping_mul(exact_quotient(common, *left));
+            }
         }
-        let denominator = self.denominator.checked_mul(common)?;
-        Self::new(self.wave, self.harmonics, denominator, numerators)
+        let denominator = product(self.denominator, common)?;
+        Self::new(self.wave, self.harmonics, denominator, self.numerators)
     }
 }
 
@@ -284,16 +327,32 @@ fn size(number: u128) -> f64 {
     above * WORD
 }
 
+/// The least power of two that is not below a number. As a bound of a factor it is at hand at once,
+/// and it is the factor itself where denominators are powers of two.
+fn power_of_two_above(number: u128) -> f64 {
+    let digits = u128::BITS - number.saturating_sub(1).leading_zeros();
+    f64::from_bits((1023 + u64::from(digits)) << 52)
+}
+
 /// Whether a positive number is a power of two.
 fn is_power_of_two(number: i128) -> bool {
     number & (number - 1) == 0
 }
 
 /// Returns a quotient without remainder by a positive divisor. Most divisors are powers of two.
+#[inline]
 fn exact_quotient(number: i128, divisor: i128) -> i128 {
     match is_power_of_two(divisor) {
         true => number >> divisor.trailing_zeros(),
         false => quotient(number, divisor),
+    }
+}
+
+/// The product; `None` if it is too long. Most numbers fit one word, whose product always fits.
+fn product(left: i128, right: i128) -> Option<i128> {
+    match (i64::try_from(left), i64::try_from(right)) {
+        (Ok(left), Ok(right)) => Some(i128::from(left).wrapping_mul(i128::from(right))),
+        _ => left.checked_mul(right),
     }
 }
 
@@ -369,15 +428,16 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
     let mut common = 1;
     let mut length = 0;
     for (_, denominator, series) in terms {
-        common = least_common_multiple(common, denominator.checked_mul(series.denominator)?)?;
+        common = least_common_multiple(common, product(*denominator, series.denominator)?)?;
         length = length.max(series.numerators.len());
     }
     let mut bound = 0.0;
-    let mut sums = vec![0_i128; length];
+    let mut zeros = Zeros::new();
+    let sums = zeros.take(length);
     for (numerator, denominator, series) in terms {
-        let factor =
-            numerator.checked_mul(exact_quotient(common, denominator * series.denominator))?;
-        let factor_size = size(factor.unsigned_abs());
+        let own = denominator.wrapping_mul(series.denominator);
+        let factor = product(*numerator, exact_quotient(common, own))?;
+        let factor_size = power_of_two_above(factor.unsigned_abs());
         bound += factor_size * series.largest;
         if bound >= BOUND {
             return None;
@@ -390,7 +450,7 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
             }
         }
     }
-    ShortSeries::new(first.wave, first.harmonics, common, sums)
+    ShortSeries::new(first.wave, first.harmonics, common, sums.to_vec())
 }
 
 /// `sum_i left_i right_(n-i)` over two lists of the same length; all products must have the same
@@ -417,23 +477,23 @@ fn sum_of_products<'a>(
     let mut length = 1;
     let mut kind = (Wave::Cosine, HarmonicParity::Even);
     for (_, left, right) in terms.clone() {
-        common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
+        common = least_common_multiple(common, product(left.denominator, right.denominator)?)?;
         length = length.max(left.numerators.len() + right.numerators.len());
         let wave = if left.wave == right.wave { Wave::Cosine } else { Wave::Sine };
         kind = (wave, left.harmonics.times(right.harmonics));
     }
     let mut bound = 0.0;
     // The sums of the harmonics' sums and, behind them, of their differences.
-    let mut sums = vec![0_i128; 2 * length];
-    let (upper, lower) = sums.split_at_mut(length);
+    let mut zeros = Zeros::new();
+    let (upper, lower) = zeros.take(2 * length).split_at_mut(length);
     for (weight, left, right) in terms {
-        let factor =
-            weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
+        let own = left.denominator.wrapping_mul(right.denominator);
+        let factor = product(weight, exact_quotient(common, own))?;
         let (short, long) = match left.numerators.len() <= right.numerators.len() {
             true => (left, right),
             false => (right, left),
         };
-        let largest = size(factor.unsigned_abs()) * short.largest;
+        let largest = power_of_two_above(factor.unsigned_abs()) * short.largest;
         // Every harmonic of the result gets at most one term from sums of harmonics and two from
         // differences per coefficient of the shorter factor.
         bound += largest * long.largest * (3 * short.numerators.len()) as f64;
@@ -452,14 +512,11 @@ fn sum_of_products<'a>(
     for (upper, lower) in upper.iter_mut().zip(lower) {
         *upper = upper.wrapping_add(*lower);
     }
-    sums.truncate(length);
     if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
-        sums[0] = 0;
+        upper[0] = 0;
     }
-    while sums.len() > 1 && sums.last() == Some(&0) {
-        sums.pop();
-    }
-    ShortSeries::new(kind.0, kind.1, common.checked_mul(2)?, sums)
+    let last = upper.iter().rposition(|sum| *sum != 0).unwrap_or(0);
+    ShortSeries::new(kind.0, kind.1, product(common, 2)?, upper[..=last].to_vec())
 }
 
 /// The product of two numbers that fit one word.
@@ -573,7 +630,7 @@ mod tests {
             assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
             let second = left.second_derivative().expect("short");
             assert_eq!(long(&second), long(&left).derivative().derivative());
-            let solution = left.without_resonance_over_divisors().expect("short");
+            let solution = left.clone().without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {
                 let mixed = (left.harmonics == HarmonicParity::All)

@@ -117,10 +117,11 @@ impl<A: Arithmetic> Residues<A> {
         for exponent in exponents.0 {
             any |= exponent;
         }
-        let mut power = self.one();
-        for digit in (0..u64::BITS - any.leading_zeros()).rev() {
-            power = self.product(power, power);
-            let product = self.product(power, base);
+        // From the lowest digit on, neither of the two products of a digit waits for the other.
+        let (mut power, mut square) = (self.one(), base);
+        for digit in 0..u64::BITS - any.leading_zeros() {
+            let product = self.product(power, square);
+            square = self.product(square, square);
             for lane in 0..WIDTH {
                 if exponents.0[lane] >> digit & 1 == 1 {
                     power.0[lane] = product.0[lane];

@@ -8,7 +8,7 @@
 //! two words hold Duffing's equation to order 25.
 
 use super::plan::{Plan, PlannedTerm};
-use super::{AmplitudeKind, Detuning};
+use super::{AmplitudeKind, Detuning, ExpansionScope};
 use crate::exact::residue::sums::Product;
 use crate::interrupt::Interrupt;
 use crate::series::fixed_width::{
@@ -36,11 +36,11 @@ pub(super) struct FirstOrders {
 }
 
 /// Order beyond which two words are too short.
-const LONG: usize = 28;
+pub(super) const LONG: usize = 28;
 
 /// The orders up to the highest of the plan, or as many as fit; of a long expansion, and of one that
 /// will not fit, only as many as show how its denominators grow.
-pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
+pub(super) fn beginning(plan: &Plan, extent: ExpansionScope, interrupt: Interrupt) -> FirstOrders {
     /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
     /// Number of orders that show whether the last one will fit, and how denominators grow.
@@ -50,7 +50,7 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     let furthest = plan.terms.iter().map(|term| term.order).max().unwrap_or(0);
     let few = FEW.max(furthest);
     let mut beginning = FirstOrders::default();
-    if let Some(mut recursion) = Recursion::new(plan) {
+    if let Some(mut recursion) = Recursion::new(plan, extent, |_| 1) {
         while recursion.complete <= last && !interrupt.is_requested() {
             if recursion.next_order().is_none()
                 || (recursion.complete == few + 1 && !recursion.may_fit(last))
@@ -64,8 +64,23 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
     beginning
 }
 
+/// The expansion to the highest order of a plan, with the coefficient of each term multiplied by a
+/// factor; `None` if a number does not fit.
+pub(super) fn with_factors(
+    plan: &Plan,
+    extent: ExpansionScope,
+    factor: impl Fn(usize) -> i128,
+) -> Option<Vec<FixedWidthOrder>> {
+    let mut recursion = Recursion::new(plan, extent, factor)?;
+    while recursion.complete <= plan.highest {
+        recursion.next_order()?;
+    }
+    Some(recursion.orders())
+}
+
 struct Recursion<'a> {
     plan: &'a Plan<'a>,
+    extent: ExpansionScope,
     /// The terms with their coefficients, each divided by the power of which the term is a
     /// derivative; `None` for one that overflows.
     terms: Vec<(&'a PlannedTerm, Option<(i128, i128)>)>,
@@ -93,19 +108,28 @@ struct Variation {
 }
 
 impl<'a> Recursion<'a> {
-    fn new(plan: &'a Plan<'a>) -> Option<Self> {
-        let coefficient = |term: &PlannedTerm, derivative: bool| {
+    /// A recursion in which the coefficient of each term is multiplied by a factor.
+    fn new(
+        plan: &'a Plan<'a>,
+        extent: ExpansionScope,
+        factor: impl Fn(usize) -> i128,
+    ) -> Option<Self> {
+        let coefficient = |place: usize, term: &PlannedTerm, derivative: bool| {
             let power = if derivative { i128::from(term.position) + 1 } else { 1 };
             let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
-            Some((term.coefficient.numer().to_i128()?, denominator))
+            let numerator = term.coefficient.numer().to_i128()?.checked_mul(factor(place))?;
+            Some((numerator, denominator))
         };
-        let terms = plan.terms.iter().zip(&plan.of_terms);
+        let terms = plan.terms.iter().zip(&plan.of_terms).enumerate();
         let orders = LONG.min(plan.highest) + 2;
         let list = || Vec::with_capacity(orders);
         let mut recursion = Self {
             plan,
+            extent,
             terms: terms
-                .map(|(term, (_, derivative))| (term, coefficient(term, *derivative)))
+                .map(|(place, (term, (_, derivative)))| {
+                    (term, coefficient(place, term, *derivative))
+                })
                 .collect(),
             sine: match &plan.sine {
                 Some((_, rate)) => {
@@ -189,6 +213,16 @@ impl<'a> Recursion<'a> {
         let frequency = self.frequency(order, square)?;
         self.frequency_squared.push(square);
         self.frequency.push(frequency);
+        if self.variation.is_none()
+            && self.extent == ExpansionScope::Frequency
+            && order == plan.highest
+        {
+            // Nothing that is wanted depends on the last motion.
+            let none = ShortSeries::new(right_side.wave, self.harmonics(), 1, vec![])?;
+            self.tables[0].push(none);
+            self.complete = order + 1;
+            return Some(());
+        }
         let particular = right_side.without_resonance_over_divisors()?.reduced();
         let displacement = self.normalised(particular)?;
         self.push_displacement(order, displacement)?;
@@ -200,12 +234,11 @@ impl<'a> Recursion<'a> {
 
     /// `omega_n` from `W_n`.
     fn frequency(&self, order: usize, square: ShortFraction) -> Option<ShortFraction> {
-        let half = ShortFraction::new(1, 2)?;
-        let mut frequency = square.product(half)?;
+        let mut frequency = square.half()?;
         // The sum over all pairs is twice that over one of each pair, plus the middle term.
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
             let product = self.frequency[i].product(self.frequency[order - i])?;
-            let product = if 2 * i == order { product.product(half)? } else { product };
+            let product = if 2 * i == order { product.half()? } else { product };
             frequency = frequency.sum(product.negative())?;
         }
         Some(frequency)
@@ -258,9 +291,10 @@ impl<'a> Recursion<'a> {
         derivative: bool,
         at: impl Fn(&PlannedTerm, usize) -> Option<&'b ShortSeries>,
     ) -> Option<Vec<(i128, i128, &'b ShortSeries)>> {
-        // Room for the contributions of the frequency of all orders, too.
-        let room = if derivative { 0 } else { 2 * self.tables[0].len() };
-        let mut parts = Vec::with_capacity(room + self.terms.len() + 1);
+        // Room for the contributions of the frequency of all orders, too; mostly no term has a
+        // derivative.
+        let room = 2 * self.tables[0].len() + self.terms.len() + 1;
+        let mut parts = if derivative { vec![] } else { Vec::with_capacity(room) };
         for ((term, coefficient), (table, own)) in self.terms.iter().zip(&self.plan.of_terms) {
             if let Some(series) = at(term, *table).filter(|_| *own == derivative) {
                 let (numerator, denominator) = (*coefficient)?;
@@ -307,16 +341,17 @@ impl<'a> Recursion<'a> {
         if plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
             return Some(particular);
         }
-        let mut at_zero = 0_i128;
-        for (index, numerator) in particular.numerators().iter().enumerate() {
-            let weight = match (particular.wave, plan.scheme.amplitude) {
-                (Wave::Sine, _) => i128::try_from(plan.harmonic(index)).ok()?,
-                (Wave::Cosine, AmplitudeKind::Free) => 1,
-                (Wave::Cosine, AmplitudeKind::Determined) => return Some(particular),
-            };
-            at_zero = at_zero.checked_add(numerator.checked_mul(weight)?)?;
-        }
-        particular.with_numerator(plan.resonant(), at_zero.checked_neg()?)
+        let mut numerators = particular.numerators().iter();
+        let at_zero = match (particular.wave, plan.scheme.amplitude) {
+            (Wave::Sine, _) => numerators.enumerate().try_fold(0_i128, |sum, (index, own)| {
+                sum.checked_add(own.checked_mul(plan.harmonic(index) as i128)?)
+            }),
+            (Wave::Cosine, AmplitudeKind::Free) => {
+                numerators.try_fold(0_i128, |sum, own| sum.checked_add(*own))
+            }
+            (Wave::Cosine, AmplitudeKind::Determined) => return Some(particular),
+        };
+        particular.with_numerator(plan.resonant(), at_zero?.checked_neg()?)
     }
 
     fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {

@@ -17,6 +17,7 @@
 
 mod denominators;
 mod fixed_width;
+mod lower_set;
 mod modular;
 mod orders;
 mod plan;
@@ -27,6 +28,7 @@ mod symbolic;
 pub(super) use denominators::Factored;
 pub use reconstruct::ExpansionScope;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use num_integer::Integer as _;
@@ -264,8 +266,12 @@ pub(crate) fn expand_numbers_supervised(
     // If all terms have orders that are multiples of one number, as for an amplitude that enters
     // squared, so has the solution.
     let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
-    let compressed: Vec<ForceTerm<Integers>> =
-        force.iter().map(|term| ForceTerm { order: term.order / step, ..term.clone() }).collect();
+    let compress =
+        |term: &ForceTerm<Integers>| ForceTerm { order: term.order / step, ..term.clone() };
+    let compressed: Cow<'_, [ForceTerm<Integers>]> = match step {
+        1 => force.into(),
+        _ => force.iter().map(compress).collect(),
+    };
     let orders = highest / step;
     let by_words = reconstruct::expand(&compressed, orders, scheme, extent, supervision);
     let mut expansion = match by_words {

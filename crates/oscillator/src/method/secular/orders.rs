@@ -5,7 +5,7 @@ use num_traits::Zero;
 use super::fixed_width;
 use super::plan::Plan;
 use super::reconstruct::ExpansionScope;
-use super::{SecularExpansion, SecularSine};
+use super::{AmplitudeKind, SecularExpansion, SecularSine};
 use crate::exact::{Integer, Integers, Rational};
 use crate::series::FourierSeries;
 use crate::series::fixed_width::ShortFraction;
@@ -29,9 +29,9 @@ impl ExpansionOrder {
             Rational::new_raw(own.numerator().into(), own.denominator().into())
         };
         let motion = &order.displacement;
-        let first = match motion.wave {
-            Wave::Cosine => motion.coefficient(plan.resonant()),
-            Wave::Sine => None,
+        let first = match (motion.wave, plan.scheme.amplitude) {
+            (Wave::Cosine, AmplitudeKind::Determined) => motion.coefficient(plan.resonant()),
+            _ => None,
         };
         Self {
             denominator: motion.denominator().into(),

@@ -57,7 +57,7 @@ pub fn expand(
     const LONG: usize = 8;
     let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
-    let beginning = fixed_width::beginning(&plan, supervision.interrupt);
+    let beginning = fixed_width::beginning(&plan, extent, supervision.interrupt);
     let slope = match (scheme.amplitude, extent) {
         (AmplitudeKind::Free, _) | (_, ExpansionScope::Frequency) => None,
         (AmplitudeKind::Determined, ExpansionScope::Motion) => {
@@ -883,6 +883,34 @@ mod tests {
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);
         agrees(&[term(1, 0, 3, (4, 3)), term(1, 0, 1, (-1, 1))], 13, cycle);
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(2, 3, 0, (1, 3))], 12, cycle);
+    }
+
+    /// An expansion in two words is the beginning of one by primes, whichever order is the last
+    /// that fits.
+    #[test]
+    fn the_end_of_two_words_leaves_no_trace() {
+        let cases = [
+            (vec![term(1, 3, 0, (1, 1))], AmplitudeKind::Free, 20..30),
+            (vec![term(1, 2, 0, (2, 3))], AmplitudeKind::Free, 8..16),
+            (vec![term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], AmplitudeKind::Determined, 8..14),
+        ];
+        for (force, amplitude, orders) in cases {
+            let normalisation = AmplitudeConvention::Initial;
+            let scheme = Scheme { normalisation, amplitude, detuning: Detuning::Acceleration };
+            let expand = |highest: usize, extent: ExpansionScope| {
+                expand(&force, highest, &scheme, extent, Supervision::default()).expect("numbers")
+            };
+            let long = expand(orders.end, ExpansionScope::Motion);
+            for highest in orders {
+                let found = expand(highest, ExpansionScope::Motion);
+                let alone = expand(highest, ExpansionScope::Frequency);
+                assert_eq!(found.displacement, long.displacement[..=highest], "{highest}");
+                for own in [&found, &alone] {
+                    assert_eq!(own.frequency_squared, long.frequency_squared[..=highest]);
+                    assert_eq!(own.frequency, long.frequency[..=highest], "{highest}");
+                }
+            }
+        }
     }
 
     #[test]

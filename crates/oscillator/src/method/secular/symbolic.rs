@@ -2,8 +2,7 @@
 //! primes at many values of the symbols.
 //!
 //! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
-//! section 5.5 (change of representation); N. Dyn and M. S. Floater, *Multivariate polynomial interpolation
-//! on lower sets*, J. Approx. Theory 177 (2014) 34-42.
+//! section 5.5 (change of representation).
 //!
 //! ```text
 //! sum_t c_t delta^(a_t) y^(p_t) (omega y')^(q_t):   order n = sum K_e prod c_t^(e_t)   over all e with sum a_t e_t = n
@@ -12,7 +11,8 @@
 //!
 //! Terms with the same power of the small parameter and the same symbols share one `u`. At each
 //! point the recursion is that over [residues](super::modular); the fractions are found by the
-//! remainders of a few primes, and tried modulo one prime more.
+//! remainders of a few primes, and tried modulo one prime more. At a few points the recursion in
+//! [two words](super::fixed_width) takes the place of primes.
 //!
 //! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each
 //! prime, where products of polynomials would take `P^2` products of coefficients each. The points
@@ -21,10 +21,10 @@
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each prime, at most half a gigabyte.
 
-use std::collections::HashMap;
-
 use num_traits::{One, Zero};
 
+use super::fixed_width;
+use super::lower_set::{LowerSet, PointField};
 use super::modular::{Recursion, ResidueField};
 use super::plan::{Plan, PlannedTerm};
 use super::{AmplitudeKind, ExpansionScope, ForceTerm, Scheme, SecularExpansion};
@@ -36,9 +36,15 @@ use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rationa
 use crate::interrupt::Supervision;
 use crate::parallel::{par_map, threads};
 use crate::series::FourierSeries;
+use crate::series::fixed_width::ShortFraction;
 use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
+
+/// Number of points up to which two words for each number are faster than primes: those that a
+/// single run modulo a prime has room for. They are three to four times as fast with one symbol, half
+/// as fast again with three to the second order, and as fast with two to the sixth.
+const FEW: usize = WIDTH;
 
 /// Number of points times orders up to which one thread is faster than starting several.
 const ALONE: usize = 200;
@@ -81,23 +87,33 @@ impl Work for ExpandSymbols<'_> {
             std::iter::successors(Some(highest), |order| (*order > SHORT).then_some(order / 2));
         let stages: Vec<usize> = halves.collect();
         let lower_set = |highest: usize| LowerSet::new(&weights, base, highest, MOST_POINTS);
-        lower_set(highest)?;
+        // The largest first: it says whether there are too many points.
+        let mut largest = Some(lower_set(highest)?);
         let mut best: Option<SecularExpansion<Symbols>> = None;
-        for highest in stages.into_iter().rev() {
-            let lower_set = lower_set(highest)?;
-            let plan =
-                Plan::new(&terms, None, highest, scheme, extent == ExpansionScope::Frequency)?;
-            let mut search = PrimeSearch {
-                arithmetic,
-                plan: &plan,
-                groups: &groups,
-                lower_set: &lower_set,
-                extent,
-                supervision,
-                primes: Box::new(primes_below(A::BITS, plan.circle())),
-                images: vec![],
+        for stage in stages.into_iter().rev() {
+            let lower_set = match largest.take_if(|_| stage == highest) {
+                Some(largest) => largest,
+                None => lower_set(stage)?,
             };
-            let orders = search.orders()?;
+            let plan = Plan::new(&terms, None, stage, scheme, extent == ExpansionScope::Frequency)?;
+            let by_words = match lower_set.points.len() <= FEW && stage <= fixed_width::LONG {
+                true => short_orders(&plan, &groups, &lower_set, extent),
+                false => None,
+            };
+            let by_primes = || {
+                let mut search = PrimeSearch {
+                    arithmetic,
+                    plan: &plan,
+                    groups: &groups,
+                    lower_set: &lower_set,
+                    extent,
+                    supervision,
+                    primes: Box::new(primes_below(A::BITS, plan.circle())),
+                    images: vec![],
+                };
+                search.orders()
+            };
+            let orders = by_words.or_else(by_primes)?;
             if best.as_ref().is_none_or(|best| best.frequency.len() < orders.len()) {
                 let monomials = lower_set.monomials(&groups.kinds, base);
                 best = Some(expansion(&plan, &orders, &monomials, extent));
@@ -143,128 +159,6 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<PlannedTerm>, Groups)> {
     (!terms.is_empty()).then_some((terms, groups))
 }
 
-/// All exponents with `sum weight exponent <= highest`, those of lower weight first.
-struct LowerSet {
-    /// One list of exponents for each point; that of the group whose value is one is zero.
-    points: Vec<Vec<usize>>,
-    /// Number of points of each order.
-    counts: Vec<usize>,
-    /// The indices of all points along each line in the direction of a group, from exponent zero
-    /// on.
-    lines: Vec<Vec<Vec<usize>>>,
-}
-
-impl LowerSet {
-    fn new(weights: &[usize], base: usize, highest: usize, most: usize) -> Option<Self> {
-        let mut of_weight: Vec<Vec<Vec<usize>>> = vec![vec![]; highest + 1];
-        of_weight[0].push(vec![0; weights.len()]);
-        for (group, weight) in weights.iter().enumerate().filter(|(group, _)| *group != base) {
-            for total in *weight..=highest {
-                let more: Vec<Vec<usize>> = of_weight[total - weight]
-                    .iter()
-                    .map(|exponents| {
-                        let mut more = exponents.clone();
-                        more[group] += 1;
-                        more
-                    })
-                    .collect();
-                of_weight[total].extend(more);
-                if of_weight[total].len() > most {
-                    return None;
-                }
-            }
-        }
-        let counts = of_weight.iter().scan(0, |count, own| {
-            *count += own.len();
-            Some(*count)
-        });
-        let counts: Vec<usize> = counts.collect();
-        let points: Vec<Vec<usize>> = of_weight.into_iter().flatten().collect();
-        if points.len() > most {
-            return None;
-        }
-        let place: HashMap<&[usize], usize> =
-            points.iter().enumerate().map(|(place, point)| (&point[..], place)).collect();
-        let line = |start: &Vec<usize>, group: usize| -> Vec<usize> {
-            let mut point = start.clone();
-            let mut next = || {
-                let found = place.get(&point[..]).copied();
-                point[group] += 1;
-                found
-            };
-            std::iter::from_fn(&mut next).collect()
-        };
-        let lines = (0..weights.len())
-            .map(|group| {
-                let starts = points.iter().filter(|point| point[group] == 0 && group != base);
-                starts.map(|start| line(start, group)).collect()
-            })
-            .collect();
-        Some(Self { points, counts, lines })
-    }
-
-    /// Interpolation from values at the points of an order, `numbers` side by side at each, to
-    /// coefficients, in place. `inverses` are those of `1, 2, ...`.
-    fn interpolate(
-        &self,
-        modulus: &Modulus,
-        inverses: &[u64],
-        order: usize,
-        values: &mut [u64],
-        numbers: usize,
-    ) {
-        let count = self.counts[order];
-        // Points beyond the order are the last ones of a line.
-        let within = |line: &Vec<usize>| line.partition_point(|place| *place < count);
-        // Divided differences at 0, 1, 2, ... in all directions first: only Newton's form has no
-        // terms beyond the lower set.
-        for line in self.lines.iter().flatten() {
-            let line = &line[..within(line)];
-            for (step, inverse) in inverses.iter().enumerate().take(line.len()).skip(1) {
-                for i in (step..line.len()).rev() {
-                    for number in 0..numbers {
-                        let (upper, lower) =
-                            (line[i] * numbers + number, line[i - 1] * numbers + number);
-                        let difference = modulus.difference(values[upper], values[lower]);
-                        values[upper] = modulus.product(difference, *inverse);
-                    }
-                }
-            }
-        }
-        for line in self.lines.iter().flatten() {
-            let line = &line[..within(line)];
-            for node in (1..line.len().saturating_sub(1)).rev() {
-                let residue = modulus.small(node as i64);
-                for i in node..line.len() - 1 {
-                    for number in 0..numbers {
-                        let product =
-                            modulus.product(residue, values[line[i + 1] * numbers + number]);
-                        let lower = &mut values[line[i] * numbers + number];
-                        *lower = modulus.difference(*lower, product);
-                    }
-                }
-            }
-        }
-    }
-
-    /// The product of symbols at each point, without the group whose value is one, and the weight
-    /// of the point; then the product of symbols of that group.
-    fn monomials(
-        &self,
-        kinds: &[(usize, Monomial)],
-        base: usize,
-    ) -> (Vec<(Monomial, usize)>, Monomial) {
-        let of_point = |point: &Vec<usize>| {
-            let parts = point.iter().zip(kinds);
-            parts.fold((Monomial::one(), 0), |(product, weight), (exponent, (order, monomial))| {
-                let power = monomial.power(i32::try_from(*exponent).unwrap_or(i32::MAX));
-                (product.product(&power), weight + order * exponent)
-            })
-        };
-        (self.points.iter().map(of_point).collect(), kinds[base].1.clone())
-    }
-}
-
 /// The expansion modulo one prime, of all orders, or of the lower ones if it was interrupted: for
 /// each order the plain residues of the coefficients, point by point; of the frequency, of its
 /// square, and of the harmonics if they are wanted.
@@ -275,11 +169,63 @@ struct SymbolicImage {
 
 /// One order: the numbers as numerators over one denominator, point by point as in a
 /// [`SymbolicImage`].
+#[derive(Debug, PartialEq)]
 struct SymbolicOrder {
     denominator: Integer,
     numerators: Vec<Integer>,
     /// Number of coefficients at each point.
     numbers: usize,
+}
+
+/// How many numbers an order has at each point.
+fn numbers(plan: &Plan, extent: ExpansionScope, order: usize) -> usize {
+    match extent {
+        ExpansionScope::Frequency => 2,
+        ExpansionScope::Motion => 2 + plan.harmonics(order),
+    }
+}
+
+/// The numbers of all orders from their values at the points in two words each; `None` if one does
+/// not fit.
+fn short_orders(
+    plan: &Plan,
+    groups: &Groups,
+    lower_set: &LowerSet,
+    extent: ExpansionScope,
+) -> Option<Vec<SymbolicOrder>> {
+    let mut at_orders: Vec<Vec<ShortFraction>> = vec![vec![]; plan.highest + 1];
+    for (place, point) in lower_set.points.iter().enumerate() {
+        let factor = |term: usize| match groups.of_terms[term] {
+            group if lower_set.lines[group].is_empty() => 1,
+            group => point[group] as i128,
+        };
+        let expansion = fixed_width::with_factors(plan, extent, factor)?;
+        // The points of an order come after those of all lower orders.
+        let first = lower_set.counts.partition_point(|count| *count <= place);
+        for (order, own) in expansion.iter().enumerate().skip(first) {
+            let values = &mut at_orders[order];
+            values.extend([own.frequency, own.frequency_squared]);
+            for index in 2..numbers(plan, extent, order) {
+                values.push(own.displacement.coefficient(index - 2)?);
+            }
+        }
+    }
+    let nodes = (0..=plan.highest as i128 + 1).map(|node| ShortFraction::new(node, 1));
+    let inverses = (0..=plan.highest as i128 + 1).map(|node| ShortFraction::new(1, node.max(1)));
+    let field = PointField {
+        nodes: nodes.collect::<Option<_>>()?,
+        inverses: inverses.collect::<Option<_>>()?,
+        difference: |left: ShortFraction, right: ShortFraction| left.sum(right.negative()),
+        product: ShortFraction::product,
+    };
+    let interpolated = |(order, mut values): (usize, Vec<ShortFraction>)| {
+        let numbers = numbers(plan, extent, order);
+        lower_set.interpolate(&field, order, &mut values, numbers)?;
+        let (denominator, numerators) = ShortFraction::over_common_denominator(&values)?;
+        let numerators = numerators.into_iter().map(Integer::from).collect();
+        Some(SymbolicOrder { denominator: denominator.into(), numerators, numbers })
+    };
+    at_orders.into_iter().enumerate().map(interpolated).collect()
 }
 
 struct PrimeSearch<'a, A> {
@@ -295,10 +241,7 @@ struct PrimeSearch<'a, A> {
 
 impl<A: Arithmetic> PrimeSearch<'_, A> {
     fn numbers(&self, order: usize) -> usize {
-        match self.extent {
-            ExpansionScope::Frequency => 2,
-            ExpansionScope::Motion => 2 + self.plan.harmonics(order),
-        }
+        numbers(self.plan, self.extent, order)
     }
 
     /// The numbers of all orders at these points, unless the work is interrupted.
@@ -378,9 +321,15 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
     /// The orders that are determined by these numbers at the first points.
     fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<SymbolicImage> {
         let highest = self.plan.highest;
-        let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
-        modulus.invert(&mut inverses)?;
-        inverses.insert(0, 0);
+        let nodes: Vec<u64> = (0..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
+        let mut inverses = nodes.clone();
+        modulus.invert(&mut inverses[1..])?;
+        let field = PointField {
+            nodes,
+            inverses,
+            difference: |left, right| Some(modulus.difference(left, right)),
+            product: |left, right| Some(modulus.product(left, right)),
+        };
         // An order is complete when all its points are.
         let counts = &self.lower_set.counts;
         let reached = counts.partition_point(|count| *count <= at_points.len());
@@ -393,7 +342,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
                 values.extend_from_slice(&own[*taken..*taken + numbers]);
                 *taken += numbers;
             }
-            self.lower_set.interpolate(&modulus, &inverses, order, &mut values, numbers);
+            self.lower_set.interpolate(&field, order, &mut values, numbers)?;
             values.iter_mut().for_each(|value| *value = modulus.plain(*value));
             orders.push(values);
         }
@@ -656,31 +605,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_lower_set_gives_back_what_its_points_were_taken_from() {
-        // Weights 1 (the one that is one), 1 and 2: exponents i + 2 j <= 5.
-        let set = LowerSet::new(&[1, 1, 2], 0, 5, 100).expect("few points");
-        assert_eq!(set.counts, [1, 2, 4, 6, 9, 12]);
-        let prime = primes_below(30, 2).next().expect("a prime");
-        let modulus = Modulus::new(prime, 32);
-        let coefficient = |point: &[usize]| (point[1] * 17 + point[2] * point[2] * 5 + 3) as i64;
-        let power = |base: usize, exponent: usize| (base as i64).pow(exponent as u32);
-        let value = |at: &[usize]| -> i64 {
-            let terms = set.points.iter();
-            terms
-                .map(|point| coefficient(point) * power(at[1], point[1]) * power(at[2], point[2]))
-                .sum()
-        };
-        let mut values: Vec<u64> = set.points.iter().map(|at| modulus.small(value(at))).collect();
-        let mut inverses: Vec<u64> = (1..7).map(|k| modulus.small(k)).collect();
-        modulus.invert(&mut inverses).expect("no multiple of the prime");
-        inverses.insert(0, 0);
-        set.interpolate(&modulus, &inverses, 5, &mut values, 1);
-        let expected: Vec<u64> =
-            set.points.iter().map(|point| modulus.small(coefficient(point))).collect();
-        assert_eq!(values, expected);
-    }
-
     /// If the work is stopped after any number of points, the lower orders are available unchanged.
     #[test]
     fn the_first_points_are_enough_for_the_lower_orders() {
@@ -717,6 +641,57 @@ mod tests {
             assert_eq!(some.orders, all.orders[..reached]);
             assert!(lower_set.counts[reached] > count, "{count} points are enough for more");
         }
+    }
+
+    /// The numbers in two words are those by primes, order by order, on both sides of the order at
+    /// which the one takes the place of the other.
+    #[test]
+    fn two_words_and_primes_have_the_same_orders() {
+        let [a, b, c] = ["a", "b", "c"].map(letter);
+        let one = [term(1, 3, 0, (a.clone(), 1))];
+        let two = [term(1, 2, 0, (a.clone(), 3)), term(1, 3, 0, (b.clone(), -2))];
+        let three = [
+            term(1, 3, 0, (a.clone(), 1)),
+            term(2, 5, 0, (b.clone(), 7)),
+            term(1, 1, 2, (c, -5)),
+            term(1, 5, 0, (a, 9)),
+        ];
+        let scheme = Scheme {
+            normalisation: AmplitudeConvention::Initial,
+            amplitude: AmplitudeKind::Free,
+            detuning: Detuning::Acceleration,
+        };
+        for (force, orders) in [(&one[..], 1..13), (&two[..], 1..8), (&three[..], 1..5)] {
+            let (terms, groups) = grouped(force).expect("terms");
+            let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
+            for highest in orders {
+                for extent in [ExpansionScope::Motion, ExpansionScope::Frequency] {
+                    let lower_set = LowerSet::new(&weights, 0, highest, 1000).expect("few points");
+                    let plan = Plan::new(&terms, None, highest, scheme, false).expect("symmetry");
+                    let mut search = PrimeSearch {
+                        arithmetic: Portable,
+                        plan: &plan,
+                        groups: &groups,
+                        lower_set: &lower_set,
+                        extent,
+                        supervision: Supervision::default(),
+                        primes: Box::new(primes_below(30, plan.circle())),
+                        images: vec![],
+                    };
+                    let by_primes = search.orders().expect("all orders");
+                    let by_words =
+                        short_orders(&plan, &groups, &lower_set, extent).expect("short numbers");
+                    assert_eq!(by_words, by_primes, "{force:?} to order {highest}, {extent:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_too_long_for_two_words_are_found_by_primes() {
+        let long = letter("a").product(&Polynomial::constant(Integer::from(1_u64 << 62)));
+        let force = [term(1, 2, 0, (long.clone(), 3)), term(1, 3, 0, (long, 7))];
+        agrees(&force, 3);
     }
 
     #[test]

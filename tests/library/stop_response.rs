@@ -185,7 +185,7 @@ fn ripple_of_the_balance_is_no_fold() {
 }
 
 /// A motion on which simulations settle is followed by as many harmonics as it takes; by fewer it
-/// is said to be missing, and nothing passes.
+/// is a branch that is said to be far from the true one, and nothing passes.
 #[test]
 fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     let found = response(CONTACT, [1.3, 1.5], "F = 3/10");
@@ -198,13 +198,12 @@ fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     assert!(found.elsewhere.is_empty() && found.verdict == Verdict::Pass, "{:?}", found.elsewhere);
     let by_few = respond(&ResponseRequest { harmonics: Some(8), ..found.question.clone() })
         .expect("a response");
-    assert!(by_few.branches.iter().flat_map(|branch| &branch.points).all(|point| !is_it(point)));
-    assert!(
-        by_few
-            .elsewhere
-            .iter()
-            .any(|elsewhere| elsewhere.parameter == 1.3 && elsewhere.periods == Some(1))
-    );
+    let points = || by_few.branches.iter().flat_map(|branch| &branch.points);
+    assert!(points().all(|point| !is_it(point)));
+    let is_near =
+        |point: &&SteadyMotion| point.parameter == 1.3 && (point.peak / peak - 1.0).abs() < 0.1;
+    let near: Vec<&SteadyMotion> = points().filter(is_near).collect();
+    assert!(!near.is_empty() && near.iter().all(|point| point.error.is_some_and(|e| e > 0.02)));
     assert_eq!(by_few.verdict, Verdict::Fail);
 }
 

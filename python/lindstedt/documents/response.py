@@ -237,15 +237,29 @@ class ElsewherePoint(Document):
         parameter: The value of the parameter that varies.
         periods: After how many periods of the motion it repeats itself, 1 where harmonic balance
             has not come to it; null where it does not within eight.
+        drive_periods: After how many periods of the drive it repeats itself; null where it does
+            not.
+        start: Position and velocity at t = 0 or a whole number of periods later, from where it
+            goes on as it has settled.
+        amplitude: The amplitude of the first harmonic of a period of the motion from there.
+        peak: Half of the way from the lowest to the highest point of this period.
     """
 
     parameter: float
     periods: int | None
+    drive_periods: int | None
+    start: tuple[float, float]
+    amplitude: float
+    peak: float
 
 
 ElsewherePoint.FIELDS = (
     ("parameter", "parameter", None),
     ("periods", "periods", None),
+    ("drive_periods", "drive_periods", None),
+    ("start", "start", tuple),
+    ("amplitude", "amplitude", None),
+    ("peak", "peak", None),
 )
 
 

@@ -30,6 +30,7 @@ OWN = {
     "Comparison": ("comparison", "Comparison"),
     "Friction": ("tabulated", "Friction"),
     "Materials": ("tabulated", "Materials"),
+    "Impact": ("impacts", "Impact"),
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),

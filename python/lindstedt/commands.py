@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from .designs import Optimization
     from .documents.certificate import DampedCertificateDocument
     from .documents.certificate_range import CertificateRange
-    from .documents.impact import Impact
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
+    from .impacts import Impact
     from .law import Law
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .tabulated import Friction, Materials, Stability

@@ -96,3 +96,18 @@ def test_pictures():
     main_mass = ls.simulate(EXAMPLES / "primary" / "stick-slip.toml")
     assert main_mass.plot().get_ylabel() == "x" and main_mass.y.shape == main_mass.t.shape
     pyplot.close("all")
+
+
+def test_an_impact_is_a_function_of_time_and_has_a_picture():
+    for impact in (ls.impact(), ls.impact(EXAMPLES / "impact-paper.toml")):
+        for phase in impact.motion:
+            for time, state in ((phase.start, phase.start_state), (phase.end, phase.end_state)):
+                inside = 1e-6 * (phase.end - phase.start) * (1 if time == phase.start else -1)
+                assert abs(impact.x(time + inside) - state.x) < 1e-5 * max(1.0, abs(state.x))
+                slope = (impact.x(time + 2 * inside) - impact.x(time)) / (2 * inside)
+                assert abs(slope - state.velocity) < 1e-4 * max(1.0, abs(state.velocity))
+        times = np.linspace(impact.motion[0].start, impact.motion[-1].end, 50)
+        assert np.isfinite(impact.x(times)).all()
+        assert np.isnan(impact.x([-1.0, times[-1] + 1.0])).all()
+        axes = impact.plot()
+        assert [line.get_label() for line in axes.lines] == ["approach", "contact", "return"]

@@ -505,6 +505,12 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     ));
     let mut blocks =
         vec![Block::Heading("judged against the true motion".to_owned()), Block::Facts(facts)];
+    if response.is_full() {
+        blocks.push(Block::Sentence(format!(
+            "There are {} branches, as many as are followed: others may be missing. A shorter range has fewer.",
+            response.branches.len()
+        )));
+    }
     let mut kinds: Vec<(Option<usize>, Option<usize>)> =
         response.elsewhere.iter().map(|place| (place.periods, place.drive_periods)).collect();
     kinds.sort();

@@ -363,6 +363,11 @@ impl ResponseDiagram {
         20 * wrong <= all && !self.elsewhere.iter().any(|place| place.periods == Some(1))
     }
 
+    /// Whether there are as many branches as are followed, so that more of them may be missing.
+    pub fn is_full(&self) -> bool {
+        self.branches.len() >= MOST_BRANCHES
+    }
+
     /// This response with the largest error of its points and simulations, and the verdict on it.
     fn with_verdict(mut self) -> Self {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
@@ -376,6 +381,7 @@ impl ResponseDiagram {
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
         let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
+        let missed = missed || self.is_full();
         self.verdict = Verdict::from_passed(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self

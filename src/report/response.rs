@@ -449,6 +449,15 @@ fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Blo
             ),
         ));
     }
+    if slow.beside > 0 {
+        facts.push((
+            "not compared",
+            format!(
+                "{} stable points beside a branch point, where the amplitude grows as a root of the distance",
+                slow.beside
+            ),
+        ));
+    }
     if let Some(spurious) = slow.spurious {
         let [low, high] = spurious.amplitudes.map(decimal);
         facts.push((

@@ -120,6 +120,10 @@ pub struct SlowDocument {
     pub largest_error: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
+    /// The number of stable points beside a branch point, which are not compared: there the amplitude
+    /// grows as a root of the distance. Left out where there are none.
+    #[serde(default, skip_serializing_if = "is_nothing")]
+    pub beside: usize,
     /// Steady motions of the truncated slow equations that are left out, at all values of the
     /// parameter together: at their amplitude the last order is more than half of the one before
     /// it. Left out where there are none.
@@ -145,6 +149,7 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
         states: slow.states.clone(),
         largest_error: slow.error,
         missing: slow.missing,
+        beside: slow.beside,
         spurious: slow.spurious.map_or(0, |spurious| spurious.count),
         verdict: slow.verdict.name().to_owned(),
     }

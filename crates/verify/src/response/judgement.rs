@@ -350,6 +350,7 @@ impl PreparedRequest<'_> {
             start: start(point),
             parameter: point.parameter,
             most,
+            known: vec![],
         });
         let settled = settle_together(&self.driven, &starts.collect::<Vec<_>>(), CLOSELY, budget);
         let run = |((point, _), settled): (&(&SteadyMotion, usize), Option<Settled>)| {

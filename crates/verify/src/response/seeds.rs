@@ -4,11 +4,11 @@ use nalgebra::DVector;
 
 use super::backbone::places_of_rest;
 use super::balance::DrivenBalance;
-use super::continuation::BranchPath;
+use super::continuation::{BranchNode, BranchPath};
 use super::free_swing::FreeSwings;
 use super::stability::{
-    MotionGuess, Settled, SettlingStart, SimulationBudget, first_harmonic, half_of_peak_to_peak,
-    periodic_motions, settle_together,
+    MotionGuess, Settled, SettlingStart, SimulationBudget, TrueMotion, first_harmonic,
+    half_of_peak_to_peak, periodic_motions, settle_together,
 };
 use super::{Elsewhere, PreparedRequest, ResponseError};
 use super::{melnikov, one_harmonic};
@@ -70,8 +70,12 @@ impl PreparedRequest<'_> {
         let values = self.values_of_search();
         let rings = if self.driven.undamped { 0 } else { TURNS as usize * RINGS.len() };
         self.question.progress.begin(values.len() * (1 + rings));
-        let mut found =
-            Search { motions: InitialMotions::default(), budget: self.budget(), size: 0.0 };
+        let mut found = Search {
+            motions: InitialMotions::default(),
+            budget: self.budget(),
+            size: 0.0,
+            stable: vec![],
+        };
         let known = self.search_from_rest(&balance, &values, &mut found);
         self.search_from_guesses(&balance, &values, known, &mut found);
         let seeds = &mut found.motions.seeds;
@@ -85,15 +89,41 @@ impl PreparedRequest<'_> {
             let extents = path.nodes.iter().map(|node| balance.core.extent(&node.coefficients));
             found.size = extents.fold(found.size, f64::max);
         }
-        found.motions.branches = branches;
         if !self.driven.undamped {
+            found.stable = self.stable_on(&balance, &branches, &values);
             self.search_from_rings(&values, &mut found);
         }
+        found.motions.branches = branches;
         Elsewhere::sort(&mut found.motions.elsewhere);
         match found.motions.seeds.is_empty() {
             true => Err(self.no_motion_error()),
             false => Ok(found.motions),
         }
+    }
+
+    /// The stable motions on these branches at values of the parameter, each with its value.
+    fn stable_on(
+        &self,
+        balance: &DrivenBalance,
+        branches: &[BranchPath],
+        values: &[f64],
+    ) -> Vec<(f64, TrueMotion)> {
+        let guess = |(pair, parameter): (&[BranchNode], f64)| {
+            let [one, other] = pair else { return None };
+            let part = one.part_of_way(other, parameter)?;
+            let [from, to] = [one, other].map(|node| node.begins(balance));
+            let start = [0, 1].map(|index| from[index] + part * (to[index] - from[index]));
+            Some(MotionGuess { start, parameter, size: balance.core.extent(&one.coefficients) })
+        };
+        let pairs = branches.iter().flat_map(|path| path.nodes.windows(2));
+        let pairs = pairs.flat_map(|pair| values.iter().map(move |value| (pair, *value)));
+        let guesses: Vec<MotionGuess> = pairs.filter_map(guess).collect();
+        let truths = periodic_motions(&self.driven, &guesses);
+        let stable = guesses.iter().zip(truths).filter_map(|(guess, truth)| {
+            let truth = truth.filter(|truth| truth.floquet.largest() < 1.0)?;
+            Some((guess.parameter, truth))
+        });
+        stable.collect()
     }
 
     /// The values of the parameter at which simulations begin.
@@ -400,10 +430,15 @@ impl PreparedRequest<'_> {
                 continue;
             }
             self.count([0, planned.len()], seeds.len());
+            let stable_at = |parameter: f64| {
+                let own = found.stable.iter().filter(|(value, _)| *value == parameter);
+                own.map(|(_, motion)| *motion).collect()
+            };
             let start = |planned: &PlannedSimulation| SettlingStart {
                 start: planned.start,
                 parameter: planned.parameter,
                 most: PERIODS,
+                known: stable_at(planned.parameter),
             };
             let starts: Vec<SettlingStart> = planned.iter().map(start).collect();
             let all = settle_together(&self.driven, &starts, CLOSELY, &mut found.budget);
@@ -433,6 +468,8 @@ struct Search {
     budget: SimulationBudget,
     /// The size of the largest motion.
     size: f64,
+    /// Stable motions of the first branches, each with its value of the parameter.
+    stable: Vec<(f64, TrueMotion)>,
 }
 
 /// A simulation to be followed until it settles.

@@ -4,7 +4,8 @@
 //! as that of multiple scales. Out: its steady motions over the range, and their errors at the
 //! stable points of the branches, whose true motions are known.
 
-use super::{ResponseDiagram, ResponseRequest};
+use super::bifurcation::BifurcationKind;
+use super::{ResponseDiagram, ResponseRequest, SteadyMotion};
 use crate::solution::Solution;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
@@ -43,6 +44,9 @@ pub struct SlowResponse {
     pub spurious: Option<Spurious>,
     /// Number of stable points.
     pub points: usize,
+    /// Number of stable points beside a branch point, which are not compared: there the amplitude
+    /// grows as a root of the distance, and a branch point that lies a little aside is a large error.
+    pub beside: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     pub verdict: Verdict,
 }
@@ -121,11 +125,16 @@ impl ResponseDiagram {
             }));
             spurious.extend(found.spurious);
         }
-        let (mut error, mut worst, mut missing, mut count) = (None::<f64>, None, 0, 0);
+        let (mut error, mut worst, mut missing, mut count, mut beside) =
+            (None::<f64>, None, 0, 0, 0);
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
         // At rest an amplitude is zero up to rounding.
         let smallest = NOTHING * points().map(|point| point.amplitude).fold(0.0, f64::max);
         for point in points().filter(|point| point.stable == Some(true)) {
+            if self.is_beside_branch_point(point) {
+                beside += 1;
+                continue;
+            }
             count += 1;
             let stable = motions_at(question, &solution, point.parameter).states.into_iter();
             let apart = stable
@@ -154,7 +163,23 @@ impl ResponseDiagram {
             missing,
             spurious: Spurious::from_states(&spurious),
             points: count,
+            beside,
         });
         self
+    }
+
+    /// Whether a point is near a branch point, in the parameter and in the amplitude.
+    fn is_beside_branch_point(&self, point: &SteadyMotion) -> bool {
+        /// Distances, as fractions of the range and of the largest amplitude.
+        const NEAR: f64 = 0.1;
+        const SMALL: f64 = 0.5;
+        let [low, high] = self.question.range;
+        let points = self.branches.iter().flat_map(|branch| &branch.points);
+        let largest = points.map(|point| point.amplitude).fold(0.0, f64::max);
+        self.bifurcations.iter().any(|found| {
+            found.kind == BifurcationKind::BranchPoint
+                && (point.parameter - found.parameter).abs() <= NEAR * (high - low)
+                && (point.amplitude - found.amplitude).abs() <= SMALL * largest
+        })
     }
 }

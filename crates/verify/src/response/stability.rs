@@ -447,7 +447,7 @@ impl Period {
 }
 
 /// A simulation that is to settle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SettlingStart {
     /// Position and velocity at phase zero.
     pub start: [f64; 2],
@@ -455,12 +455,16 @@ pub struct SettlingStart {
     pub parameter: f64,
     /// The largest number of periods.
     pub most: usize,
+    /// Stable motions that are known at this value of the parameter: a simulation that comes close to
+    /// one of them ends.
+    pub known: Vec<TrueMotion>,
 }
 
 /// Follows the equation as it was given from several starts, period by period, each until it repeats
 /// itself to `closely` (of its size), or its largest number of periods is over; the tolerance of a
 /// step is a thousandth of that. Those that have Taylor series go side by side. `None` for one that
-/// cannot be followed: it escapes, or the `budget` is spent.
+/// cannot be followed: it escapes, or the `budget` is spent; and for one that comes to a motion that is
+/// known.
 pub fn settle_together(
     driven: &Driven,
     starts: &[SettlingStart],
@@ -491,6 +495,7 @@ pub fn settle_together(
 /// A simulation in progress.
 struct Settling {
     parameter: f64,
+    known: Vec<TrueMotion>,
     /// The number of periods that are left.
     left: usize,
     /// The states at the beginning of each period.
@@ -502,8 +507,9 @@ struct Settling {
 
 impl Settling {
     fn new(start: &SettlingStart) -> Self {
-        let &SettlingStart { start, parameter, most } = start;
-        Self { parameter, left: most, states: vec![start], quiet: 0, last: None }
+        let &SettlingStart { start, parameter, most, ref known } = start;
+        let known = known.clone();
+        Self { parameter, known, left: most, states: vec![start], quiet: 0, last: None }
     }
 
     fn next_period(&self, driven: &Driven) -> TimedStart {
@@ -523,7 +529,26 @@ impl Settling {
     ) -> bool {
         self.last = if self.left == 0 { None } else { self.taken(driven, series, closely, budget) };
         self.left = self.left.saturating_sub(1);
+        if self.comes_to_known() {
+            self.last = None;
+        }
         self.last.is_some() && self.quiet < 3 && self.left > 0
+    }
+
+    /// Whether the last three states come nearer and nearer to a stable motion that is known, and are
+    /// close to it.
+    fn comes_to_known(&self) -> bool {
+        /// Ratio of the distance to the size of the motion.
+        const CLOSE: f64 = 1e-2;
+        let [.., one, two, three] = self.states.as_slice() else { return false };
+        self.known.iter().any(|motion| {
+            let distance = |state: &[f64; 2]| {
+                let [x, v] = motion.start;
+                (state[0] - x).hypot((state[1] - v) / motion.frequency)
+            };
+            let [one, two, three] = [one, two, three].map(distance);
+            one > two && two > three && three <= CLOSE * motion.peak
+        })
     }
 
     fn taken(

@@ -166,6 +166,8 @@ class SlowResponse(Document):
             over the amplitude; null where there is none.
         missing: Stable points of the branches near which the slow equations have no stable
             motion.
+        beside: The number of stable points beside a branch point, which are not compared: there
+            the amplitude grows as a root of the distance. Left out where there are none.
         spurious: Steady motions of the truncated slow equations that are left out, at all values
             of the parameter together: at their amplitude the last order is more than half of the
             one before it. Left out where there are none.
@@ -181,6 +183,7 @@ class SlowResponse(Document):
     states: tuple[SlowPoint, ...]
     largest_error: float | None
     missing: int
+    beside: int | None
     spurious: int | None
     verdict: Literal["pass", "fail"]
 
@@ -194,10 +197,11 @@ SlowResponse.FIELDS = (
     ("states", "states", several(SlowPoint.from_json)),
     ("largest_error", "largest_error", None),
     ("missing", "missing", None),
+    ("beside", "beside", None),
     ("spurious", "spurious", None),
     ("verdict", "verdict", None),
 )
-SlowResponse.OPTIONAL = frozenset(['spurious'])
+SlowResponse.OPTIONAL = frozenset(['beside', 'spurious'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

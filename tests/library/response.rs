@@ -563,6 +563,32 @@ fn slow_equations_come_nearer_with_their_order() {
     }
 }
 
+/// The principal parametric resonance: the edges of the tongue by slow equations of first order,
+/// `(Omega - 2)^2 = eps^2/4 - 4 zeta^2`, are a little aside of those of the branches, so that beside
+/// them no amplitude is compared; the others are right.
+#[test]
+fn slow_equations_of_a_parametric_resonance_pass() {
+    let equation = "x'' + 2*zeta*x' + (1 + eps*cos(Omega*t))*x + x^3 = 0";
+    let asked = question(equation, "Omega", [1.9, 2.1], "zeta = 1/200, eps = 1/20");
+    let asked = ResponseRequest { periods: 2, ..asked };
+    let options = lindstedt::Options {
+        method: Some(lindstedt::Method::MultipleScales),
+        resonance: Some((2, 1)),
+        ..lindstedt::Options::default()
+    };
+    let solution = solve(&asked.oscillator, &options).expect("slow equations");
+    let found = respond(&asked).expect("a response").with_slow_equations(solution);
+    let edges = places(&found, BifurcationKind::BranchPoint);
+    assert_eq!(edges.len(), 2, "{edges:?}");
+    let half = (0.05_f64.powi(2) / 4.0 - 4.0 * 0.005_f64.powi(2)).sqrt();
+    for edge in &edges {
+        assert!(((edge.parameter - 2.0).abs() - half).abs() < 1e-3, "{edge:?}");
+    }
+    let slow = found.slow.expect("states");
+    assert!(slow.beside > 20 && slow.points > 20 && slow.missing == 0, "{slow:?}");
+    assert_eq!(slow.verdict, Verdict::Pass, "{:?}", slow.error);
+}
+
 /// What jumps with the velocity on no line of places and velocities is refused by name; what has no
 /// jump is not, nor are several lines.
 #[test]

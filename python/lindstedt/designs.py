@@ -23,6 +23,10 @@ class Optimization(OptimizationDocument):
         """The first of the best designs; `None` where none was found."""
         return self.finalists[0].design if self.finalists else None
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the first two wishes of the best designs on `ax`, and returns the axes."""
+        return self.front.plot(ax)
+
 
 class Front(Table[Finalist]):
     """The best designs of searches."""

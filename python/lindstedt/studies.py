@@ -25,9 +25,11 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from contextlib import closing
 from typing import Any, Union
+from uuid import uuid4
 
 from . import commands
 from ._call import Call, Problem, Progress, Values, answer, asked, is_many
@@ -47,9 +49,22 @@ USUAL_TASKS = 64
 OF_LOST_WORKERS = ("KilledWorker", "CommClosedError")
 
 
-def lines_of(words: Sequence[str], input: str | None = None) -> str:
-    """The lines of a shard: what a worker does."""
-    return run_words(words, input)[0]
+#: The runs of studies that have been given up: workers that are threads of this process stop.
+GIVEN_UP: set[str] = set()
+
+
+class GivenUp(Exception):
+    """The run of the study to which a shard belongs has been given up."""
+
+
+def lines_of(words: Sequence[str], input: str | None = None, run: str | None = None) -> str:
+    """The lines of a shard: what a worker does; `run` is the name of the run of the study."""
+
+    def watch(_done: int, _all: int) -> None:
+        if run in GIVEN_UP:
+            raise GivenUp
+
+    return run_words(words, input, watch if run else None)[0]
 
 
 class Study:
@@ -145,11 +160,13 @@ class Study:
         points = 0
         for _ in range(retries + 1):
             lost: list[str] = []
-            for shard, lines in by(executor, call, shards, lost):
-                done.append(lines)
-                points += lines.count("\n") - 1
-                if progress is not None:
-                    progress(points, total)
+            # It is closed at once where the progress ends the work, so that running shards stop.
+            with closing(by(executor, call, shards, lost)) as results:
+                for shard, lines in results:
+                    done.append(lines)
+                    points += lines.count("\n") - 1
+                    if progress is not None:
+                        progress(points, total)
             shards = lost
             if not shards:
                 break
@@ -226,12 +243,14 @@ def words_of_shard(call: Call, shard: str) -> list[str]:
 
 def by(
     executor: Executor, call: Call, shards: list[str], lost: list[str]
-) -> Iterable[tuple[str, str]]:
+) -> Generator[tuple[str, str], None, None]:
     """Each shard with its lines as it is done; those whose workers are gone are added to `lost`."""
     running: dict[Future[str], str] = {}
+    run = uuid4().hex
     try:
         for shard in shards:
-            running[executor.submit(lines_of, words_of_shard(call, shard), call.input)] = shard
+            words = words_of_shard(call, shard)
+            running[executor.submit(lines_of, words, call.input, run)] = shard
     except (BrokenExecutor, RuntimeError):
         lost += [shard for shard in shards if shard not in running.values()]
     pending = set(running)
@@ -248,6 +267,8 @@ def by(
                 else:
                     yield running[future], lines
     finally:
+        if pending:
+            GIVEN_UP.add(run)
         for future in pending:
             future.cancel()
 

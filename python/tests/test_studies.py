@@ -13,6 +13,7 @@ from pathlib import Path
 
 import lindstedt as ls
 import pytest
+from lindstedt.studies import GivenUp
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 PROGRAM = [sys.executable, "-m", "lindstedt"]
@@ -231,3 +232,29 @@ def test_a_shard_that_is_killed_half_way(tmp_path):
     again.write_bytes(subprocess.run([*PROGRAM, *words], stdout=subprocess.PIPE).stdout)
     assert ls.collect([killed, other, again]).equals(whole)
     assert study.run().equals(whole)
+
+
+class KeepingPool(ThreadPoolExecutor):
+    """Threads that keep what they were given."""
+
+    def __init__(self):
+        super().__init__(1)
+        self.given = []
+
+    def submit(self, work, *arguments):
+        self.given.append(super().submit(work, *arguments))
+        return self.given[-1]
+
+
+def test_shards_that_run_in_threads_stop_where_the_study_is_given_up():
+    def give_up(done, total):
+        raise RuntimeError("enough")
+
+    study = ls.Study("x'' + c*x' + sin(x) = 0", x=1.5, until=2000, c=(0.001, 0.002, 1200))
+    with KeepingPool() as pool:
+        with pytest.raises(RuntimeError, match="enough"):
+            study.run(executor=pool, tasks=3, progress=give_up)
+    first, second, third = pool.given
+    assert first.result().count("\n") == 401
+    assert isinstance(second.exception(), GivenUp)
+    assert third.cancelled()

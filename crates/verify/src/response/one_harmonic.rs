@@ -13,7 +13,7 @@
 //!
 //! In: the equation, X and a value of the parameter. Out: motions from which a balance of all
 //! harmonics, or shooting, is to start. Amplitudes and phases are looked at on a grid over four
-//! decades, and a guess is a cell in which both equations change their signs: ten thousand
+//! decades, and a guess is a cell in which both equations change their signs: some four thousand
 //! evaluations of the force for each harmonic up to the number of drive periods, more for higher ones.
 
 use std::f64::consts::TAU;
@@ -30,8 +30,8 @@ const PHASES: usize = 12;
 const BELOW: i32 = 1;
 const ABOVE: i32 = 3;
 
-/// Samples in a period of the fastest of the harmonics.
-const SAMPLES: usize = 16;
+/// Samples in a period of the fastest of the harmonics: the products of a cubic force are exact.
+const SAMPLES: usize = 8;
 
 /// A motion X and one of its harmonics.
 struct Harmonic<'a> {

@@ -171,11 +171,13 @@ impl PreparedRequest<'_> {
         mut known: Vec<KnownMotion>,
         found: &mut Search,
     ) {
-        /// Number of values for each of those at which simulations begin.
-        const BETWEEN: u32 = 3;
+        /// Number of values for each of those at which simulations begin, by a balance and by
+        /// shooting, which costs more.
+        const BETWEEN: [u32; 2] = [3, 1];
         let [low, high] = self.question.range;
-        for index in 0..BETWEEN * VALUES {
-            let part = (f64::from(index) + 0.5) / f64::from(BETWEEN * VALUES);
+        let count = VALUES * BETWEEN[usize::from(self.period_series.is_some())];
+        for index in 0..count {
+            let part = (f64::from(index) + 0.5) / f64::from(count);
             let parameter = low + (high - low) * part;
             let motions = self.motions_from_rest(balance, parameter, &mut found.size);
             known.extend(motions.into_iter().map(|(motion, _)| motion));
@@ -187,7 +189,8 @@ impl PreparedRequest<'_> {
             }
             let (motions, starts) = self.of_every_size(balance, motion, found.size);
             found.motions.seeds.extend(motions);
-            if values.contains(&motion.parameter) {
+            // A smooth force leads nearly every guess to its motion.
+            if !self.driven.smooth && values.contains(&motion.parameter) {
                 without.extend(starts);
             }
         }

@@ -332,7 +332,7 @@ impl Case {
     }
 }
 
-/// What is wrong with the response of a case, or a line about it.
+/// Compares the response of a case with its stable motions: a line about it, or its fault as an error.
 fn judged(case: &Case, seed: u64) -> Result<String, String> {
     let Case { parameter, range: [low, high], periods, .. } = case;
     let text = case.text();

@@ -48,18 +48,16 @@ pub fn backbones(
     range: [f64; 2],
     size: f64,
 ) -> Result<Vec<Vec<BackbonePoint>>, ResponseError> {
-    let Ok(parts) = oscillator.parts() else {
+    let Some(free) = free_oscillator(oscillator) else {
         return Ok(vec![]);
     };
     let is_size = size > 0.0 && size.is_finite();
     if !is_size || !driven.frequency.contains(driven.parameter) {
         return Ok(vec![]);
     }
-    let force = Expr::sum([parts.restoring, parts.inertia]);
-    if force.contains(driven.parameter) {
+    if free.force.contains(driven.parameter) {
         return Ok(vec![]);
     }
-    let free = Oscillator { force, ..oscillator.clone() };
     let swings = by_series.then(|| FreeSwings::new(&free, driven.parameter)).flatten();
     let free =
         Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
@@ -82,6 +80,13 @@ pub fn backbones(
         }
     }
     Ok(curves)
+}
+
+/// The oscillator without damping and drive; `None` if its force has no such parts.
+pub(super) fn free_oscillator(oscillator: &Oscillator) -> Option<Oscillator> {
+    let parts = oscillator.parts().ok()?;
+    let force = Expr::sum([parts.restoring, parts.inertia]);
+    Some(Oscillator { force, ..oscillator.clone() })
 }
 
 /// The stable equilibria nearest to zero.

@@ -94,6 +94,7 @@ fn starts_on(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::response::backbone::free_oscillator;
     use crate::response::stability::{MotionGuess, periodic_motion};
     use crate::response::{PreparedRequest, ResponseRequest};
 
@@ -109,7 +110,7 @@ mod tests {
                 format!("x'' + {c}*x' + x + 50*max(x - 1/2, 0)^(3/2) = {drive}*cos(w*t)");
             let question = ResponseRequest::new(&equation, "w", [1.0, 2.0], "").expect("a request");
             let asked = PreparedRequest::new(&question).expect("a request");
-            let free = asked.free().expect("an oscillator");
+            let free = free_oscillator(&asked.oscillator).expect("an oscillator");
             let swings = FreeSwings::at(&free, (question.parameter, 1.4)).expect("series");
             let found = guesses(&asked.driven, &swings, (0.0, 1.4), 1, 0.5);
             assert_eq!(found.len(), 2, "{found:?}");

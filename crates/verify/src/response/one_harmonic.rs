@@ -21,6 +21,7 @@ use std::f64::consts::TAU;
 use nalgebra::DVector;
 
 use super::balance::DrivenBalance;
+use super::driven::Driven;
 
 /// Number of amplitudes in a decade, and of phases.
 const EACH_DECADE: i32 = 8;
@@ -35,7 +36,7 @@ const SAMPLES: usize = 8;
 
 /// A motion X and one of its harmonics.
 struct Harmonic<'a> {
-    balance: &'a DrivenBalance<'a>,
+    driven: &'a Driven,
     /// The coefficients of X, the harmonic itself left out.
     known: DVector<f64>,
     samples: Vec<Sample>,
@@ -131,7 +132,7 @@ impl<'a> Harmonic<'a> {
         };
         let samples = (0..count).map(sample).collect();
         let omega = balance.driven.frequency_at(parameter);
-        Self { balance, known, samples, number, omega, parameter }
+        Self { driven: balance.driven, known, samples, number, omega, parameter }
     }
 
     /// X with this harmonic and mean.
@@ -184,7 +185,7 @@ impl<'a> Harmonic<'a> {
             let sine = wave[1] * phase_cosine - wave[0] * phase_sine;
             let position = x + mean + amplitude * cosine;
             let at = [position, v - amplitude * speed * sine, theta, self.parameter];
-            let force = self.balance.driven.force(&at);
+            let force = self.driven.force(&at);
             sums.mean += force / count;
             sums.cosine += force * cosine / count;
             sums.sine += force * sine / count;

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::backbone::places_of_rest;
+use super::backbone::{free_oscillator, places_of_rest};
 use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
 use super::free_swing::FreeSwings;
@@ -12,8 +12,6 @@ use super::stability::{
 };
 use super::{Elsewhere, PreparedRequest, ResponseError};
 use super::{melnikov, one_harmonic};
-use crate::expr::Expr;
-use crate::oscillator::Oscillator;
 use crate::system::LANES;
 
 /// Number of values of the parameter at which simulations begin.
@@ -304,7 +302,10 @@ impl PreparedRequest<'_> {
             Some((seed, _)) => motions.push(seed),
             None => without.push(PlannedSimulation { seed: None, start, parameter }),
         };
-        let swings = || FreeSwings::at(&self.free()?, (self.question.parameter, parameter));
+        let swings = || {
+            let free = free_oscillator(&self.oscillator)?;
+            FreeSwings::at(&free, (self.question.parameter, parameter))
+        };
         match self.period_series.as_ref().and_then(|_| swings()) {
             Some(swings) => {
                 let at = (place, parameter);
@@ -327,13 +328,6 @@ impl PreparedRequest<'_> {
             self.keep_true(balance, &mut motions);
         }
         (motions, without)
-    }
-
-    /// The oscillator without damping and drive.
-    pub(super) fn free(&self) -> Option<Oscillator> {
-        let parts = self.oscillator.parts().ok()?;
-        let force = Expr::sum([parts.restoring, parts.inertia]);
-        Some(Oscillator { force, ..self.oscillator.clone() })
     }
 
     /// Keeps the motions of a balance beside which shooting finds a true one: with few harmonics a

@@ -129,7 +129,7 @@ mod tests {
         }
     }
 
-    /// What does not vanish about zero stays as it is.
+    /// A term that does not vanish about zero stays as it is.
     #[test]
     fn other_corners_stay() {
         for force in [

@@ -20,5 +20,7 @@ pub mod system;
 
 pub mod mechanics;
 
+pub mod coupled;
+
 pub use interrupt::{Interrupt, Progress};
 pub use symbol::Symbol;

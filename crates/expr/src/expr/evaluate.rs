@@ -106,10 +106,36 @@ pub struct CompiledFunction(CompiledFunctions<1>);
 /// ```
 #[derive(Clone, Debug)]
 pub struct CompiledFunctions<const N: usize> {
+    list: InstructionList,
+    results: [usize; N],
+}
+
+/// A number of expressions that is known at run time only, of the same arguments, as one list of
+/// floating-point operations, as in [`CompiledFunctions`].
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::expr::{CompiledList, parse_expression};
+/// let texts = ["x + y", "x*y", "3"];
+/// let expressions = texts.map(|text| parse_expression(text).expect("a text"));
+/// let all = CompiledList::new(&expressions, &["x".into(), "y".into()])?;
+/// let mut values = [0.0; 3];
+/// all.call(&[2.0, 5.0], &mut vec![], &mut values);
+/// assert_eq!(values, [7.0, 10.0, 3.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CompiledList {
+    list: InstructionList,
+    results: Vec<usize>,
+}
+
+/// The operations that compute all results.
+#[derive(Clone, Debug)]
+struct InstructionList {
     argument_count: usize,
     constants: Vec<f64>,
     instructions: Vec<Instruction>,
-    results: [usize; N],
 }
 
 /// Operands are places in one row of values: arguments, constants, then the result of each
@@ -155,19 +181,10 @@ impl<const N: usize> CompiledFunctions<N> {
     /// # Errors
     /// A symbol of an expression is not among the arguments.
     pub fn new(expressions: [&Expr; N], arguments: &[Symbol]) -> Result<Self, EvaluationError> {
-        let mut compiler = Compiler {
-            arguments,
-            known: HashMap::new(),
-            sizes: HashMap::new(),
-            constants: Vec::new(),
-            code: Vec::new(),
-        };
-        let mut results = [ValueLocation::Argument(0); N];
-        for (result, expr) in results.iter_mut().zip(expressions) {
-            *result =
-                expr.fold(|node, children: &[ValueLocation]| compiler.node(node, children))?;
-        }
-        Ok(compiler.finish(results))
+        let mut places = [0; N];
+        let (list, found) = InstructionList::new(expressions.into_iter(), arguments)?;
+        places.copy_from_slice(&found);
+        Ok(Self { list, results: places })
     }
 
     /// The values at these arguments, as those of [`CompiledFunction::call`].
@@ -175,8 +192,8 @@ impl<const N: usize> CompiledFunctions<N> {
         // Most forces are short: clearing more places than they need would take a fifth of a call.
         const SHORT: usize = 16;
         const LONG: usize = 64;
-        let size = self.argument_count + self.constants.len() + self.instructions.len();
-        if arguments.len() != self.argument_count {
+        let size = self.list.size();
+        if arguments.len() != self.list.argument_count {
             return [f64::NAN; N];
         }
         if size <= SHORT {
@@ -189,6 +206,63 @@ impl<const N: usize> CompiledFunctions<N> {
     }
 
     fn run(&self, arguments: &[f64], values: &mut [f64]) -> [f64; N] {
+        self.list.run(arguments, values);
+        self.results.map(|result| values[result])
+    }
+}
+
+impl CompiledList {
+    /// Translates the expressions; [`CompiledList::call`] will take the values of these symbols in
+    /// this order.
+    ///
+    /// # Errors
+    /// A symbol of an expression is not among the arguments.
+    pub fn new(expressions: &[Expr], arguments: &[Symbol]) -> Result<Self, EvaluationError> {
+        let (list, results) = InstructionList::new(expressions.iter(), arguments)?;
+        Ok(Self { list, results })
+    }
+
+    /// Writes the values at these arguments into `values`; `scratch` is memory that calls share.
+    /// The values are NaN if the number of arguments is not that of the symbols.
+    pub fn call(&self, arguments: &[f64], scratch: &mut Vec<f64>, values: &mut [f64]) {
+        if arguments.len() != self.list.argument_count {
+            values.fill(f64::NAN);
+            return;
+        }
+        scratch.resize(self.list.size(), 0.0);
+        self.list.run(arguments, scratch);
+        for (value, result) in values.iter_mut().zip(&self.results) {
+            *value = scratch[*result];
+        }
+    }
+}
+
+impl InstructionList {
+    /// The operations for these expressions, and the places of their values.
+    fn new<'a>(
+        expressions: impl Iterator<Item = &'a Expr>,
+        arguments: &[Symbol],
+    ) -> Result<(Self, Vec<usize>), EvaluationError> {
+        let mut compiler = Compiler {
+            arguments,
+            known: HashMap::new(),
+            sizes: HashMap::new(),
+            constants: Vec::new(),
+            code: Vec::new(),
+        };
+        let compiled = expressions
+            .map(|expr| expr.fold(|node, parts: &[ValueLocation]| compiler.node(node, parts)));
+        let results: Vec<ValueLocation> = compiled.collect::<Result<_, _>>()?;
+        Ok(compiler.finish(&results))
+    }
+
+    /// The number of places: arguments, constants and results of operations.
+    fn size(&self) -> usize {
+        self.argument_count + self.constants.len() + self.instructions.len()
+    }
+
+    /// Computes the result of every operation.
+    fn run(&self, arguments: &[f64], values: &mut [f64]) {
         let constants_end = arguments.len() + self.constants.len();
         values[..arguments.len()].copy_from_slice(arguments);
         values[arguments.len()..constants_end].copy_from_slice(&self.constants);
@@ -211,7 +285,6 @@ impl<const N: usize> CompiledFunctions<N> {
                 Instruction::Binary(function, a, b) => function(values[a], values[b]),
             };
         }
-        self.results.map(|result| values[result])
     }
 }
 
@@ -514,7 +587,7 @@ impl Compiler<'_> {
 
     /// Removes unused constants and operations, such as reciprocals that became divisions, and
     /// numbers the others.
-    fn finish<const N: usize>(self, results: [ValueLocation; N]) -> CompiledFunctions<N> {
+    fn finish(self, results: &[ValueLocation]) -> (InstructionList, Vec<usize>) {
         let mut constant_used = vec![false; self.constants.len()];
         let mut result_used = vec![false; self.code.len()];
         let mut mark = |slot: ValueLocation, results: &mut [bool]| match slot {
@@ -522,7 +595,7 @@ impl Compiler<'_> {
             ValueLocation::Constant(place) => constant_used[place] = true,
             ValueLocation::Result(place) => results[place] = true,
         };
-        results.into_iter().for_each(|result| mark(result, &mut result_used));
+        results.iter().for_each(|result| mark(*result, &mut result_used));
         for (place, operation) in self.code.iter().enumerate().rev() {
             if result_used[place] {
                 for slot in operation.operands().into_iter().flatten() {
@@ -538,14 +611,13 @@ impl Compiler<'_> {
             ValueLocation::Constant(index) => constant_places[index],
             ValueLocation::Result(index) => result_places[index],
         };
-        CompiledFunctions {
+        let instructions = kept(self.code, &result_used).map(|operation| operation.resolve(place));
+        let list = InstructionList {
             argument_count,
             constants: kept(self.constants, &constant_used).collect(),
-            instructions: kept(self.code, &result_used)
-                .map(|operation| operation.resolve(place))
-                .collect(),
-            results: results.map(place),
-        }
+            instructions: instructions.collect(),
+        };
+        (list, results.iter().map(|result| place(*result)).collect())
     }
 }
 
@@ -697,7 +769,7 @@ mod tests {
         let names: Vec<Symbol> = ["x", "x'", "xc", "gamma", "mu"].map(Symbol::new).to_vec();
         let compiled = CompiledFunction::new(&force, &names).unwrap();
         // sin, -xc, x - xc, its root, its power, mu*x', + gamma, *, H, gate, +
-        assert!(compiled.0.instructions.len() <= 11, "{compiled:?}");
+        assert!(compiled.0.list.instructions.len() <= 11, "{compiled:?}");
         let expected = 0.5_f64.sin() + (2.0 + 3.0 * 0.1) * 0.25_f64.powi(3);
         assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
         let quotient =

@@ -63,13 +63,13 @@ use num_traits::{One, Signed, Zero};
 use crate::exact::rational::Rational;
 use crate::symbol::Symbol;
 
-pub use evaluate::{CompiledFunction, CompiledFunctions, EvaluationError};
+pub use evaluate::{CompiledFunction, CompiledFunctions, CompiledList, EvaluationError};
 pub use function::Function;
 // Problem files show the place of an error in the same way.
 pub use parse::excerpt;
 pub use parse::{
     Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar, expression_in_grammar,
-    parse_equation, parse_expression,
+    parse_equation, parse_equations, parse_expression,
 };
 pub use print::Fraction;
 pub use print::Inside;

@@ -140,6 +140,51 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
     }
 }
 
+/// Reads equations that are separated by `;`, such as `x'' + x - y = 0; y'' + y - x = 0`, each as
+/// its left and its right side, which is 0 if there is no equals sign.
+///
+/// # Errors
+/// See [`ParseError`]; its place is that in the whole text.
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::expr::parse_equations;
+///
+/// let [first, second] = &parse_equations("x'' + 2*x = y; y'' + 2*y - x")?[..] else { panic!() };
+/// assert_eq!((first.0.to_string(), first.1.to_string()), ("x'' + 2*x".to_owned(), "y".to_owned()));
+/// assert!(second.1.is_zero() && parse_equations("x'' = y; y'' = 2 x").is_err());
+/// # Ok::<(), lindstedt::expr::ParseError>(())
+/// ```
+pub fn parse_equations(text: &str) -> Result<Vec<(Expr, Expr)>, ParseError> {
+    let mut equations = Vec::new();
+    let mut first = 0;
+    let count = text.trim_end().trim_end_matches(';').split(';').count();
+    for part in text.split(';').take(count) {
+        let own = |error: ParseError| error.within(text, first);
+        equations.push(sides(part).map_err(own)?);
+        first += part.len() + 1;
+    }
+    Ok(equations)
+}
+
+/// Reads the two sides of an equation.
+fn sides(text: &str) -> Result<(Expr, Expr), ParseError> {
+    let mut parser = Parser::new(text, true)?;
+    let left = parser.sum()?;
+    let mut right = Expr::zero();
+    if parser.peek() == TokenKind::Equals {
+        parser.advance();
+        right = parser.sum()?;
+    }
+    match parser.peek() {
+        TokenKind::End => Ok((left, right)),
+        TokenKind::Equals => {
+            Err(parser.error(parser.token().span(), "a second `=`", "an equation has one"))
+        }
+        _ => Err(parser.unexpected()),
+    }
+}
+
 struct Parser<'a> {
     text: &'a str,
     /// The tokens, the last of which is `End`; the parser never advances beyond it.

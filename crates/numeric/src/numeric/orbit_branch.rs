@@ -2,21 +2,23 @@
 //! on the map of a period.
 //!
 //! ```text
-//! P(y; p): the state a period after y,  M = dP/dy        [M - 1   f(y_T)   P_p]        [P - y]
-//! driven:      P(y; p) = y,   unknowns y, p              [f(y_0)^T   0      0 ] du = - [  0  ]
-//! autonomous:  P(y, T; p) = y,   unknowns y, T, p        [        t^T         ]        [t . (u - guess)]
+//! P(y; p) = y,   M = dP/dy          [M - 1   P_p]        [P - y            ]
+//!                                   [    t^T    ] du = - [t . (u - guess)  ]
 //! ```
 //!
-//! The second row and column are those of autonomous equations, whose period T is an unknown and
-//! whose orbit may begin anywhere on itself: a step is at right angles to the flow. The multipliers
-//! of each orbit are known with it, and no truncation is involved, however sharp the turns of a
-//! motion are (H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press 1977; R. Seydel,
-//! *Practical Bifurcation and Stability Analysis*, Springer 2010, chapters 4 and 7). In: the map of
-//! a period with its derivatives, as a closure. Out: the orbits of a branch, both ways, with
-//! tangents, and the reasons why it ends.
+//! The multipliers of each orbit are known with it, and no truncation is involved, however sharp the
+//! turns of a motion are (H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press
+//! 1977; R. Seydel, *Practical Bifurcation and Stability Analysis*, Springer 2010, chapters 4 and
+//! 7). In: the map of a period with its derivatives, as a closure. Out: the orbits of a branch, both
+//! ways, with tangents, and the reasons why it ends.
+//!
+//! Without a drive the period T is an unknown, and the orbit may begin anywhere on itself. It is then
+//! one more state, which the map changes by a condition on the beginning, s(y) = 0, that fixes the
+//! place on the orbit: `(y, T) -> (P(y, T), T + s(y))`. The condition is to be the same along the
+//! branch, so that its points lie on one curve.
 //!
 //! A point costs two or three periods with their variations, and as many linear equations of n + 1
-//! or n + 2 unknowns.
+//! unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -30,11 +32,8 @@ pub struct PeriodImage<Path> {
     pub end: DVector<f64>,
     /// Its derivative by the state at the beginning.
     pub by_start: DMatrix<f64>,
-    /// Its derivative by the parameter, the period being fixed.
+    /// Its derivative by the parameter.
     pub by_parameter: DVector<f64>,
-    /// The rates of the states at the beginning and at the end of autonomous equations, whose
-    /// period is an unknown; `None` for driven equations.
-    pub rates: Option<[DVector<f64>; 2]>,
     /// The motion as it was followed.
     pub path: Path,
 }
@@ -42,7 +41,7 @@ pub struct PeriodImage<Path> {
 /// An orbit of a branch.
 #[derive(Clone, Debug)]
 pub struct OrbitPoint<Kept> {
-    /// The state at the beginning, then the period if it is an unknown, then the parameter.
+    /// The state at the beginning, then the parameter.
     pub unknowns: DVector<f64>,
     /// The derivative of the state after a period by the state at the beginning.
     pub monodromy: DMatrix<f64>,
@@ -121,24 +120,22 @@ pub struct OrbitBranchLimits {
 /// // x' = -x + p + cos t over 2 pi: x(0) = p + 1/2, and the multiplier is exp(-2 pi).
 /// let vector = |values: &[f64]| DVector::from_column_slice(values);
 /// let decay = (-std::f64::consts::TAU).exp();
-/// let map = |start: &DVector<f64>, _: f64, p: f64| {
+/// let map = |start: &DVector<f64>, p: f64| {
 ///     let steady = p + 0.5;
 ///     Some(PeriodImage {
 ///         end: vector(&[steady + decay * (start[0] - steady)]),
 ///         by_start: DMatrix::from_element(1, 1, decay),
 ///         by_parameter: vector(&[1.0 - decay]),
-///         rates: None,
-///         path: (),
+/// ///         path: (),
 ///     })
 /// };
 /// let limits = OrbitBranchLimits { range: [0.0, 1.0], longest: 0.1, most: 100, interrupt: Interrupt::default() };
 /// let equations = OrbitEquations {
-///     period: std::f64::consts::TAU,
 ///     map: &map,
 ///     keep: &|_, _| (),
 ///     sizes: &|_| vector(&[1.0, 1.0]),
 /// };
-/// let first = equations.orbit_at(&vector(&[0.3]), 0.5, &vector(&[1.0, 1.0]), 1).ok_or("none")?;
+/// let first = equations.orbit_at(&vector(&[0.3]), 0.5, &vector(&[1.0, 1.0])).ok_or("none")?;
 /// let (points, ends) = equations.branch_through(first, &limits, &|_| false);
 /// assert_eq!(ends, [OrbitBranchEnd::Range; 2]);
 /// let ends = [(0, [0.5, 0.0]), (points.len() - 1, [1.5, 1.0])];
@@ -146,11 +143,8 @@ pub struct OrbitBranchLimits {
 /// # Ok::<(), &str>(())
 /// ```
 pub struct OrbitEquations<'a, Path, Kept> {
-    /// The period of driven equations, which does not depend on the parameter: time is counted in
-    /// the phase of the drive. A guess of it for autonomous equations.
-    pub period: f64,
-    /// The motion over a period from a state, with the period and the parameter; `None` if it
-    /// cannot be followed.
+    /// The motion over a period from a state with the parameter; `None` if it cannot be followed.
+    /// Where the period depends on the parameter, time is counted in the phase of the drive.
     pub map: &'a PeriodMap<'a, Path>,
     /// The data that are kept of an orbit with these unknowns.
     pub keep: &'a dyn Fn(&DVector<f64>, &PeriodImage<Path>) -> Kept,
@@ -158,15 +152,14 @@ pub struct OrbitEquations<'a, Path, Kept> {
     pub sizes: &'a dyn Fn(&OrbitPoint<Kept>) -> DVector<f64>,
 }
 
-/// The map of a period, of the state at its beginning, the period and the parameter.
-pub type PeriodMap<'a, Path> = dyn Fn(&DVector<f64>, f64, f64) -> Option<PeriodImage<Path>> + 'a;
+/// The map of a period, of the state at its beginning and the parameter.
+pub type PeriodMap<'a, Path> = dyn Fn(&DVector<f64>, f64) -> Option<PeriodImage<Path>> + 'a;
 
 impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
-    /// The motion of a period and the number of states.
-    fn image(&self, unknowns: &DVector<f64>, states: usize) -> Option<PeriodImage<Path>> {
-        let parameter = unknowns[unknowns.len() - 1];
-        let period = if unknowns.len() == states + 2 { unknowns[states] } else { self.period };
-        (self.map)(&unknowns.rows(0, states).into_owned(), period, parameter)
+    /// The motion of a period.
+    fn image(&self, unknowns: &DVector<f64>) -> Option<PeriodImage<Path>> {
+        let states = unknowns.len() - 1;
+        (self.map)(&unknowns.rows(0, states).into_owned(), unknowns[states])
     }
 
     /// The bordered Jacobian in these sizes, and the residual of all its rows but the last.
@@ -187,12 +180,6 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             }
             jacobian[(i, count - 1)] = image.by_parameter[i] * sizes[count - 1] / sizes[i];
         }
-        if let Some([there, back]) = &image.rates {
-            for i in 0..states {
-                jacobian[(i, states)] = back[i] * sizes[states] / sizes[i];
-                jacobian[(states, i)] = there[i] * sizes[states] / sizes[i];
-            }
-        }
         (continuation::bordered(&jacobian, row), missed)
     }
 
@@ -204,7 +191,6 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         guess: &DVector<f64>,
         direction: &DVector<f64>,
         sizes: &DVector<f64>,
-        states: usize,
     ) -> Option<(OrbitPoint<Kept>, usize)> {
         const MOST: usize = 12;
         /// Length of a step below which Newton's method has converged.
@@ -217,7 +203,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         let mut unknowns = guess.clone();
         let mut before = f64::INFINITY;
         for periods in 1..=MOST {
-            let image = self.image(&unknowns, states)?;
+            let image = self.image(&unknowns)?;
             let (matrix, mut missed) = Self::bordered(&image, &unknowns, direction, sizes);
             let away = (&unknowns - guess).component_div(sizes);
             missed[unknowns.len() - 1] = direction.dot(&away);
@@ -238,7 +224,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
                 true => (image, factors),
                 false => {
                     unknowns -= step.component_mul(sizes);
-                    let image = self.image(&unknowns, states)?;
+                    let image = self.image(&unknowns)?;
                     let (matrix, _) = Self::bordered(&image, &unknowns, direction, sizes);
                     (image, matrix.lu())
                 }
@@ -257,19 +243,28 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         None
     }
 
-    /// The orbit at a parameter near a state, to which the period is appended if it is an unknown;
-    /// its tangent leads to larger parameters. `None` if Newton's method does not converge.
+    /// The orbit at a parameter near a state; its tangent leads to larger parameters. `None` if Newton's method does not converge.
     pub fn orbit_at(
         &self,
         guess: &DVector<f64>,
         parameter: f64,
         sizes: &DVector<f64>,
-        states: usize,
     ) -> Option<OrbitPoint<Kept>> {
         let mut direction = DVector::zeros(guess.len() + 1);
         direction[guess.len()] = 1.0;
         let guess = guess.clone().push(parameter);
-        self.corrected(&guess, &direction, sizes, states).map(|(point, _)| point)
+        self.corrected(&guess, &direction, sizes).map(|(point, _)| point)
+    }
+
+    /// The orbit near a guess of all unknowns, at right angles to a direction, which has length one
+    /// in these sizes. `None` if Newton's method does not converge.
+    pub fn orbit_along(
+        &self,
+        guess: &DVector<f64>,
+        direction: &DVector<f64>,
+        sizes: &DVector<f64>,
+    ) -> Option<OrbitPoint<Kept>> {
+        self.corrected(guess, direction, sizes).map(|(point, _)| point)
     }
 
     /// The orbit between two of a branch, at this fraction of the way.
@@ -286,8 +281,8 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         if length == 0.0 {
             return Some(from.clone());
         }
-        let (guess, states) = (&from.unknowns + way * part, from.monodromy.nrows());
-        self.corrected(&guess, &(direction / length), &sizes, states).map(|(point, _)| point)
+        let guess = &from.unknowns + way * part;
+        self.corrected(&guess, &(direction / length), &sizes).map(|(point, _)| point)
     }
 
     /// The orbit after the last of these at this distance, and the number of periods that were
@@ -299,7 +294,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         const SHARPEST: f64 = 0.94;
         const FARTHEST: f64 = 1.5;
         let here = points.last()?;
-        let (sizes, states) = ((self.sizes)(here), here.monodromy.nrows());
+        let sizes = (self.sizes)(here);
         let along = |point: &OrbitPoint<Kept>| point.tangent.component_div(&sizes).normalize();
         let tangent = along(here);
         let mut ahead = &tangent * length;
@@ -315,7 +310,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             }
         }
         let guess = &here.unknowns + ahead.component_mul(&sizes);
-        self.corrected(&guess, &tangent, &sizes, states).filter(|(point, _)| {
+        self.corrected(&guess, &tangent, &sizes).filter(|(point, _)| {
             let moved = (&point.unknowns - &here.unknowns).component_div(&sizes).norm();
             along(point).dot(&tangent) > SHARPEST && moved < FARTHEST * length
         })
@@ -415,7 +410,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
     ) -> bool {
         /// Ratio to the step of the distance below which two orbits are one.
         const SAME: f64 = 1e-3;
-        let (sizes, states) = ((self.sizes)(here), here.monodromy.nrows());
+        let sizes = (self.sizes)(here);
         let from = here.unknowns.component_div(&sizes);
         let way = next.unknowns.component_div(&sizes) - &from;
         let length = way.norm();
@@ -433,7 +428,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             }
             // The orbit of the branch at right angles to the way through the known one.
             let guess = &here.unknowns + (&next.unknowns - &here.unknowns) * along;
-            let found = self.corrected(&guess, &(&way / length), &sizes, states);
+            let found = self.corrected(&guess, &(&way / length), &sizes);
             found.is_some_and(|(found, _)| {
                 (&found.unknowns - &point.unknowns).component_div(&sizes).norm() < SAME * length
             })
@@ -460,18 +455,18 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         const ASIDE: f64 = 0.05;
         /// Part of a unit vector by which the way ahead is turned aside.
         const TURNED: f64 = 0.5;
-        let (sizes, states) = ((self.sizes)(here), here.monodromy.nrows());
+        let sizes = (self.sizes)(here);
         let tangent = here.tangent.component_div(&sizes).normalize();
         let beyond = |length: f64, ahead: &DVector<f64>, keeps: bool| {
             let there = &here.unknowns + (ahead * length).component_mul(&sizes);
-            let image = self.image(&there, states)?;
+            let image = self.image(&there)?;
             let (matrix, _) = Self::bordered(&image, &there, &tangent, &sizes);
             let rows = matrix.rows(0, matrix.nrows() - 1);
             let along = least_changed(&(rows.transpose() * rows), None)?;
             [1.0, -1.0].into_iter().find_map(|sign| {
                 let direction = &along * sign;
                 let guess = &here.unknowns + (&direction * length).component_mul(&sizes);
-                let (point, _) = self.corrected(&guess, &direction, &sizes, states)?;
+                let (point, _) = self.corrected(&guess, &direction, &sizes)?;
                 let way = (&point.unknowns - &here.unknowns).component_div(&sizes);
                 let aside = (&way - &tangent * way.dot(&tangent)).norm();
                 let [low, high] = limits.range;
@@ -482,6 +477,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
                 is_beyond.then_some((point, length))
             })
         };
+        let states = here.unknowns.len() - 1;
         let turned = (0..states).flat_map(|state| [TURNED, -TURNED].map(|part| (state, part)));
         let turned = turned.map(|(state, part)| {
             let mut ahead = tangent.clone();
@@ -510,7 +506,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         const ASIDE: f64 = 0.03;
         /// Length of a step short enough to locate the end of the range.
         const SHORT: f64 = 1e-4;
-        let (sizes, states) = ((self.sizes)(inside), inside.monodromy.nrows());
+        let sizes = (self.sizes)(inside);
         let count = inside.unknowns.len();
         let way = outside.parameter() - inside.parameter();
         if inside.parameter() == bound {
@@ -521,7 +517,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         guess[count - 1] = bound;
         let mut direction = DVector::zeros(count);
         direction[count - 1] = way.signum();
-        let found = self.corrected(&guess, &direction, &sizes, states).map(|(point, _)| point);
+        let found = self.corrected(&guess, &direction, &sizes).map(|(point, _)| point);
         let found =
             found.filter(|point| (&point.unknowns - &guess).component_div(&sizes).norm() <= ASIDE);
         match found {
@@ -538,8 +534,8 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
     /// a little way along the second direction in which the equations have solutions.
     pub fn beside_crossing(&self, at: &OrbitPoint<Kept>) -> Vec<OrbitPoint<Kept>> {
         const APART: f64 = 0.02;
-        let (sizes, states) = ((self.sizes)(at), at.monodromy.nrows());
-        let Some(image) = self.image(&at.unknowns, states) else {
+        let sizes = (self.sizes)(at);
+        let Some(image) = self.image(&at.unknowns) else {
             return vec![];
         };
         let tangent = at.tangent.component_div(&sizes).normalize();
@@ -551,7 +547,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         let beside = |sign: f64| {
             let direction = &second * sign;
             let guess = &at.unknowns + (&direction * APART).component_mul(&sizes);
-            self.corrected(&guess, &direction, &sizes, states).map(|(point, _)| point)
+            self.corrected(&guess, &direction, &sizes).map(|(point, _)| point)
         };
         [1.0, -1.0].into_iter().filter_map(beside).collect()
     }
@@ -587,14 +583,13 @@ mod tests {
     /// A map of one state with its derivatives.
     fn scalar(
         map: impl Fn(f64, f64) -> [f64; 3],
-    ) -> impl Fn(&DVector<f64>, f64, f64) -> Option<PeriodImage<()>> {
-        move |start, _, parameter| {
+    ) -> impl Fn(&DVector<f64>, f64) -> Option<PeriodImage<()>> {
+        move |start, parameter| {
             let [end, by_start, by_parameter] = map(start[0], parameter);
             Some(PeriodImage {
                 end: vector(&[end]),
                 by_start: DMatrix::from_element(1, 1, by_start),
                 by_parameter: vector(&[by_parameter]),
-                rates: None,
                 path: (),
             })
         }
@@ -604,13 +599,9 @@ mod tests {
     #[test]
     fn a_branch_goes_through_its_fold() {
         let map = scalar(|y, p| [y + p - y * y, 1.0 - 2.0 * y, 1.0]);
-        let equations = OrbitEquations {
-            period: 1.0,
-            map: &map,
-            keep: &|_, _| (),
-            sizes: &|_| vector(&[1.0, 1.0]),
-        };
-        let first = equations.orbit_at(&vector(&[0.6]), 0.5, &vector(&[1.0, 1.0]), 1).expect("one");
+        let equations =
+            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
+        let first = equations.orbit_at(&vector(&[0.6]), 0.5, &vector(&[1.0, 1.0])).expect("one");
         let (points, ends) =
             equations.branch_through(first, &limits([-1.0, 1.0], 0.03), &|_| false);
         assert_eq!(ends, [OrbitBranchEnd::Range; 2]);
@@ -639,15 +630,11 @@ mod tests {
             [y + value, 1.0 + 2.0 * y * slope, 2.0 * p * slope]
         });
         let sizes = vector(&[1.0, 1.0]);
-        let equations = OrbitEquations {
-            period: 1.0,
-            map: &map,
-            keep: &|_, _| (),
-            sizes: &|_| vector(&[1.0, 1.0]),
-        };
+        let equations =
+            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
         let orbit = |square: f64, p: f64| {
             let guess = vector(&[(square - p * p).sqrt()]);
-            equations.orbit_at(&guess, p, &sizes, 1).expect("an orbit")
+            equations.orbit_at(&guess, p, &sizes).expect("an orbit")
         };
         let known = [orbit(1.0, 0.1)];
         let [here, next] = [0.05, 0.15].map(|p| orbit(1.0, p));
@@ -663,14 +650,9 @@ mod tests {
     #[test]
     fn where_branches_cross_the_orientation_changes_and_the_other_one_begins() {
         let map = scalar(|y, p| [y + p * y - y * y * y, 1.0 + p - 3.0 * y * y, y]);
-        let equations = OrbitEquations {
-            period: 1.0,
-            map: &map,
-            keep: &|_, _| (),
-            sizes: &|_| vector(&[1.0, 1.0]),
-        };
-        let first =
-            equations.orbit_at(&vector(&[0.0]), -0.51, &vector(&[1.0, 1.0]), 1).expect("one");
+        let equations =
+            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
+        let first = equations.orbit_at(&vector(&[0.0]), -0.51, &vector(&[1.0, 1.0])).expect("one");
         let (points, _) = equations.branch_through(first, &limits([-1.0, 1.0], 0.03), &|_| false);
         let crossed = points.windows(2).find(|pair| pair[0].orientation != pair[1].orientation);
         let [before, behind] = crossed.expect("a crossing") else { panic!() };
@@ -703,7 +685,7 @@ mod tests {
             let steady = steady(omega);
             steady + grown(omega) * (y - steady)
         };
-        let map = |start: &DVector<f64>, _: f64, omega: f64| {
+        let map = |start: &DVector<f64>, omega: f64| {
             const STEP: f64 = 1e-5;
             let y = Vector4::from_column_slice(start.as_slice());
             let slope = (end(&y, omega + STEP) - end(&y, omega - STEP)) / (2.0 * STEP);
@@ -711,18 +693,12 @@ mod tests {
                 end: DVector::from_column_slice(end(&y, omega).as_slice()),
                 by_start: DMatrix::from_column_slice(4, 4, grown(omega).as_slice()),
                 by_parameter: DVector::from_column_slice(slope.as_slice()),
-                rates: None,
                 path: (),
             })
         };
         let sizes = DVector::from_element(5, 1.0);
-        let equations = OrbitEquations {
-            period: std::f64::consts::TAU,
-            map: &map,
-            keep: &|_, _| (),
-            sizes: &|_| sizes.clone(),
-        };
-        let first = equations.orbit_at(&DVector::zeros(4), 1.0, &sizes, 4).expect("an orbit");
+        let equations = OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| sizes.clone() };
+        let first = equations.orbit_at(&DVector::zeros(4), 1.0, &sizes).expect("an orbit");
         let limits = limits([0.5, 3.0], 0.03);
         let (points, ends) = equations.branch_through(first, &limits, &|_| false);
         assert!(ends == [OrbitBranchEnd::Range; 2] && points.len() > 80);
@@ -745,31 +721,32 @@ mod tests {
             let path = integrate_first_order(in_time, begin, period, &[], &options).ok()?;
             Some((path.end().y, ()))
         };
-        let map = |start: &DVector<f64>, period: f64, mu: f64| {
+        // The orbit begins where x' = 0, which the map of the period checks.
+        let map = |start: &DVector<f64>, mu: f64| {
             const STEP: f64 = 1e-5;
-            let start = [start[0], start[1]];
+            let (period, start) = (start[2], [start[0], start[1]]);
             let (end, by_start, ()) =
                 by_differences(start, [1.0; 2], |start| follow(start, period, mu))?;
             let beside = |step: f64| Some(SVector::from(follow(start, period, mu + step)?.0));
             let by_parameter = (beside(STEP)? - beside(-STEP)?) / (2.0 * STEP);
-            let flow = |state: [f64; 2]| DVector::from_column_slice(&rates(state, mu));
+            let flow = rates(end, mu);
+            let [[a, c], [b, d]] =
+                [0, 1].map(|column| [by_start[(0, column)], by_start[(1, column)]]);
             Some(PeriodImage {
-                end: DVector::from_column_slice(&end),
-                by_start: DMatrix::from_column_slice(2, 2, by_start.as_slice()),
-                by_parameter: DVector::from_column_slice(by_parameter.as_slice()),
-                rates: Some([flow(start), flow(end)]),
+                end: vector(&[end[0], end[1], period + start[1]]),
+                by_start: DMatrix::from_row_slice(
+                    3,
+                    3,
+                    &[a, b, flow[0], c, d, flow[1], 0.0, 1.0, 1.0],
+                ),
+                by_parameter: vector(&[by_parameter[0], by_parameter[1], 0.0]),
                 path: (),
             })
         };
         let sizes = vector(&[2.0, 2.0, 6.0, 1.0]);
-        let equations = OrbitEquations {
-            period: f64::NAN,
-            map: &map,
-            keep: &|_, _| (),
-            sizes: &|_| sizes.clone(),
-        };
+        let equations = OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| sizes.clone() };
         let guess = vector(&[2.0, 0.0, 6.4]);
-        let first = equations.orbit_at(&guess, 0.5, &sizes, 2).expect("a cycle");
+        let first = equations.orbit_at(&guess, 0.5, &sizes).expect("a cycle");
         let limits = limits([0.3, 1.0], 0.1);
         let (points, ends) = equations.branch_through(first, &limits, &|_| false);
         assert_eq!(ends, [OrbitBranchEnd::Range; 2]);
@@ -777,7 +754,7 @@ mod tests {
         assert_eq!(last.parameter(), 1.0);
         assert!((last.unknowns[2] - 6.663_286_859_3).abs() < 1e-7, "{last:?}");
         // One multiplier is 1, along the cycle.
-        let away = DMatrix::identity(2, 2) - &last.monodromy;
+        let away = DMatrix::identity(2, 2) - last.monodromy.view((0, 0), (2, 2));
         assert!(away.determinant().abs() < 1e-6, "{last:?}");
     }
 }

@@ -274,7 +274,8 @@ impl Driven {
                 ..Self::of_frequency(oscillator, Expr::from(1), parameter, 1)?
             });
         }
-        let frequency = drive_frequency(oscillator)?;
+        let states = [oscillator.coordinate, oscillator.velocity()];
+        let frequency = drive_frequency(std::slice::from_ref(&oscillator.force), &states)?;
         Self::of_frequency(oscillator, frequency, parameter, periods)
     }
 
@@ -551,7 +552,11 @@ fn with_arguments<T>(
 
 /// The expression with the phase in place of time; the arguments of `sin` and the like are written
 /// out, so that `Omega*theta/Omega` is `theta`.
-fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, ResponseError> {
+pub(super) fn in_phase(
+    expression: &Expr,
+    time: Symbol,
+    moment: &Expr,
+) -> Result<Expr, ResponseError> {
     Ok(expression.fold(|node, children: &[Expr]| match node.node() {
         Node::Symbol(name) if *name == time => Ok(moment.clone()),
         Node::Function(..) if node.contains(time) => {
@@ -567,15 +572,18 @@ fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, Resp
 /// harmonics at most.
 const MOST_WAVES: u32 = MOST_HARMONICS as u32 / 2;
 
-/// The frequency of which all frequencies of the drive are whole multiples.
-fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
+/// The frequency of which all frequencies of the drive are whole multiples, where these are the
+/// names of the states.
+///
+/// # Errors
+/// [`ResponseError`] if there is no drive, or none with one period.
+pub(super) fn drive_frequency(forces: &[Expr], states: &[Symbol]) -> Result<Expr, ResponseError> {
     let time = Symbol::new("t");
-    if !oscillator.force.contains(time) {
+    if !forces.iter().any(|force| force.contains(time)) {
         return Err(ResponseError::NoDrive);
     }
-    let own = [oscillator.coordinate, oscillator.velocity(), time];
     let mut found: Vec<Expr> = Vec::new();
-    for term in oscillator.force.terms() {
+    for term in forces.iter().flat_map(|force| force.terms().to_vec()) {
         // Whether time stands outside of every periodic function.
         let bare = term.fold(|node, children: &[bool]| match node.node() {
             Node::Symbol(name) => Ok::<bool, ResponseError>(*name == time),
@@ -584,7 +592,7 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
             {
                 let frequency = arguments.first().map(|argument| argument.differentiate(time));
                 let frequency = frequency.unwrap_or_else(|| Ok(Expr::zero()))?.expand()?;
-                if own.iter().any(|name| frequency.contains(*name)) {
+                if states.iter().chain([&time]).any(|name| frequency.contains(*name)) {
                     return Ok(true);
                 }
                 found.push(frequency);
@@ -633,7 +641,8 @@ mod tests {
 
     fn frequency(text: &str) -> Result<String, String> {
         let oscillator = Oscillator::parse(text).unwrap();
-        let found = drive_frequency(&oscillator);
+        let states = [oscillator.coordinate, oscillator.velocity()];
+        let found = drive_frequency(&[oscillator.force], &states);
         found.map(|found| found.to_string()).map_err(|error| error.to_string())
     }
 

@@ -124,6 +124,28 @@ pub enum ResponseError {
         /// The progress of the search until then.
         tried: SeedSearch,
     },
+    /// Free coupled equations without damping, whose motions have every energy: another name than
+    /// that of their frequency varies.
+    #[error(
+        "nothing drives or damps the motion: it has a frequency for each energy, and `{0}` alone does not tell them apart"
+    )]
+    FreeParameter(Symbol),
+    /// A rate of coupled equations jumps.
+    #[error(
+        "the rate `{0}` jumps: motions of several coordinates are not followed across `sgn` and `H`"
+    )]
+    CoupledJump(String),
+    /// The rates have no series.
+    #[error("the motion has no Taylor series: {0}")]
+    Rates(String),
+    /// A quantity to be listed contains a name that is no coordinate.
+    #[error("`{name}` is no coordinate: the coordinates are {}", list(.known))]
+    NotShown {
+        /// The name.
+        name: Symbol,
+        /// The coordinates.
+        known: Vec<Symbol>,
+    },
     /// The equation has no such values.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),

@@ -209,6 +209,7 @@ impl PreparedRequest<'_> {
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),
             error,
+            coordinates: vec![],
         }
     }
 

@@ -109,7 +109,9 @@ mod tests {
             let equation =
                 format!("x'' + {c}*x' + x + 50*max(x - 1/2, 0)^(3/2) = {drive}*cos(w*t)");
             let question = ResponseRequest::new(&equation, "w", [1.0, 2.0], "").expect("a request");
-            let asked = PreparedRequest::new(&question).expect("a request");
+            let asked =
+                PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+                    .expect("a request");
             let free = free_oscillator(&asked.oscillator).expect("an oscillator");
             let swings = FreeSwings::at(&free, (question.parameter, 1.4)).expect("series");
             let found = guesses(&asked.driven, &swings, (0.0, 1.4), 1, 0.5);

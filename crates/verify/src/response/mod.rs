@@ -25,6 +25,7 @@
 //! - [`cycle`]: the true motion without a drive, by shooting for start and period together;
 //!   [`hopf`]: the Hopf point at which it begins.
 //!
+//! - [`coupled`]: coupled equations of any number of coordinates, by shooting.
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
 //!
@@ -38,8 +39,10 @@ pub mod balance;
 pub mod bifurcation;
 mod branches;
 pub mod continuation;
+pub mod coupled;
 pub mod cycle;
 pub mod driven;
+mod equations;
 mod error;
 mod free_swing;
 pub mod hopf;
@@ -63,11 +66,11 @@ use num_complex::Complex;
 
 use crate::expr::Expr;
 use crate::interrupt::{Interrupt, Progress};
-use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
 
+pub use equations::{Equations, EquationsError};
 pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;
 
@@ -80,14 +83,20 @@ use slow::SlowResponse;
 /// A response to be computed: equation, parameter, range and accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseRequest {
-    /// The equation.
-    pub oscillator: Oscillator,
+    /// The equations.
+    pub equations: Equations,
+    /// The quantity that is listed and drawn, in the coordinates of coupled equations; the first of
+    /// them without it.
+    pub of: Option<Expr>,
     /// Exact values of all parameters but the one that varies.
     pub values: Values,
     /// The parameter that varies.
     pub parameter: Symbol,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
+    /// A second parameter with its range, along which bifurcations are followed; the branches are
+    /// those at the value that it has among the values.
+    pub along: Option<(Symbol, [f64; 2])>,
     /// Number of harmonics; if `None`, as many as bring the error below a tenth of the tolerance,
     /// 64 at most.
     pub harmonics: Option<usize>,
@@ -131,6 +140,74 @@ pub struct SteadyMotion {
     /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if
     /// shooting found no motion near.
     pub error: Option<f64>,
+    /// The motion of each coordinate of coupled equations; empty for a single coordinate, which is
+    /// what the other fields describe. Of coupled equations they describe the quantity that is
+    /// listed, and the error is that of all coordinates.
+    pub coordinates: Vec<CoordinateMotion>,
+}
+
+/// The motion of one of several coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateMotion {
+    /// The coordinate.
+    pub coordinate: Symbol,
+    /// Its position at t = 0.
+    pub start: f64,
+    /// Its velocity there, or its rate in an equation of first order.
+    pub rate: f64,
+    /// The amplitude of its first harmonic.
+    pub amplitude: f64,
+    /// The phase of that: amplitude * cos(theta - phase).
+    pub phase: f64,
+    /// Half of the way from the lowest to the highest point.
+    pub peak: f64,
+    /// Coefficients of cos(k theta) and sin(k theta), from k = 0, the mean.
+    pub harmonics: Vec<[f64; 2]>,
+}
+
+/// An equilibrium of coupled equations that nothing drives.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Equilibrium {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The quantity that is listed.
+    pub value: f64,
+    /// All coordinates, then the velocities of those of second order.
+    pub state: Vec<f64>,
+    /// The largest real part of an eigenvalue of the linear equations; null where there is none.
+    pub growth: Option<f64>,
+    /// Whether small disturbances die out; without damping, whether they do not grow.
+    pub stable: Option<bool>,
+}
+
+/// A place where a branch of equilibria changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EquilibriumChange {
+    /// What happens: a fold, a branch point, or a Hopf point, where cycles are born.
+    #[cfg_attr(feature = "schema", schemars(with = "String", extend("enum" = BifurcationKind::ALL.map(BifurcationKind::name))))]
+    pub kind: BifurcationKind,
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The quantity that is listed.
+    pub value: f64,
+    /// Whether the cycles that come off at a Hopf point are stable, where that is known.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub criticality: Option<Criticality>,
+}
+
+/// A branch of equilibria in order, with its changes.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct EquilibriumBranch {
+    /// Its points.
+    pub points: Vec<Equilibrium>,
+    /// Its folds, branch points and Hopf points.
+    pub changes: Vec<EquilibriumChange>,
 }
 
 /// A branch of steady states.
@@ -169,6 +246,61 @@ pub struct Bifurcation {
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
+    /// Whether the motions that come off are stable, where that is known.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub criticality: Option<Criticality>,
+}
+
+/// The side on which motions come off at a bifurcation, and so whether they are stable beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Criticality {
+    /// They are unstable, and exist where the motion from which they come is stable: beyond it a
+    /// motion jumps.
+    Subcritical,
+    /// They take over the stability of the motion from which they come.
+    Supercritical,
+}
+
+/// A curve of bifurcations in two parameters.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BifurcationCurve {
+    /// What happens on it: fold, period doubling or Neimark-Sacker.
+    #[cfg_attr(feature = "schema", schemars(with = "String", extend("enum" = BifurcationKind::ALL.map(BifurcationKind::name))))]
+    pub kind: BifurcationKind,
+    /// Its points in order.
+    pub points: Vec<BifurcationCurvePoint>,
+}
+
+/// A bifurcation at values of two parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct BifurcationCurvePoint {
+    /// The value of the parameter that varies.
+    pub parameter: f64,
+    /// The value of the second parameter.
+    pub along: f64,
+    /// Half of peak to peak of the motion there.
+    pub peak: f64,
+}
+
+/// Numbers of stable motions at values of two parameters.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct StableMotions {
+    /// The values of the parameter that varies.
+    pub parameters: Vec<f64>,
+    /// The values of the second parameter.
+    pub along: Vec<f64>,
+    /// For each value of the second parameter the number of stable motions that were found at each
+    /// value of the first.
+    pub counts: Vec<Vec<usize>>,
 }
 
 impl Bifurcation {
@@ -201,7 +333,7 @@ pub struct Simulated {
 }
 
 /// A simulation that has settled elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ElsewherePoint"))]
 pub struct Elsewhere {
@@ -215,6 +347,10 @@ pub struct Elsewhere {
     /// Position and velocity at t = 0 or a whole number of periods later, from where it goes on as it
     /// has settled.
     pub start: [f64; 2],
+    /// Of coupled equations all states there: coordinates, then velocities. Left out for one
+    /// coordinate.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub state: Vec<f64>,
     /// The amplitude of the first harmonic of a period of the motion from there.
     pub amplitude: f64,
     /// Half of the way from the lowest to the highest point of this period.
@@ -282,6 +418,12 @@ pub struct ResponseDiagram {
     pub verdict: Verdict,
     /// The steady motions by slow equations, if requested.
     pub slow: Option<SlowResponse>,
+    /// The equilibria of coupled equations that nothing drives; else empty.
+    pub equilibria: Vec<EquilibriumBranch>,
+    /// The curves of bifurcations in two parameters, where a second one was given.
+    pub curves: Vec<BifurcationCurve>,
+    /// The numbers of stable motions over both, where a second one was given.
+    pub stable_motions: Option<StableMotions>,
     /// Whether the computation was completed without an interrupt.
     pub complete: bool,
 }
@@ -322,7 +464,11 @@ const MOST_BRANCHES: usize = 32;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
-    let asked = PreparedRequest::new(question)?;
+    let oscillator = match &question.equations {
+        Equations::One(oscillator) => oscillator,
+        Equations::Coupled(equations) => return coupled::respond(question, equations),
+    };
+    let asked = PreparedRequest::new(question, oscillator)?;
     if asked.period_series.is_none() {
         return asked.balanced_response();
     }
@@ -389,6 +535,46 @@ impl ResponseDiagram {
 }
 
 impl ResponseRequest {
+    /// Checks parameter, values, range and counts, where these are the parameters of the equations;
+    /// `None` in place of the varying parameter if it is none of them.
+    ///
+    /// # Errors
+    /// [`ResponseError`].
+    fn check_values_but(
+        &self,
+        known: &[Symbol],
+        parameter: Option<Symbol>,
+    ) -> Result<(), ResponseError> {
+        if let Some(parameter) = parameter.filter(|name| !known.contains(name)) {
+            return Err(ResponseError::NoParameter { name: parameter, known: known.to_vec() });
+        }
+        if self.values.get(self.parameter).is_some() {
+            return Err(ResponseError::Given(self.parameter));
+        }
+        if let Some((unknown, _)) = self.values.iter().find(|(name, _)| !known.contains(name)) {
+            return Err(ResponseError::Unknown(unknown));
+        }
+        let missing =
+            |name: &&Symbol| Some(**name) != parameter && self.values.get(**name).is_none();
+        let missing: Vec<Symbol> = known.iter().filter(missing).copied().collect();
+        if !missing.is_empty() {
+            return Err(ResponseError::Missing(missing));
+        }
+        let [low, high] = self.range;
+        if !(low < high && (high - low).is_finite()) {
+            return Err(ResponseError::Range(self.parameter));
+        }
+        for (what, given, most) in [
+            ("the number of harmonics", self.harmonics.unwrap_or(1), MOST_HARMONICS),
+            ("the number of periods", self.periods, MOST_PERIODS),
+        ] {
+            if !(1..=most).contains(&given) {
+                return Err(ResponseError::Count { what, given, most });
+            }
+        }
+        Ok(())
+    }
+
     /// A request with automatic harmonics, a tolerance of 1 %, and motions of the period of the
     /// drive.
     ///
@@ -401,7 +587,9 @@ impl ResponseRequest {
         values: &str,
     ) -> Result<Self, Box<dyn std::error::Error>> {
         Ok(Self {
-            oscillator: Oscillator::parse(equation)?,
+            equations: Equations::parse(equation)?,
+            of: None,
+            along: None,
             values: values.parse()?,
             parameter: Symbol::new(parameter),
             range,

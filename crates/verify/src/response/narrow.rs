@@ -220,7 +220,8 @@ mod tests {
         for (edge, sign) in edges.iter().zip([-1.0, 1.0]) {
             assert!((edge - 1.0 - sign * half).abs() < 1e-5, "{edge}");
         }
-        let asked = PreparedRequest::new(&question).expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
         for (edge, sign) in edges.into_iter().zip([-1.0, 1.0]) {
             let away = |w: f64| {
                 let floquet = multipliers_along(&asked.driven, w, w, |_| [0.0, 0.0]);

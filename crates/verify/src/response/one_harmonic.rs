@@ -217,7 +217,8 @@ mod tests {
         let (c, drive, w) = (0.047, 0.3, 1.5);
         let equation = "x'' + c*x' + x + x^3 = 0.3*cos(1.5*t)";
         let question = ResponseRequest::new(equation, "c", [0.02, 0.4], "").expect("a request");
-        let asked = PreparedRequest::new(&question).expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
         let balance = DrivenBalance::new(&asked.driven, 3);
         let still = DVector::zeros(balance.core.size());
         let residual = |a: f64| {
@@ -251,7 +252,8 @@ mod tests {
     fn the_mean_goes_with_the_amplitude() {
         let equation = "x'' + x'/50 + x + x^2/10 = F*cos(t)";
         let question = ResponseRequest::new(equation, "F", [0.01, 0.05], "").expect("a request");
-        let asked = PreparedRequest::new(&question).expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
         let balance = DrivenBalance::new(&asked.driven, 3);
         let still = DVector::zeros(balance.core.size());
         let harmonic = Harmonic::new(&balance, &still, 0.02, 1);

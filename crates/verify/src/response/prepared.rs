@@ -20,7 +20,7 @@ use super::series::PeriodSeries;
 use super::stability::SimulationBudget;
 use super::{
     Bifurcation, Branch, Elsewhere, LONGEST_STEP, MOST_BRANCHES, MOST_EVALUATIONS, MOST_HARMONICS,
-    MOST_PERIODS, MOST_POINTS, ResponseDiagram, ResponseError, ResponseRequest, SeedSearch,
+    MOST_POINTS, ResponseDiagram, ResponseError, ResponseRequest, SeedSearch,
 };
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -41,8 +41,11 @@ pub(super) struct PreparedRequest<'a> {
 }
 
 impl<'a> PreparedRequest<'a> {
-    pub(super) fn new(question: &'a ResponseRequest) -> Result<Self, ResponseError> {
-        let ResponseRequest { oscillator, parameter, .. } = question;
+    pub(super) fn new(
+        question: &'a ResponseRequest,
+        oscillator: &Oscillator,
+    ) -> Result<Self, ResponseError> {
+        let parameter = &question.parameter;
         let known = &oscillator.parameters;
         let self_excited = !oscillator.force.contains(Symbol::new("t"));
         if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
@@ -51,32 +54,7 @@ impl<'a> PreparedRequest<'a> {
         if self_excited && question.periods != 1 {
             return Err(ResponseError::NoPeriods(question.periods));
         }
-        if !known.contains(parameter) {
-            return Err(ResponseError::NoParameter { name: *parameter, known: known.clone() });
-        }
-        if question.values.get(*parameter).is_some() {
-            return Err(ResponseError::Given(*parameter));
-        }
-        if let Some((unknown, _)) = question.values.iter().find(|(name, _)| !known.contains(name)) {
-            return Err(ResponseError::Unknown(unknown));
-        }
-        let missing = |name: &&Symbol| *name != parameter && question.values.get(**name).is_none();
-        let missing: Vec<Symbol> = known.iter().filter(missing).copied().collect();
-        if !missing.is_empty() {
-            return Err(ResponseError::Missing(missing));
-        }
-        let [low, high] = question.range;
-        if !(low < high && (high - low).is_finite()) {
-            return Err(ResponseError::Range(*parameter));
-        }
-        for (what, given, most) in [
-            ("the number of harmonics", question.harmonics.unwrap_or(1), MOST_HARMONICS),
-            ("the number of periods", question.periods, MOST_PERIODS),
-        ] {
-            if !(1..=most).contains(&given) {
-                return Err(ResponseError::Count { what, given, most });
-            }
-        }
+        question.check_values_but(known, Some(*parameter))?;
         let values: BTreeMap<Symbol, Expr> = question.values.split(known).0;
         let oscillator = oscillator.with_values(&values)?;
         let force = by_sides(&oscillator.force, oscillator.coordinate, &BTreeMap::new())?;
@@ -277,6 +255,9 @@ impl<'a> PreparedRequest<'a> {
             error: None,
             unjudged: 0,
             slow: None,
+            equilibria: vec![],
+            curves: vec![],
+            stable_motions: None,
             complete,
         };
         Ok(response.with_verdict())
@@ -428,6 +409,7 @@ impl<'a> PreparedRequest<'a> {
                 frequency: point.frequency,
                 amplitude: point.amplitude,
                 peak: point.peak,
+                criticality: None,
             };
             if !found.iter().any(|known| new.is_near(known, self.question.range, size)) {
                 found.push(new);

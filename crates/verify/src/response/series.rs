@@ -164,7 +164,6 @@ impl PeriodSeries {
             end: DVector::from_column_slice(end),
             by_start: DMatrix::from_column_slice(states, states, by_start),
             by_parameter: DVector::from_column_slice(by_parameter),
-            rates: None,
             path,
         })
     }

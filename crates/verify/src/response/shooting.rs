@@ -91,7 +91,7 @@ impl PreparedRequest<'_> {
         call: impl FnOnce(&OrbitEquations<Path, KeptOrbit>) -> T,
     ) -> Option<T> {
         let series = self.period_series.as_ref()?;
-        let map = |start: &DVector<f64>, _: f64, parameter: f64| {
+        let map = |start: &DVector<f64>, parameter: f64| {
             let runs = self.driven.frequency_at(parameter) > 0.0;
             runs.then(|| series.period(start, parameter)).flatten()
         };
@@ -102,7 +102,7 @@ impl PreparedRequest<'_> {
             let own = balance.core.extent(&orbit.kept.coefficients);
             self.orbit_sizes(own, size, orbit.parameter())
         };
-        Some(call(&OrbitEquations { period: TAU, map: &map, keep: &keep, sizes: &sizes }))
+        Some(call(&OrbitEquations { map: &map, keep: &keep, sizes: &sizes }))
     }
 
     /// The sizes of position, velocity and parameter beside a motion of this extent.
@@ -144,7 +144,7 @@ impl PreparedRequest<'_> {
     ) -> Option<Orbit> {
         let sizes = self.orbit_sizes(own, size, parameter);
         let guess = DVector::from_column_slice(&start);
-        equations.orbit_at(&guess, parameter, &sizes, STATES)
+        equations.orbit_at(&guess, parameter, &sizes)
     }
 
     /// The motion that shooting finds from rest at an equilibrium, and its extent; `None` if it
@@ -440,7 +440,9 @@ mod tests {
 
     /// The response by shooting, whether the force has corners or not.
     fn shot(question: &ResponseRequest) -> ResponseDiagram {
-        let mut asked = PreparedRequest::new(question).expect("a request");
+        let mut asked =
+            PreparedRequest::new(question, question.equations.oscillator().expect("one"))
+                .expect("a request");
         asked.period_series = PeriodSeries::new(&asked.driven);
         asked.shot_response().expect("a response")
     }
@@ -477,7 +479,8 @@ mod tests {
         assert_eq!(folds(&shot).len(), 2);
         has_constant_damping(&shot.branches[0].points, 0.1, 1e-10);
         // The orbit at the parameter of each point of the other branch.
-        let asked = PreparedRequest::new(&question).expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
         let asked = PreparedRequest { period_series: PeriodSeries::new(&asked.driven), ..asked };
         let balance = DrivenBalance::new(&asked.driven, 24);
         for point in &balanced.branches[0].points {
@@ -499,7 +502,8 @@ mod tests {
     #[test]
     fn the_map_through_contact_has_the_derivatives_of_differences() {
         let question = request(CONTACT, [0.5, 2.5], "F = 3/10, g = 1000");
-        let asked = PreparedRequest::new(&question).expect("a request");
+        let asked = PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+            .expect("a request");
         let series = asked.period_series.as_ref().expect("series");
         let (start, omega) = (DVector::from_vec(vec![0.3, 0.7]), 1.3);
         let image = series.period(&start, omega).expect("a period");
@@ -538,7 +542,9 @@ mod tests {
             for branch in &found.branches {
                 has_constant_damping(&branch.points, 0.1, 1e-7);
             }
-            let asked = PreparedRequest::new(&question).expect("a request");
+            let asked =
+                PreparedRequest::new(&question, question.equations.oscillator().expect("one"))
+                    .expect("a request");
             let series = asked.period_series.as_ref().expect("series");
             let count = |point: &SteadyMotion| {
                 let start = DVector::from_column_slice(&point.start);

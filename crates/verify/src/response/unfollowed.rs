@@ -106,7 +106,7 @@ impl PreparedRequest<'_> {
             fewer.find(|count| returns(*count)).unwrap_or(all)
         });
         let amplitude = cosine.hypot(sine);
-        Elsewhere { parameter, periods, drive_periods, start, amplitude, peak }
+        Elsewhere { parameter, periods, drive_periods, start, state: vec![], amplitude, peak }
     }
 
     /// The starts of a motion, of its shifts by drive periods, and of their mirror images.

@@ -51,6 +51,15 @@ impl ParseError {
         Self { message: message.to_string(), span, help, correction: None, excerpt }
     }
 
+    /// Returns the error of a part of a text, which begins at this byte of it, as one of the whole.
+    pub(super) fn within(self, whole: &str, first: usize) -> Self {
+        let shifted = |range: Range<usize>| range.start + first..range.end + first;
+        let span = shifted(self.span);
+        let excerpt = Box::new(excerpt(whole, &span));
+        let correction = self.correction.map(|inner| Box::new((shifted(inner.0), inner.1)));
+        Self { span, excerpt, correction, ..self }
+    }
+
     /// Returns the error with a correction: this part of the text can only mean `replacement`.
     pub(super) fn meaning(self, part: Range<usize>, replacement: impl Into<String>) -> Self {
         Self { correction: Some(Box::new((part, replacement.into()))), ..self }

@@ -275,6 +275,38 @@ pub fn integrate_through<'a, Y: StateVector>(
     run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
 
+/// The values at the end time of first-order equations whose path is not kept: a step then costs its
+/// sixteen evaluations of the rates and no interpolant, and a run takes the memory of one step.
+/// Returns `None` if the end is not reached.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::ode::{IntegrationOptions, Point, end_values};
+///
+/// let swing = |_t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| (rates[0], rates[1]) = (y[1], -y[0]);
+/// let start = Point { t: 0.0, y: vec![1.0, 0.0] };
+/// let end = end_values(swing, start, 3.0, &IntegrationOptions::default()).ok_or("no end")?;
+/// assert!((end[0] - 3.0_f64.cos()).abs() < 1e-8);
+/// # Ok::<(), &str>(())
+/// ```
+pub fn end_values<Y: StateVector>(
+    rates: impl Fn(f64, &Y, &mut Y),
+    start: Point<Y>,
+    end_time: f64,
+    options: &IntegrationOptions,
+) -> Option<Y> {
+    check(&start, end_time, options).ok()?;
+    let evaluations = Cell::new(0);
+    let equations = CountedRates::<Point<Y>> {
+        rates: &rates,
+        evaluations: &evaluations,
+        non_finite: Cell::new(false),
+    };
+    let looks = StepLimits::NOWHERE;
+    let leg = Leg { equations, phase: 0, events: &[], end_time, looks, options };
+    leg.end_values(&explicit::<Y>(), start)
+}
+
 /// Conditions, besides the error, that limit a step.
 pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
@@ -519,6 +551,51 @@ impl<S: Sample> Leg<'_, '_, S> {
             state = next;
             first = false;
         }
+    }
+
+    /// Returns the values at the end time, without events and limits; `None` if it is not reached.
+    fn end_values<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        start: S,
+    ) -> Option<S::Values> {
+        let mut solver = self.solver(scheme, &start, 0.0)?;
+        let (mut time, mut values) = (start.time(), start.values());
+        for attempts in 0.. {
+            let remaining = self.end_time - time;
+            if remaining <= 2.0 * f64::EPSILON * self.end_time.abs() {
+                break;
+            }
+            if self.given_up(time, attempts).is_some() {
+                return None;
+            }
+            let wanted = solver.h().min(self.options.maximum_step).min(remaining);
+            solver.set_h(wanted);
+            self.equations.non_finite.set(false);
+            let outcome = solver.step(&self.equations);
+            if self.equations.non_finite.get() {
+                let shorter = 0.2 * wanted;
+                if time + shorter <= time {
+                    return None;
+                }
+                solver = self.solver(scheme, &S::new(time, &values), shorter)?;
+                continue;
+            }
+            let is_stuck = || time + solver.h() <= time;
+            match outcome {
+                Err(_) => return None,
+                Ok(_) if !matches!(solver.status(), Status::RejectedStep) => {
+                    time = solver.t();
+                    values = solver.y().clone();
+                    if !values.as_ref().iter().all(|value| value.is_finite()) {
+                        return None;
+                    }
+                }
+                Ok(_) if is_stuck() => return None,
+                Ok(_) => {}
+            }
+        }
+        Some(values)
     }
 
     /// Returns the time left until the next critical time that is farther away than rounding.

@@ -51,7 +51,7 @@ mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
-pub use integrate::{AcceptedFraction, StepLimits, integrate_through};
+pub use integrate::{AcceptedFraction, StepLimits, end_values, integrate_through};
 pub use integrate::{
     IntegrationError, IntegrationOptions, IntegrationPhase, integrate, integrate_first_order,
     integrate_phases,

@@ -1,0 +1,304 @@
+//! Branches of orbits: through starts, through crossings with known ones, each once.
+
+use nalgebra::DVector;
+
+use super::changes::changes_between;
+use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, Travel};
+use crate::numeric::orbit_branch::{OrbitBranchEnd, OrbitBranchLimits};
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::continuation::BranchEnd;
+use crate::response::{LONGEST_STEP, MOST_BRANCHES, MOST_POINTS};
+
+/// A branch of orbits in order.
+#[derive(Clone, Debug)]
+pub(super) struct OrbitBranch {
+    pub(super) orbits: Vec<Orbit>,
+    pub(super) ends: [BranchEnd; 2],
+    /// Whether the mirror images of its orbits are others, which are not listed.
+    pub(super) mirrored: bool,
+    /// The beginning of its motions, where nothing drives them.
+    pub(super) anchor: Anchor,
+}
+
+/// A motion from which a branch may start.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    pub(super) parameter: f64,
+    /// The state, then the period of a cycle.
+    pub(super) unknowns: Vec<f64>,
+}
+
+/// All branches that are known, and the travel of the largest motions on them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    pub(super) branches: Vec<OrbitBranch>,
+    pub(super) scale: Travel,
+}
+
+/// An orbit that lies on a known branch.
+pub(super) struct Found {
+    /// The index of the branch.
+    pub(super) branch: usize,
+    /// Whether it is the mirror image of the orbit there, and not this itself.
+    pub(super) mirrored: bool,
+}
+
+impl Known {
+    /// Adds a branch.
+    fn push(&mut self, branch: OrbitBranch) {
+        for orbit in &branch.orbits {
+            self.scale.resize(orbit.kept.len(), 0.0);
+            for (scale, travel) in self.scale.iter_mut().zip(&orbit.kept) {
+                *scale = scale.max(*travel);
+            }
+        }
+        self.branches.push(branch);
+    }
+
+    /// Whether as many branches are known as are followed.
+    pub(super) fn is_full(&self) -> bool {
+        self.branches.len() >= MOST_BRANCHES
+    }
+}
+
+impl CoupledProblem<'_> {
+    /// The orbit that Newton's method finds near a start, of a motion of its size; searched for
+    /// twice where the size is not known.
+    pub(super) fn orbit_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
+        let n = self.states.len();
+        let guess = DVector::from_column_slice(&start.unknowns);
+        let absolute: Vec<f64> = start.unknowns[..n].iter().map(|value| value.abs()).collect();
+        let near = |guess: &DVector<f64>, travel: &[f64]| {
+            let unknowns = guess.clone().push(start.parameter);
+            let sizes = self.sizes(travel, scale, &unknowns);
+            self.with_orbits(scale, anchor, |orbits| {
+                orbits.orbit_at(guess, start.parameter, &sizes)
+            })
+        };
+        let first = near(&guess, &absolute)?;
+        let guess = first.unknowns.rows(0, guess.len()).into_owned();
+        near(&guess, &first.kept)
+    }
+
+    /// Follows the branch through a start, unless it is known.
+    pub(super) fn follow_from(&self, start: &Start, known: &mut Known) {
+        if known.is_full() || self.question.interrupt.is_requested() {
+            return;
+        }
+        let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
+        if self.is_known(&orbit, known) {
+            return;
+        }
+        let scale = known.scale.clone();
+        let branch = self.with_orbits(&scale, Anchor::NONE, |orbits| {
+            self.branch_through(orbits, orbit, &scale, Anchor::NONE)
+        });
+        known.push(branch);
+    }
+
+    /// Whether an orbit lies on a known branch; marks the branch if it is a mirror image.
+    pub(super) fn is_known(&self, orbit: &Orbit, known: &mut Known) -> bool {
+        let found = self.find(orbit, known);
+        if let Some(Found { branch, mirrored: true }) = found {
+            known.branches[branch].mirrored = true;
+        }
+        found.is_some()
+    }
+
+    /// The branch through an orbit, both ways, in the range of the request.
+    pub(super) fn branch_through(
+        &self,
+        orbits: &Orbits,
+        orbit: Orbit,
+        scale: &[f64],
+        anchor: Anchor,
+    ) -> OrbitBranch {
+        const ENORMOUS: f64 = 1e4;
+        let n = self.coordinates;
+        let extent = |travel: &[f64]| travel[..n].iter().copied().fold(0.0, f64::max);
+        let ordinary = scale.get(..n).map_or(0.0, extent);
+        let bound = ENORMOUS * extent(&orbit.kept).max(ordinary);
+        let limits = OrbitBranchLimits {
+            range: self.question.range,
+            longest: LONGEST_STEP,
+            most: MOST_POINTS,
+            interrupt: self.question.interrupt,
+        };
+        let is_cycle = matches!(self.kind, Kind::SelfExcited | Kind::Free);
+        let largest = extent(&orbit.kept);
+        // A branch of cycles or of free motions ends at rest, near a Hopf point or a linear mode.
+        const AT_REST: f64 = 0.02;
+        let (least, most) = (AT_REST * largest, bound);
+        let refused = |orbit: &Orbit| {
+            let extent = extent(&orbit.kept);
+            extent > most || is_cycle && extent < least
+        };
+        let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
+        let last = [points.first(), points.last()];
+        let ends = [0, 1].map(|side| match ends[side] {
+            OrbitBranchEnd::Range => BranchEnd::Range,
+            OrbitBranchEnd::Closed => BranchEnd::Closed,
+            OrbitBranchEnd::Joined => BranchEnd::Crossing,
+            OrbitBranchEnd::Lost => BranchEnd::Lost,
+            OrbitBranchEnd::Points => BranchEnd::Points,
+            OrbitBranchEnd::Refused => match last[side] {
+                Some(point) if extent(&point.kept) < 0.1 * most => BranchEnd::Rest,
+                _ => BranchEnd::Unbounded,
+            },
+            OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
+        });
+        OrbitBranch { orbits: points, ends, mirrored: false, anchor }
+    }
+
+    /// Follows the branches that cross known ones, until there are no more.
+    pub(super) fn follow_crossings(&self, known: &mut Known) {
+        let mut index = 0;
+        while index < known.branches.len() {
+            let branch = known.branches[index].clone();
+            for pair in branch.orbits.windows(2) {
+                let [from, to] = pair else { continue };
+                if from.orientation == to.orientation
+                    || known.is_full()
+                    || self.question.interrupt.is_requested()
+                {
+                    continue;
+                }
+                let scale = known.scale.clone();
+                let beside = self.with_orbits(&scale, branch.anchor, |orbits| {
+                    let found = changes_between(self, orbits, from, to);
+                    let mut crossings =
+                        found.into_iter().filter(|(kind, _)| *kind == BifurcationKind::BranchPoint);
+                    crossings.next().map(|(_, at)| orbits.beside_crossing(&at)).unwrap_or_default()
+                });
+                for orbit in beside {
+                    if known.is_full() || self.is_known(&orbit, known) {
+                        continue;
+                    }
+                    let branch = self.with_orbits(&scale, branch.anchor, |orbits| {
+                        self.branch_through(orbits, orbit, &scale, branch.anchor)
+                    });
+                    known.push(branch);
+                }
+            }
+            index += 1;
+        }
+    }
+
+    /// Adds a branch through an orbit of free motions or cycles, unless it is known.
+    pub(super) fn add_branch(&self, orbit: Orbit, anchor: Anchor, known: &mut Known) {
+        if known.is_full() || self.is_known(&orbit, known) {
+            return;
+        }
+        let scale = known.scale.clone();
+        let branch = self.with_orbits(&scale, anchor, |orbits| {
+            self.branch_through(orbits, orbit, &scale, anchor)
+        });
+        known.push(branch);
+    }
+
+    /// The states in which an orbit passes the beginning of each drive period, and those of its
+    /// mirror images, half a period of the drive later. A free motion begins where its velocity is
+    /// zero, at either of its turns.
+    fn images(&self, orbit: &Orbit, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
+        use std::f64::consts::TAU;
+        let start = orbit.unknowns.as_slice()[..self.states.len()].to_vec();
+        let negative = |state: Vec<f64>| state.into_iter().map(|value| -value).collect();
+        match self.kind {
+            Kind::Driven(_) => {
+                let periods = self.question.periods;
+                let half = TAU / (2 * periods) as f64;
+                let mut states = vec![start];
+                for index in 1..2 * periods {
+                    let phases = [index - 1, index].map(|index| half * index as f64);
+                    let next = self.after(states.last()?, phases, orbit.parameter(), scale)?;
+                    states.push(next);
+                }
+                let (mut shifted, mut mirrored) = (Vec::new(), Vec::new());
+                for (index, state) in states.into_iter().enumerate() {
+                    match index % 2 {
+                        0 => shifted.push(state),
+                        _ => mirrored.push(negative(state)),
+                    }
+                }
+                Some([shifted, mirrored])
+            }
+            Kind::SelfExcited | Kind::Free => {
+                let mirror = negative(start.clone());
+                Some([vec![start], vec![mirror]])
+            }
+        }
+    }
+
+    /// The known branch on which an orbit lies, shifted by drive periods or mirrored; `None` if there
+    /// is none.
+    pub(super) fn find(&self, orbit: &Orbit, known: &Known) -> Option<Found> {
+        /// Largest error of an interpolation between two orbits, and largest difference of equal
+        /// motions, relative to their sizes.
+        const NEAR: f64 = 0.25;
+        const SAME: f64 = 1e-5;
+        let (n, parameter) = (self.states.len(), orbit.parameter());
+        let [shifted, mirrored] = self.images(orbit, &known.scale)?;
+        let sizes = self.state_sizes(&orbit.kept, &known.scale);
+        let apart = |one: &[f64], other: &[f64]| {
+            let each = one.iter().zip(other).zip(&sizes);
+            each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+        };
+        // Cycles may begin anywhere on themselves: they are compared by travel and period.
+        let by_travel = matches!(self.kind, Kind::SelfExcited | Kind::Free);
+        for (branch, path) in known.branches.iter().enumerate() {
+            for pair in path.orbits.windows(2) {
+                let [from, to] = pair else { continue };
+                let way = to.parameter() - from.parameter();
+                let part = if way == 0.0 { 0.0 } else { (parameter - from.parameter()) / way };
+                if !(-1e-9..=1.0 + 1e-9).contains(&part) {
+                    continue;
+                }
+                let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
+                let count = guess.len() - 1;
+                let is_near = |images: &[Vec<f64>]| {
+                    images.iter().any(|image| apart(&guess.as_slice()[..n], image) <= NEAR)
+                };
+                let mixed: Vec<f64> = from
+                    .kept
+                    .iter()
+                    .zip(&to.kept)
+                    .map(|(one, other)| one + part * (other - one))
+                    .collect();
+                let candidates = match by_travel {
+                    true => apart(&mixed, &orbit.kept) <= NEAR,
+                    false => is_near(&shifted) || is_near(&mirrored),
+                };
+                if !candidates {
+                    continue;
+                }
+                let all = self.sizes(&mixed, &known.scale, &guess);
+                let start = guess.rows(0, count).into_owned();
+                let solved = self.with_orbits(&known.scale, path.anchor, |orbits| {
+                    orbits.orbit_at(&start, parameter, &all)
+                });
+                let Some(solved) = solved else { continue };
+                let there = &solved.unknowns.as_slice()[..n];
+                let is_one =
+                    |images: &[Vec<f64>]| images.iter().any(|image| apart(there, image) <= SAME);
+                if by_travel {
+                    /// The travel is that of the stages of the steps.
+                    const ROUGH: f64 = 2e-2;
+                    let [one, other] = [&solved, orbit].map(|orbit| orbit.unknowns[n]);
+                    let same_period = matches!(self.kind, Kind::Free)
+                        || (one - other).abs() <= SAME * other.abs();
+                    if same_period && apart(&solved.kept, &orbit.kept) <= ROUGH {
+                        return Some(Found { branch, mirrored: false });
+                    }
+                    continue;
+                }
+                if is_one(&shifted) {
+                    return Some(Found { branch, mirrored: false });
+                }
+                if is_one(&mirrored) {
+                    return Some(Found { branch, mirrored: true });
+                }
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,171 @@
+//! Multipliers of orbits, and the bifurcations between two orbits of a branch.
+//!
+//! ```text
+//! fold               dp changes its sign along the branch
+//! branch point       the determinant of the bordered equations changes its sign, dp does not
+//! period doubling    det(M + 1) changes its sign: a multiplier passes -1
+//! Neimark-Sacker     a complex pair of multipliers passes the unit circle
+//! ```
+//!
+//! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapter 10.)
+
+use nalgebra::linalg::Schur;
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
+
+use super::problem::{CoupledProblem, Kind, Orbit, Orbits, monodromy};
+use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
+use crate::response::bifurcation::BifurcationKind;
+
+/// Distance from the unit circle within which a multiplier of an undamped motion lies on it.
+pub(super) const ON_CIRCLE: f64 = 1e-4;
+
+/// The eigenvalues of a matrix, the largest first; `None` if they could not be found.
+pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    const MOST: usize = 1_000;
+    if !matrix.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    // Near a multiple eigenvalue the iteration may not come below the rounding of one number.
+    const ROUNDING: [f64; 3] = [f64::EPSILON, 1e-14, 1e-12];
+    let schur = ROUNDING.into_iter().find_map(|small| Schur::try_new(matrix.clone(), small, MOST));
+    let found = schur?.complex_eigenvalues();
+    let mut found: Vec<Complex<f64>> =
+        found.iter().map(|value| Complex::new(value.re, value.im)).collect();
+    found.sort_by(|one, other| {
+        other.norm().total_cmp(&one.norm()).then(other.im.total_cmp(&one.im))
+    });
+    Some(found)
+}
+
+impl CoupledProblem<'_> {
+    /// The multipliers of an orbit without those that are 1 for every such motion: one of a cycle,
+    /// two of a free motion.
+    pub(super) fn multipliers(&self, orbit: &Orbit) -> Option<Vec<Complex<f64>>> {
+        let mut all = eigenvalues(monodromy(orbit, self.states.len()))?;
+        let trivial = match self.kind {
+            Kind::Driven(_) => 0,
+            Kind::SelfExcited => 1,
+            Kind::Free => 2,
+        };
+        for _ in 0..trivial {
+            let from_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm();
+            let nearest = (0..all.len())
+                .min_by(|one, other| from_one(&all[*one]).total_cmp(&from_one(&all[*other])))?;
+            all.remove(nearest);
+        }
+        Some(all)
+    }
+
+    /// Whether small disturbances of an orbit die out; without damping, whether they do not grow.
+    pub(super) fn is_stable(&self, multipliers: &[Complex<f64>]) -> bool {
+        let largest = multipliers.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        match self.undamped {
+            true => largest <= 1.0 + ON_CIRCLE,
+            false => largest < 1.0,
+        }
+    }
+}
+
+/// The complex pair of multipliers nearest to the unit circle, as its distance from it.
+fn pair_outside(multipliers: &[Complex<f64>]) -> f64 {
+    let pairs = multipliers.iter().filter(|value| value.im.abs() > 1e-6 * value.norm());
+    let outside = pairs.map(|value| value.norm() - 1.0);
+    outside.fold(f64::NAN, |nearest: f64, one| match nearest.abs() < one.abs() {
+        true => nearest,
+        false => one,
+    })
+}
+
+/// The test function of a kind of bifurcation, which changes its sign there; NaN if it has no value.
+fn test(problem: &CoupledProblem, kind: BifurcationKind, orbit: &Orbit) -> f64 {
+    match kind {
+        BifurcationKind::Fold => orbit.parameter_slope(),
+        BifurcationKind::BranchPoint => orbit.orientation,
+        BifurcationKind::PeriodDoubling => {
+            let multipliers = problem.multipliers(orbit).unwrap_or_default();
+            // The product over all of 1 + mu, each over its own size.
+            let factors = multipliers.iter().map(|mu| (mu + 1.0) / (mu.norm() + 1.0));
+            factors.product::<Complex<f64>>().re
+        }
+        BifurcationKind::NeimarkSacker => {
+            pair_outside(&problem.multipliers(orbit).unwrap_or_default())
+        }
+        BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
+    }
+}
+
+/// The bifurcations between two neighbouring orbits, each with its orbit.
+pub(super) fn changes_between(
+    problem: &CoupledProblem,
+    orbits: &Orbits,
+    from: &Orbit,
+    to: &Orbit,
+) -> Vec<(BifurcationKind, Orbit)> {
+    use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
+    // The number of multipliers outside the unit circle.
+    let outside = |orbit: &Orbit| {
+        let all = problem.multipliers(orbit).unwrap_or_default();
+        all.iter().filter(|value| value.norm() > 1.0).count()
+    };
+    let mut found: Vec<(BifurcationKind, Orbit)> = Vec::new();
+    for kind in [BranchPoint, Fold, PeriodDoubling, NeimarkSacker] {
+        if matches!(kind, PeriodDoubling | NeimarkSacker) && problem.undamped {
+            continue;
+        }
+        let [before, after] = [from, to].map(|orbit| test(problem, kind, orbit));
+        if before.is_nan() || after.is_nan() || before * after >= 0.0 {
+            continue;
+        }
+        if kind == NeimarkSacker && outside(from).abs_diff(outside(to)) != 2 {
+            continue;
+        }
+        let value = |part: f64| {
+            let orbit = match part {
+                0.0 => Some(from.clone()),
+                1.0 => Some(to.clone()),
+                part => orbits.between(from, to, part),
+            };
+            orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
+        };
+        let part = match kind {
+            BranchPoint => Some(sign_change(value)),
+            _ => find_root(value, 0.0, 1.0).ok(),
+        };
+        // On a crossing the equations are singular and Newton's method may not converge; an orbit
+        // beside it is near enough.
+        const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
+        let beside = |part: f64| {
+            BESIDE.iter().find_map(|aside| orbits.between(from, to, (part + aside).clamp(0.0, 1.0)))
+        };
+        let Some(orbit) = part.and_then(beside) else { continue };
+        // A branch that begins at a crossing turns back there without a fold of its own.
+        let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);
+        match crossing {
+            Some(index) => found[index] = (BranchPoint, orbit),
+            None => found.push((kind, orbit)),
+        }
+    }
+    found
+}
+
+/// Bisects the sign change of a function between 0 and 1.
+fn sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
+    let before = value(0.0);
+    let is_before = |part: f64| match value(part) {
+        there if there.is_nan() => Err(part),
+        there => Ok(there * before > 0.0),
+    };
+    match try_bisect(is_before, 0.0, 1.0, BisectionStop::Halvings(30)) {
+        Ok([low, high]) => 0.5 * (low + high),
+        Err(part) => part,
+    }
+}
+
+/// The solution of linear equations; with small singular values left out where they have many.
+pub(super) fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    const SINGULAR: f64 = 1e-9;
+    let found = matrix.try_svd(true, true, f64::EPSILON, 10_000)?;
+    let largest = found.singular_values.max();
+    found.solve(right, SINGULAR * largest).ok()
+}

@@ -1,0 +1,185 @@
+//! Limit cycles of systems that nothing drives: from simulations that settle, and from Hopf points.
+//!
+//! ```text
+//! y' = F(y; p),   y(T) = y(0):   unknowns y, T; p
+//! ```
+
+use std::f64::consts::TAU;
+
+use nalgebra::DVector;
+
+use super::branches::{Known, Start};
+use super::equilibria::HopfPoint;
+use super::problem::{Anchor, CoupledProblem, Orbit, SMALLEST};
+use super::starts::spread;
+use crate::numeric::ode::root::find_root;
+use crate::response::{ResponseDiagram, ResponseError, SeedSearch};
+
+/// Values of the parameter at which simulations start, and starts at each.
+const SEARCH: [usize; 2] = [7, 4];
+
+/// Duration of a simulation, in periods of small motions.
+const SETTLING: f64 = 60.0;
+
+impl CoupledProblem<'_> {
+    /// All limit cycles that are found, with the equilibria.
+    pub(super) fn cycle_response(&self) -> Result<ResponseDiagram, ResponseError> {
+        let [low, high] = self.question.range;
+        let [values, starts] = SEARCH;
+        self.question.progress.begin(values);
+        let (equilibria, hopf) = self.equilibria();
+        let mut known = Known::default();
+        for point in &hopf {
+            if let Some((orbit, anchor)) = self.small_cycle(point) {
+                self.add_branch(orbit, anchor, &mut known);
+            }
+        }
+        let mut tried = SeedSearch::default();
+        for value in 0..values {
+            let parameter = low + (high - low) * (value as f64 + 0.5) / values as f64;
+            tried.values += 1;
+            for index in 0..starts {
+                if self.question.interrupt.is_requested() {
+                    break;
+                }
+                tried.starts += 1;
+                let index = value * starts + index;
+                let settled = self.settled_cycle(index, parameter, &known.scale);
+                let Some((start, anchor)) = settled else { continue };
+                if let Some(orbit) = self.cycle_near(&start, &known.scale, anchor) {
+                    self.add_branch(orbit, anchor, &mut known);
+                }
+            }
+            self.question.progress.advance();
+        }
+        self.follow_crossings(&mut known);
+        if known.branches.is_empty() && equilibria.is_empty() {
+            return Err(match self.question.interrupt.is_requested() {
+                true => self.nothing_found(tried),
+                false => ResponseError::NoCycle {
+                    parameter: self.question.parameter,
+                    range: self.question.range,
+                },
+            });
+        }
+        let mut response = self.diagram(&known, vec![], vec![], vec![]);
+        response.equilibria = equilibria;
+        Ok(response.with_verdict())
+    }
+
+    /// The cycle near a start with its period.
+    fn cycle_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
+        let n = self.states.len();
+        let orbit = self.orbit_near(start, scale, anchor)?;
+        let travel = &orbit.kept[..self.coordinates];
+        let guessed = start.unknowns[n];
+        let period = orbit.unknowns[n];
+        let moves = travel.iter().any(|travel| *travel > 1e-6 * (1.0 + start.unknowns[0].abs()));
+        (moves && period > 0.2 * guessed && period < 5.0 * guessed).then_some(orbit)
+    }
+
+    /// A cycle of small amplitude beside a Hopf point.
+    fn small_cycle(&self, point: &HopfPoint) -> Option<(Orbit, Anchor)> {
+        const PARTS: [f64; 4] = [0.02, 0.1, 0.005, 0.4];
+        let n = self.states.len();
+        let ordinary = point.state.iter().map(|value| value.abs()).fold(0.0, f64::max).max(1.0);
+        // The motion of the linear equations begins where the largest coordinate turns.
+        let slopes = self.in_time.linearised(&point.state, 0.0, point.parameter).by_state;
+        let quarter = slopes * &point.direction / point.frequency;
+        let size_of = |k: &usize| point.direction[*k].hypot(quarter[*k]);
+        let turning =
+            (0..self.coordinates).max_by(|one, other| size_of(one).total_cmp(&size_of(other)))?;
+        let (sine, cosine) = quarter[turning].atan2(point.direction[turning]).sin_cos();
+        let shape = (&point.direction * cosine + &quarter * sine).normalize();
+        PARTS.into_iter().find_map(|part| {
+            let size = part * ordinary;
+            let mut guess = DVector::zeros(n + 2);
+            for i in 0..n {
+                guess[i] = point.state[i] + size * shape[i];
+            }
+            (guess[n], guess[n + 1]) = (TAU / point.frequency, point.parameter);
+            let travel: Vec<f64> = (0..n).map(|i| size * shape[i].abs()).collect();
+            let largest = travel.iter().copied().fold(0.0, f64::max);
+            let travel: Vec<f64> =
+                travel.into_iter().map(|travel| travel.max(SMALLEST * largest)).collect();
+            let sizes = self.sizes(&travel, &[], &guess);
+            let mut direction = DVector::zeros(n + 2);
+            for i in 0..n {
+                direction[i] = shape[i] * size / sizes[i];
+            }
+            let direction = direction.normalize();
+            let anchor = anchor_of(turning, travel[turning], guess[n]);
+            let orbit = self.with_orbits(&[], anchor, |orbits| {
+                orbits.orbit_along(&guess, &direction, &sizes)
+            })?;
+            Some((orbit, anchor))
+        })
+    }
+
+    /// The state and the period of a simulation that comes back to itself; `None` if it does not.
+    fn settled_cycle(
+        &self,
+        index: usize,
+        parameter: f64,
+        scale: &[f64],
+    ) -> Option<(Start, Anchor)> {
+        /// Distance from its start at which a motion has come back, relative to its size.
+        const BACK: f64 = 0.05;
+        const CELLS: usize = 400;
+        let (n, m) = (self.states.len(), self.coordinates);
+        // Periods of small motions about zero, or of the slowest of them.
+        let fastest = self.growth(&vec![0.0; n], parameter)?.into_iter().map(|value| value.norm());
+        let fastest = fastest.fold(0.0, f64::max);
+        let unit = TAU / if fastest > 0.0 { fastest } else { 1.0 };
+        let largest = scale.iter().take(m).copied().fold(0.0, f64::max);
+        let size =
+            (if largest > 0.0 { largest } else { 1.0 }) * 0.1 * 30.0_f64.powf(spread(index, 0));
+        let start: Vec<f64> = (0..n).map(|k| size * (2.0 * spread(index, k + 1) - 1.0)).collect();
+        let settled = self.after(&start, [0.0, SETTLING * unit], parameter, scale)?;
+        let path = self.by_series(&settled, 12.0 * unit, parameter)?;
+        let rates = self.in_time.rates_at(&settled, 0.0, parameter);
+        let mut low = settled.clone();
+        let mut high = settled.clone();
+        let time = |cell: usize| path.end() * cell as f64 / CELLS as f64;
+        for cell in 0..=CELLS {
+            for (index, state) in path.states_at(time(cell))?.into_iter().enumerate() {
+                low[index] = low[index].min(state);
+                high[index] = high[index].max(state);
+            }
+        }
+        let travel: Vec<f64> =
+            low.iter().zip(&high).map(|(low, high)| 0.5 * (high - low)).collect();
+        let sizes = self.state_sizes(&travel, &[]);
+        let away = |time: f64| -> Option<Vec<f64>> {
+            let state = path.states_at(time)?;
+            Some((0..n).map(|i| (state[i] - settled[i]) / sizes[i]).collect())
+        };
+        let across = |time: f64| {
+            away(time).map_or(f64::NAN, |away| {
+                away.iter().enumerate().map(|(i, value)| value * rates[i] / sizes[i]).sum()
+            })
+        };
+        let back = (1..CELLS)
+            .filter(|cell| across(time(*cell)) < 0.0 && across(time(cell + 1)) >= 0.0)
+            .filter_map(|cell| find_root(across, time(cell), time(cell + 1)).ok());
+        let is_back = |time: &f64| {
+            away(*time).is_some_and(|away| away.iter().all(|value| value.abs() <= BACK))
+        };
+        let period = { back }.find(is_back)?;
+        // It begins where the coordinate turns that moves most: the highest of many points, made
+        // exact by the search for the orbit.
+        let turning = (0..m).max_by(|one, other| travel[*one].total_cmp(&travel[*other]))?;
+        let place = |cell: usize| period * cell as f64 / CELLS as f64;
+        let height = |cell: usize| path.state_at(place(cell), turning).unwrap_or(f64::NAN);
+        let highest = (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
+        let begin = path.states_at(place(highest))?;
+        let unknowns = begin.into_iter().chain([period]).collect();
+        Some((Start { parameter, unknowns }, anchor_of(turning, travel[turning], period)))
+    }
+}
+
+/// The anchor of a cycle at a turn of a coordinate, for motions of this travel and period.
+fn anchor_of(state: usize, travel: f64, period: f64) -> Anchor {
+    let travel = if travel > 0.0 { travel } else { 1.0 };
+    Anchor { state, size: travel / (period * period) }
+}

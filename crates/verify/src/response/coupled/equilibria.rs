@@ -1,0 +1,252 @@
+//! Branches of equilibria of systems that nothing drives, with their folds, branch points and Hopf
+//! points.
+//!
+//! ```text
+//! F(y; p) = 0,   small disturbances as exp(lambda t):  F_y u = lambda u,   Hopf: lambda = i omega
+//! ```
+//!
+//! An equilibrium is a fixed point of y + tau F(y; p), so that its branch is followed as that of an
+//! orbit is.
+
+use std::cell::Cell;
+
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
+
+use super::changes::eigenvalues;
+use super::problem::{CoupledProblem, SMALLEST};
+use super::starts::spread;
+use crate::numeric::ode::root::find_root;
+use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::{
+    Equilibrium, EquilibriumBranch, EquilibriumChange, LONGEST_STEP, MOST_POINTS,
+};
+
+/// A Hopf point: the equilibrium, the frequency, and the direction in which cycles begin.
+pub(super) struct HopfPoint {
+    pub(super) parameter: f64,
+    pub(super) state: Vec<f64>,
+    pub(super) frequency: f64,
+    pub(super) direction: DVector<f64>,
+}
+
+type Rest = OrbitPoint<()>;
+
+/// Values of the parameter at which equilibria are searched for, and starts at each.
+const SEARCH: [usize; 2] = [5, 12];
+
+/// Largest number of branches.
+const MOST: usize = 16;
+
+impl CoupledProblem<'_> {
+    /// The eigenvalues of the linear equations at a state.
+    pub(super) fn growth(&self, state: &[f64], parameter: f64) -> Option<Vec<Complex<f64>>> {
+        eigenvalues(self.in_time.linearised(state, 0.0, parameter).by_state)
+    }
+
+    /// The branches of equilibria in the range, and their Hopf points.
+    pub(super) fn equilibria(&self) -> (Vec<EquilibriumBranch>, Vec<HopfPoint>) {
+        let n = self.states.len();
+        let [low, high] = self.question.range;
+        let map = |state: &DVector<f64>, parameter: f64| {
+            let found = self.in_time.linearised(state.as_slice(), 0.0, parameter);
+            let finite =
+                found.rates.iter().chain(found.by_state.iter()).all(|value| value.is_finite());
+            finite.then(|| PeriodImage {
+                end: state + &found.rates,
+                by_start: DMatrix::identity(n, n) + &found.by_state,
+                by_parameter: found.by_parameter,
+                path: (),
+            })
+        };
+        let ordinary = Cell::new(1e-3);
+        let sizes_at = |state: &[f64]| {
+            // Velocities are zero: their size is that of the places.
+            let largest = state.iter().map(|value| value.abs()).fold(ordinary.get(), f64::max);
+            let size = |value: &f64| value.abs().max(SMALLEST * largest);
+            DVector::from_iterator(n + 1, state.iter().map(size).chain([high - low]))
+        };
+        let sizes = |rest: &Rest| sizes_at(rest.start());
+        let equations = OrbitEquations { map: &map, keep: &|_, _| (), sizes: &sizes };
+        let limits = OrbitBranchLimits {
+            range: self.question.range,
+            longest: LONGEST_STEP,
+            most: MOST_POINTS,
+            interrupt: self.question.interrupt,
+        };
+        let mut branches: Vec<Vec<Rest>> = Vec::new();
+        let is_known = |rest: &Rest, branches: &[Vec<Rest>]| {
+            let sizes = sizes(rest);
+            branches.iter().flat_map(|branch| branch.windows(2)).any(|pair| {
+                let [from, to] = pair else { return false };
+                let way = to.parameter() - from.parameter();
+                let part =
+                    if way == 0.0 { 0.0 } else { (rest.parameter() - from.parameter()) / way };
+                let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
+                let near = (&guess - &rest.unknowns).component_div(&sizes).norm() < 0.2;
+                let inside = (-1e-9..=1.0 + 1e-9).contains(&part);
+                let state = guess.rows(0, n).into_owned();
+                inside
+                    && near
+                    && equations.orbit_at(&state, rest.parameter(), &sizes).is_some_and(|found| {
+                        (&found.unknowns - &rest.unknowns).component_div(&sizes).norm() < 1e-6
+                    })
+            })
+        };
+        let add = |rest: Rest, branches: &mut Vec<Vec<Rest>>| {
+            if branches.len() < MOST && !is_known(&rest, branches) {
+                branches.push(equations.branch_through(rest, &limits, &|_| false).0);
+            }
+        };
+        let [values, starts] = SEARCH;
+        let mut found = Vec::new();
+        for value in 0..values {
+            let parameter = low + (high - low) * (value as f64 + 0.5) / values as f64;
+            for index in 0..starts {
+                let size = if index == 0 { 0.0 } else { 10.0_f64.powi(index as i32 % 4 - 2) * 3.0 };
+                let state = |k: usize| match k < self.coordinates {
+                    true => size * (2.0 * spread(value * starts + index, k) - 1.0),
+                    false => 0.0,
+                };
+                let guess = DVector::from_iterator(n, (0..n).map(state));
+                let sizes = DVector::from_element(n + 1, 1.0);
+                found.extend(equations.orbit_at(&guess, parameter, &sizes));
+            }
+        }
+        let largest = found.iter().flat_map(|rest| rest.start()).map(|value| value.abs());
+        ordinary.set(largest.fold(ordinary.get(), f64::max));
+        for rest in found {
+            add(rest, &mut branches);
+        }
+        let mut index = 0;
+        while index < branches.len() {
+            for pair in branches[index].clone().windows(2) {
+                let [from, to] = pair else { continue };
+                if from.orientation == to.orientation {
+                    continue;
+                }
+                let at = crossing(&equations, from, to);
+                for beside in at.map(|at| equations.beside_crossing(&at)).unwrap_or_default() {
+                    add(beside, &mut branches);
+                }
+            }
+            index += 1;
+        }
+        let mut hopf = Vec::new();
+        let described = branches.iter().map(|branch| {
+            let mut changes = Vec::new();
+            for pair in branch.windows(2) {
+                let [from, to] = pair else { continue };
+                let mut push = |kind, at: &Rest| {
+                    changes.push(EquilibriumChange {
+                        kind,
+                        parameter: at.parameter(),
+                        value: self.shown.call(&at.start()[..self.coordinates]),
+                        criticality: None,
+                    });
+                };
+                if from.parameter_slope() * to.parameter_slope() < 0.0 {
+                    let slope = |part: f64| {
+                        equations
+                            .between(from, to, part)
+                            .map_or(f64::NAN, |at| at.parameter_slope())
+                    };
+                    let part = find_root(slope, 0.0, 1.0).ok();
+                    if let Some(at) = part.and_then(|part| equations.between(from, to, part)) {
+                        push(BifurcationKind::Fold, &at);
+                    }
+                } else if from.orientation != to.orientation
+                    && let Some(at) = crossing(&equations, from, to)
+                {
+                    push(BifurcationKind::BranchPoint, &at);
+                }
+                if let Some((at, point)) = self.hopf_between(&equations, from, to) {
+                    push(BifurcationKind::Hopf, &at);
+                    hopf.push(point);
+                }
+            }
+            let point = |rest: &Rest| {
+                let growth = self.growth(rest.start(), rest.parameter());
+                let growth =
+                    growth.map(|all| all.iter().map(|value| value.re).fold(f64::MIN, f64::max));
+                Equilibrium {
+                    parameter: rest.parameter(),
+                    value: self.shown.call(&rest.start()[..self.coordinates]),
+                    state: rest.start().to_vec(),
+                    growth,
+                    stable: growth.map(|growth| match self.undamped {
+                        true => growth <= 1e-7,
+                        false => growth < 0.0,
+                    }),
+                }
+            };
+            EquilibriumBranch { points: branch.iter().map(point).collect(), changes }
+        });
+        (described.collect(), hopf)
+    }
+
+    /// The Hopf point between two equilibria, where the growth of a complex pair changes its sign.
+    fn hopf_between(
+        &self,
+        equations: &OrbitEquations<(), ()>,
+        from: &Rest,
+        to: &Rest,
+    ) -> Option<(Rest, HopfPoint)> {
+        let complex = |rest: &Rest| -> Option<Vec<Complex<f64>>> {
+            let all = self.growth(rest.start(), rest.parameter())?;
+            Some(all.into_iter().filter(|value| value.im > 1e-9 * value.norm()).collect())
+        };
+        let unstable = |all: &[Complex<f64>]| all.iter().filter(|value| value.re > 0.0).count();
+        let [before, after] = [complex(from)?, complex(to)?];
+        if before.len() != after.len() || unstable(&before) == unstable(&after) {
+            return None;
+        }
+        let nearest = |rest: &Rest| -> Option<Complex<f64>> {
+            let all = complex(rest)?;
+            all.into_iter().min_by(|one, other| one.re.abs().total_cmp(&other.re.abs()))
+        };
+        let growth = |part: f64| {
+            equations
+                .between(from, to, part)
+                .and_then(|rest| nearest(&rest))
+                .map_or(f64::NAN, |z| z.re)
+        };
+        let at = equations.between(from, to, find_root(growth, 0.0, 1.0).ok()?)?;
+        let frequency = nearest(&at)?.im;
+        // The real part of the eigenvector, of the null space of J^2 + omega^2.
+        let jacobian = self.in_time.linearised(at.start(), 0.0, at.parameter()).by_state;
+        let n = jacobian.nrows();
+        let square = &jacobian * &jacobian + DMatrix::identity(n, n) * (frequency * frequency);
+        let direction = null_vector(square)?;
+        let state = at.start().to_vec();
+        let point = HopfPoint { parameter: at.parameter(), state, frequency, direction };
+        Some((at, point))
+    }
+}
+
+/// The vector of length one that a matrix shortens most.
+pub(super) fn null_vector(matrix: DMatrix<f64>) -> Option<DVector<f64>> {
+    if !matrix.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let eigen = (matrix.transpose() * matrix).symmetric_eigen();
+    Some(eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned())
+}
+
+/// The crossing of branches between two equilibria.
+fn crossing(equations: &OrbitEquations<(), ()>, from: &Rest, to: &Rest) -> Option<Rest> {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        match equations.between(from, to, middle) {
+            Some(rest) if rest.orientation == from.orientation => low = middle,
+            Some(_) => high = middle,
+            None => break,
+        }
+    }
+    let middle = 0.5 * (low + high);
+    [0.0, 1e-6, -1e-6, 1e-3, -1e-3]
+        .into_iter()
+        .find_map(|aside| equations.between(from, to, (middle + aside).clamp(0.0, 1.0)))
+}

@@ -1,0 +1,313 @@
+//! Orbits as steady motions: amplitudes of all coordinates, harmonics, stability, and the error
+//! against the motion by Taylor series in time.
+//!
+//! ```text
+//! error: (1 - M) dy = P(y) - y      P by Taylor series, dy: the way to the closed orbit
+//! ```
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
+
+use super::branches::{Known, OrbitBranch};
+use super::changes::{changes_between, least_squares};
+use super::problem::{CoupledProblem, Kind, Orbit, monodromy};
+use crate::expr::Expr;
+use crate::numeric::harmonics::{Harmonics, Transform};
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::{
+    Bifurcation, Branch, CoordinateMotion, Elsewhere, MOST_HARMONICS, ResponseDiagram, Simulated,
+    SteadyMotion,
+};
+use crate::symbol::Symbol;
+use crate::system::{Path, PathEnd};
+use crate::verify::Verdict;
+
+/// Number of samples of a period.
+const SAMPLES: usize = 256;
+
+/// Number of harmonics that are kept where none is asked for.
+const HARMONICS: usize = 16;
+
+/// A quantity over a period: samples, and what follows from them.
+struct Wave {
+    harmonics: Vec<[f64; 2]>,
+    peak: f64,
+}
+
+impl CoupledProblem<'_> {
+    /// The motion from a state over a time, by the Taylor series of the equations as they were
+    /// given; `None` if it cannot be followed all the way.
+    pub(super) fn by_series(&self, start: &[f64], duration: f64, parameter: f64) -> Option<Path> {
+        let numbers = [(self.question.parameter, parameter)].into();
+        let path = match self.series.with_numbers(&numbers) {
+            Some(solver) => solver.solve([0.0, duration], start).ok()?,
+            None => {
+                let system = crate::system::System::new(
+                    &self.states,
+                    Symbol::new("t"),
+                    &self.right,
+                    &numbers,
+                );
+                let options = crate::system::SystemOptions::default();
+                system.ok()?.solve([0.0, duration], start, &[], &options).ok()?
+            }
+        };
+        (path.reason() == PathEnd::Reached).then_some(path)
+    }
+
+    /// The highest harmonic that is kept.
+    pub(super) fn harmonics(&self) -> usize {
+        self.question.harmonics.unwrap_or(HARMONICS).min(MOST_HARMONICS)
+    }
+
+    /// A quantity of the coordinates over a period of a path.
+    fn wave(
+        &self,
+        path: &Path,
+        period: f64,
+        samples: &[Vec<f64>],
+        transform: &Transform,
+        quantity: impl Fn(&[f64]) -> f64,
+    ) -> Wave {
+        let n = self.coordinates;
+        let at = |index: usize| -> Vec<f64> { (0..n).map(|k| samples[k][index]).collect() };
+        let values: Vec<f64> = (0..SAMPLES).map(|index| quantity(&at(index))).collect();
+        let Harmonics { cosines, sines } = transform.harmonics(&values, self.harmonics());
+        let pairs = cosines.iter().zip(&sines).enumerate();
+        let harmonics = pairs.map(|(index, (cosine, sine))| match index {
+            0 => [0.5 * cosine, 0.0],
+            _ => [*cosine, *sine],
+        });
+        let step = period / SAMPLES as f64;
+        let value = |time: f64| {
+            let states = path.states_at(time.rem_euclid(period)).unwrap_or_default();
+            if states.len() < n { f64::NAN } else { quantity(&states[..n]) }
+        };
+        // The highest point near the highest sample, by parabolas through three points.
+        let extreme = |sign: f64| {
+            let highest = (0..SAMPLES)
+                .max_by(|one, other| (sign * values[*one]).total_cmp(&(sign * values[*other])))
+                .unwrap_or(0);
+            let (mut middle, mut width) = (step * highest as f64, step);
+            let mut best = values[highest];
+            for _ in 0..3 {
+                let [left, right] = [middle - width, middle + width].map(value);
+                let curve = left - 2.0 * best + right;
+                let shift = if curve == 0.0 { 0.0 } else { 0.5 * width * (left - right) / curve };
+                if !shift.is_finite() || shift.abs() > width {
+                    break;
+                }
+                let there = value(middle + shift);
+                if !(sign * there >= sign * best) {
+                    break;
+                }
+                (middle, best, width) = (middle + shift, there, 0.1 * width);
+            }
+            best
+        };
+        Wave { harmonics: harmonics.collect(), peak: 0.5 * (extreme(1.0) - extreme(-1.0)) }
+    }
+
+    /// The distance of the closed orbit from this one by a path over its period, relative to the
+    /// travel; the difference of the period, relative to it, if that is larger.
+    fn error(&self, orbit: &Orbit, path: &Path, period: f64, scale: &[f64]) -> Option<f64> {
+        let (n, m) = (self.states.len(), self.coordinates);
+        let start = &orbit.unknowns.as_slice()[..n];
+        let end = path.states_at(period)?;
+        let sizes = self.state_sizes(&orbit.kept, scale);
+        let mut missed = DVector::from_iterator(n, (0..n).map(|i| (end[i] - start[i]) / sizes[i]));
+        let full = monodromy(orbit, n);
+        let mut matrix =
+            DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - full[(i, j)] * sizes[j] / sizes[i]);
+        let step = match self.kind {
+            Kind::Driven(_) => matrix.lu().solve(&missed)?,
+            Kind::SelfExcited | Kind::Free => {
+                // The period is free as well, and so is the place on the orbit; the frequency of a
+                // free motion is given, and its energy is free.
+                let rates = self.in_time.rates_at(start, 0.0, orbit.parameter());
+                let column = (0..n).map(|i| -period * rates[i] / sizes[i]);
+                let column = DVector::from_iterator(n, column);
+                if matches!(self.kind, Kind::SelfExcited) {
+                    matrix = matrix.insert_column(n, 0.0);
+                    matrix.set_column(n, &column);
+                }
+                least_squares(matrix, &std::mem::replace(&mut missed, DVector::zeros(0)))?
+            }
+        };
+        let own = &orbit.kept[..m];
+        let largest = own.iter().copied().fold(0.0, f64::max);
+        let of_place = (0..m).map(|i| {
+            let size = own[i].max(super::problem::SMALLEST * largest);
+            if size > 0.0 { (step[i] * sizes[i] / size).abs() } else { 0.0 }
+        });
+        let of_period = step.get(n).copied().unwrap_or(0.0).abs();
+        Some(of_place.fold(of_period, f64::max)).filter(|error| error.is_finite())
+    }
+
+    /// An orbit as a steady motion.
+    pub(super) fn motion(
+        &self,
+        orbit: &Orbit,
+        transform: &Transform,
+        scale: &[f64],
+    ) -> SteadyMotion {
+        let (n, m, parameter) = (self.states.len(), self.coordinates, orbit.parameter());
+        let frequency = self.frequency_of(orbit);
+        let period = TAU / frequency;
+        let start = &orbit.unknowns.as_slice()[..n];
+        let rates = self.in_time.rates_at(start, 0.0, parameter);
+        let path = self.by_series(start, period, parameter);
+        let multipliers = self.multipliers(orbit);
+        let mut samples = vec![Vec::with_capacity(SAMPLES); n];
+        if let Some(path) = &path {
+            let times: Vec<f64> =
+                (0..SAMPLES).map(|index| period * index as f64 / SAMPLES as f64).collect();
+            path.sample(&times, &mut vec![], &mut samples);
+        }
+        let path = path.filter(|_| samples.iter().all(|column| column.len() == SAMPLES));
+        let none = || Wave { harmonics: vec![[f64::NAN; 2]; 2], peak: f64::NAN };
+        let wave = |quantity: &dyn Fn(&[f64]) -> f64| {
+            path.as_ref()
+                .map_or_else(none, |path| self.wave(path, period, &samples, transform, quantity))
+        };
+        let polar = |wave: &Wave| {
+            let [cosine, sine] = wave.harmonics.get(1).copied().unwrap_or_default();
+            (cosine.hypot(sine), sine.atan2(cosine))
+        };
+        let coordinates: Vec<CoordinateMotion> = (0..m)
+            .map(|index| {
+                let wave = wave(&|states: &[f64]| states[index]);
+                let (amplitude, phase) = polar(&wave);
+                CoordinateMotion {
+                    coordinate: self.states[index],
+                    start: start[index],
+                    rate: rates[index],
+                    amplitude,
+                    phase,
+                    peak: wave.peak,
+                    harmonics: wave.harmonics,
+                }
+            })
+            .collect();
+        let shown = wave(&|states: &[f64]| self.shown.call(states));
+        let (amplitude, phase) = polar(&shown);
+        let stable = multipliers.as_ref().map(|all| self.is_stable(all));
+        let two = multipliers.map(|all| {
+            let get = |index: usize| all.get(index).copied().unwrap_or(Complex::from(1.0));
+            [get(0), get(1)]
+        });
+        // The place and the rate of the quantity that is listed, at the beginning.
+        let place = self.shown.call(&start[..m]);
+        let step = 1e-6;
+        let moved: Vec<f64> = (0..m).map(|i| start[i] + step * rates[i]).collect();
+        SteadyMotion {
+            parameter,
+            harmonics: shown.harmonics,
+            frequency,
+            amplitude,
+            phase,
+            peak: shown.peak,
+            start: [place, (self.shown.call(&moved) - place) / step],
+            stable,
+            multipliers: two,
+            stuck: 0.0,
+            error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
+            coordinates,
+        }
+    }
+
+    /// The diagram of the branches that are known, each point judged.
+    pub(super) fn diagram(
+        &self,
+        known: &Known,
+        extra: Vec<(usize, BifurcationKind, Orbit)>,
+        simulated: Vec<Simulated>,
+        elsewhere: Vec<Elsewhere>,
+    ) -> ResponseDiagram {
+        let question = self.question;
+        let transform = Transform::new(SAMPLES);
+        let count: usize = known.branches.iter().map(|branch| branch.orbits.len()).sum();
+        question.progress.begin(count);
+        let mut branches = Vec::new();
+        let mut bifurcations: Vec<Bifurcation> = Vec::new();
+        let size = known.scale.get(..self.coordinates).unwrap_or_default();
+        let size = size.iter().copied().fold(0.0, f64::max);
+        for (index, branch) in known.branches.iter().enumerate() {
+            let mut points = Vec::new();
+            for orbit in &branch.orbits {
+                points.push(self.motion(orbit, &transform, &known.scale));
+                question.progress.advance();
+            }
+            let mut found = self.changes_along(branch, &known.scale);
+            let own = extra.iter().filter(|(of, _, _)| *of == index);
+            found.extend(own.map(|(_, kind, orbit)| (*kind, orbit.clone())));
+            for (kind, orbit) in found {
+                let motion = self.motion(&orbit, &transform, &known.scale);
+                let bifurcation = Bifurcation {
+                    kind,
+                    branch: index,
+                    parameter: motion.parameter,
+                    frequency: motion.frequency,
+                    amplitude: motion.amplitude,
+                    peak: motion.peak,
+                    criticality: None,
+                };
+                let is_listed = bifurcations
+                    .iter()
+                    .any(|other| bifurcation.is_near(other, question.range, size));
+                if !is_listed {
+                    bifurcations.push(bifurcation);
+                }
+            }
+            branches.push(Branch { points, ends: branch.ends, mirrored: branch.mirrored });
+        }
+        let self_excited = !matches!(self.kind, Kind::Driven(_));
+        ResponseDiagram {
+            question: question.clone(),
+            frequency: match &self.kind {
+                Kind::Driven(drive) => drive.frequency.clone(),
+                Kind::Free => Expr::from(question.parameter),
+                Kind::SelfExcited => Expr::from(crate::symbol::fresh("omega", &self.states)),
+            },
+            self_excited,
+            undamped: self.undamped,
+            jumps: false,
+            by_map: true,
+            harmonics: self.harmonics(),
+            branches,
+            bifurcations,
+            ripple: None,
+            backbone: vec![],
+            simulated,
+            elsewhere,
+            error: None,
+            unjudged: 0,
+            verdict: Verdict::Fail,
+            slow: None,
+            equilibria: vec![],
+            curves: vec![],
+            stable_motions: None,
+            complete: !question.interrupt.is_requested(),
+        }
+        .with_verdict()
+    }
+
+    /// The bifurcations of a branch.
+    pub(super) fn changes_along(
+        &self,
+        branch: &OrbitBranch,
+        scale: &[f64],
+    ) -> Vec<(BifurcationKind, Orbit)> {
+        self.with_orbits(scale, branch.anchor, |orbits| {
+            let mut found = Vec::new();
+            for pair in branch.orbits.windows(2) {
+                if let [from, to] = pair {
+                    found.extend(changes_between(self, orbits, from, to));
+                }
+            }
+            found
+        })
+    }
+}

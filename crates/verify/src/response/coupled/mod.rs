@@ -1,0 +1,54 @@
+//! Steady states of coupled equations: branches of periodic motions of any number of states, with
+//! their stability.
+//!
+//! ```text
+//! M(q) q'' + h(q, q', t; p) = 0   ->   y' = F(t, y; p),   y = (q, q'):    P(y; p) = y,  P: the state a period later
+//! ```
+//!
+//! Branches are found by shooting ([`orbit_branch`](crate::numeric::orbit_branch)): a point is the
+//! start of a closed orbit, with the derivatives of its map from the variations of the same motion
+//! (A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 5 and 6).
+//! Every point is judged by the Taylor series of the equations as they were given, in time.
+//!
+//! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
+//! - `flow`: the motion with its variations by Runge-Kutta.
+//! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
+//!   harmonic.
+//! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
+//! - `modes`: nonlinear normal modes, the free motions without damping.
+//! - `changes`: multipliers, and bifurcations between two points of a branch.
+//! - `judged`: a point of a branch as a steady motion with its error.
+//!
+//! In: a [`ResponseRequest`] of coupled equations. Out: the same [`ResponseDiagram`] as for one
+//! coordinate.
+
+mod branches;
+mod changes;
+mod cycles;
+mod equilibria;
+mod flow;
+mod guesses;
+mod judged;
+mod modes;
+mod problem;
+mod starts;
+
+use super::{ResponseDiagram, ResponseError, ResponseRequest};
+use crate::coupled::CoupledEquations;
+use problem::{CoupledProblem, Kind};
+
+/// Computes and verifies all steady states that are found.
+///
+/// # Errors
+/// [`ResponseError`].
+pub(super) fn respond(
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+) -> Result<ResponseDiagram, ResponseError> {
+    let problem = CoupledProblem::new(question, equations)?;
+    match problem.kind {
+        Kind::Driven(_) => problem.driven_response(),
+        Kind::SelfExcited => problem.cycle_response(),
+        Kind::Free => problem.mode_response(),
+    }
+}

@@ -1,0 +1,128 @@
+//! Nonlinear normal modes: the families of free motions without damping that begin at the linear
+//! modes, in their frequency.
+//!
+//! ```text
+//! (K - omega_0^2 M) v = 0,    q = q_0 + epsilon v cos(omega t) + ...,  omega -> omega_0 as epsilon -> 0
+//! ```
+//!
+//! (G. Kerschen, M. Peeters, J. C. Golinval and A. F. Vakakis, *Mech. Syst. Signal Process.* 23
+//! (2009) 170; M. Peeters and others, the same volume, 195.) Branch points on them lead to motions of
+//! less symmetry, such as localised modes, and to internal resonances.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::branches::Known;
+use super::equilibria::null_vector;
+use super::problem::{Anchor, CoupledProblem, Orbit};
+use crate::response::{ResponseDiagram, ResponseError};
+
+impl CoupledProblem<'_> {
+    /// The nonlinear normal modes in a range of frequencies.
+    pub(super) fn mode_response(&self) -> Result<ResponseDiagram, ResponseError> {
+        let n = self.coordinates;
+        let rest = self.rest().ok_or_else(|| self.nothing_found(Default::default()))?;
+        let slopes = self.in_time.linearised(&rest, 0.0, 0.0).by_state;
+        let stiffness = DMatrix::from_fn(n, n, |i, j| -slopes[(n + i, j)]);
+        let squares = super::changes::eigenvalues(stiffness.clone()).unwrap_or_default();
+        let mut frequencies: Vec<f64> = squares
+            .iter()
+            .filter(|square| square.re > 0.0 && square.im.abs() <= 1e-9 * square.re)
+            .map(|square| square.re.sqrt())
+            .collect();
+        frequencies.sort_by(f64::total_cmp);
+        frequencies.dedup_by(|one, other| (*one / *other - 1.0).abs() < 1e-9);
+        let mut known = Known::default();
+        self.question.progress.begin(frequencies.len());
+        for frequency in frequencies {
+            let square = frequency * frequency;
+            let matrix = &stiffness - DMatrix::identity(n, n) * square;
+            let Some(shape) = null_vector(matrix) else { continue };
+            if let Some((orbit, anchor)) = self.small_mode(&rest, frequency, &shape) {
+                self.add_branch(orbit, anchor, &mut known);
+            }
+            self.question.progress.advance();
+        }
+        self.follow_crossings(&mut known);
+        if known.branches.is_empty() {
+            return Err(self.nothing_found(Default::default()));
+        }
+        Ok(self.diagram(&known, vec![], vec![], vec![]))
+    }
+
+    /// The equilibrium that Newton's method finds from zero.
+    fn rest(&self) -> Option<Vec<f64>> {
+        let (n, m) = (self.states.len(), self.coordinates);
+        let mut state = vec![0.0; n];
+        for _ in 0..50 {
+            let found = self.in_time.linearised(&state, 0.0, 0.0);
+            let force = found.rates.rows(m, m).into_owned();
+            if force.amax() <= 1e-14 * (1.0 + found.by_state.amax()) {
+                return Some(state);
+            }
+            let slopes = found.by_state.view((m, 0), (m, m)).into_owned();
+            let step = slopes.lu().solve(&force)?;
+            for (place, step) in state.iter_mut().zip(step.iter()) {
+                *place -= step;
+            }
+        }
+        state.iter().all(|value| value.is_finite()).then_some(state)
+    }
+
+    /// A motion of the family of a linear mode, of an amplitude at which the frequency has moved
+    /// by a small part of the range, and the velocity that is zero at its beginning, with its size.
+    /// `None` if the frequency does not change with the amplitude, or the family leads away from the
+    /// range.
+    fn small_mode(
+        &self,
+        rest: &[f64],
+        frequency: f64,
+        shape: &DVector<f64>,
+    ) -> Option<(Orbit, Anchor)> {
+        /// Part of the range by which the frequency is to have moved.
+        const MOVED: f64 = 2e-3;
+        const DOUBLINGS: usize = 24;
+        let (n, m) = (self.states.len(), self.coordinates);
+        let [low, high] = self.question.range;
+        let largest = shape.iamax();
+        let mut size = 1e-3 / shape[largest].abs();
+        let mut guess = DVector::zeros(n + 2);
+        for i in 0..n {
+            guess[i] = rest[i] + if i < m { size * shape[i] } else { 0.0 };
+        }
+        guess[n + 1] = frequency;
+        for _ in 0..DOUBLINGS {
+            let anchor = Anchor { state: largest, size: size * shape[largest].abs() };
+            let travel: Vec<f64> = (0..n)
+                .map(|i| size * shape[i % m].abs() * if i < m { 1.0 } else { frequency })
+                .collect();
+            let sizes = self.sizes(&travel, &[], &guess);
+            let mut direction = DVector::zeros(n + 2);
+            for i in 0..m {
+                direction[i] = size * shape[i] / sizes[i];
+            }
+            let direction = direction.normalize();
+            let orbit = self.with_orbits(&[], anchor, |orbits| {
+                orbits.orbit_along(&guess, &direction, &sizes)
+            })?;
+            let moved = orbit.parameter() - frequency;
+            let inside = (low..=high).contains(&orbit.parameter());
+            if moved.abs() >= MOVED * (high - low) && inside {
+                return Some((orbit, anchor));
+            }
+            // Outside, a family that leads away never comes into the range.
+            let leads_away = (orbit.parameter() < low && moved < -MOVED * (high - low))
+                || (orbit.parameter() > high && moved > MOVED * (high - low));
+            if leads_away {
+                return None;
+            }
+            // The amplitude grows, the frequency with its square.
+            let factor = if inside || moved.abs() < 0.1 * (high - low) { 2.0 } else { 1.2 };
+            for i in 0..m {
+                guess[i] = rest[i] + factor * (orbit.unknowns[i] - rest[i]);
+            }
+            guess[n + 1] = frequency + factor * factor * moved;
+            size *= factor;
+        }
+        None
+    }
+}

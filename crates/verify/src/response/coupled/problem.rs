@@ -1,0 +1,414 @@
+//! Coupled equations with numbers for all parameters but one, and the maps whose fixed points are
+//! their motions.
+//!
+//! ```text
+//! driven:        dy/dtheta = F(theta/omega, y; p)/omega                 over 2 pi, unknowns y; p
+//! self-excited:  y' = F(y; p),                   F_k(y; p) = 0          over T, unknowns y, T; p
+//! free:          dy/dtheta = (F(y) + lambda (0, q'))/omega,  v_k = 0    over 2 pi, unknowns y, lambda; omega
+//! ```
+//!
+//! Free motions without damping come in families, one motion for each energy. The artificial damping
+//! lambda makes the equations of a closed orbit regular, and is zero on each of them (F. J.
+//! Munoz-Almaraz and others, *Physica D* 181 (2003) 1). Without a drive a motion may begin anywhere
+//! on itself: it begins where the rate of one state is zero, at a turn of it.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::flow::{Flow, FlowImage};
+use crate::coupled::CoupledEquations;
+use crate::expr::{CompiledFunction, Expr, Function};
+use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
+use crate::response::driven::{drive_frequency, in_phase};
+use crate::response::{ResponseError, ResponseRequest};
+use crate::symbol::{Symbol, fresh};
+use crate::system::{Solver, System, SystemOptions};
+
+/// The travel of each state of an orbit: half of the way from its lowest to its highest value.
+pub(super) type Travel = Vec<f64>;
+
+/// An orbit of a branch.
+pub(super) type Orbit = OrbitPoint<Travel>;
+
+/// The state whose rate is zero where a motion without a drive begins, and a size for that rate over
+/// the unknown that goes with it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Anchor {
+    pub(super) state: usize,
+    pub(super) size: f64,
+}
+
+impl Anchor {
+    /// The anchor of driven motions, which need none.
+    pub(super) const NONE: Self = Self { state: 0, size: 1.0 };
+}
+
+/// The equations of orbits.
+pub(super) type Orbits<'a> = OrbitEquations<'a, Travel, Travel>;
+
+/// What the motions of a system are.
+#[derive(Clone, Debug)]
+pub(super) enum Kind {
+    /// Motions with the period of a drive, or of some.
+    Driven(Drive),
+    /// Limit cycles.
+    SelfExcited,
+    /// Nonlinear normal modes: free motions without damping.
+    Free,
+}
+
+/// The drive.
+#[derive(Clone, Debug)]
+pub(super) struct Drive {
+    /// Its frequency, in the parameter.
+    pub(super) frequency: Expr,
+    /// The frequency of the motion, that of the drive over the number of its periods.
+    pub(super) base: CompiledFunction,
+}
+
+/// Coupled equations of which one parameter varies.
+pub(super) struct CoupledProblem<'a> {
+    pub(super) question: &'a ResponseRequest,
+    pub(super) kind: Kind,
+    /// The number of coordinates; they are the first of the states.
+    pub(super) coordinates: usize,
+    /// The states, as in [`CoupledEquations`].
+    pub(super) states: Vec<Symbol>,
+    /// The right sides in time, with numbers for all parameters but one.
+    pub(super) right: Vec<Expr>,
+    /// The right sides in time, compiled; without a drive the orbits of cycles are those of this.
+    pub(super) in_time: Flow,
+    /// The right sides in the phase of the drive or of a free motion.
+    pub(super) in_phase: Option<Flow>,
+    /// The Taylor series of the motion, which judges.
+    pub(super) series: Solver,
+    /// Whether a motion backward in time is a motion, so that nothing damps.
+    pub(super) undamped: bool,
+    /// The quantity that is listed, in the coordinates.
+    pub(super) shown: CompiledFunction,
+}
+
+/// A value of the parameter with which nothing cancels; every motion has its own.
+const ANY: f64 = 0.618_034;
+
+/// The smallest size used as a scale, as a fraction of the largest of its kind.
+pub(super) const SMALLEST: f64 = 0.1;
+
+impl<'a> CoupledProblem<'a> {
+    pub(super) fn new(
+        question: &'a ResponseRequest,
+        equations: &CoupledEquations,
+    ) -> Result<Self, ResponseError> {
+        let time = Symbol::new("t");
+        let rates = &equations.rates;
+        let driven = rates.right.iter().any(|rate| rate.contains(time));
+        let velocities = &rates.states[equations.coordinates.len()..];
+        let undamped = is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
+        let free = undamped && !driven;
+        let parameter = question.parameter;
+        // Free motions have a frequency for each energy, which is what varies.
+        let of_frequency =
+            free && parameter.name() == "omega" && !equations.parameters.contains(&parameter);
+        match of_frequency {
+            true => question.check_values_but(&equations.parameters, None)?,
+            false if free => return Err(ResponseError::FreeParameter(parameter)),
+            false => question.check_values_but(&equations.parameters, Some(parameter))?,
+        }
+        if !driven && question.periods != 1 {
+            return Err(ResponseError::NoPeriods(question.periods));
+        }
+        let values: BTreeMap<Symbol, Expr> = question.values.split(&equations.parameters).0;
+        let right: Vec<Expr> = rates
+            .right
+            .iter()
+            .map(|rate| rate.substitute_all(&values))
+            .collect::<Result<_, _>>()?;
+        if let Some(rate) = right.iter().find(|rate| has_jump(rate)) {
+            return Err(ResponseError::CoupledJump(rate.to_string()));
+        }
+        let states = rates.states.clone();
+        let in_time = Flow::new(&states, time, &right, parameter)?;
+        let numbers = [(parameter, ANY)].into();
+        let series = System::new(&states, time, &right, &numbers)
+            .map_err(|error| ResponseError::Rates(error.to_string()))?
+            .solver(&[], &SystemOptions { step_limit: 50_000, ..SystemOptions::default() });
+        let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
+        let (kind, in_phase) = match (driven, free) {
+            (true, _) => {
+                let frequency = drive_frequency(&right, &states)?;
+                let periods = Expr::from(i64::try_from(question.periods).unwrap_or(1));
+                let base = Expr::divide(&frequency, &periods)?;
+                let flow = flow_in_phase(&names, &states, &right, &base, parameter)?;
+                let base = CompiledFunction::new(&base, &[parameter])?;
+                (Kind::Driven(Drive { frequency, base }), Some(flow))
+            }
+            (false, true) => {
+                let damping = fresh("lambda", &names);
+                let first = equations.coordinates.len();
+                let damped = |(index, rate): (usize, &Expr)| match index < first {
+                    true => rate.clone(),
+                    false => rate + &(Expr::from(damping) * Expr::from(states[index])),
+                };
+                let mut rates: Vec<Expr> = right.iter().enumerate().map(damped).collect();
+                rates.push(Expr::zero());
+                let all: Vec<Symbol> = states.iter().copied().chain([damping]).collect();
+                let flow = flow_in_phase(&names, &all, &rates, &Expr::from(parameter), parameter)?;
+                (Kind::Free, Some(flow))
+            }
+            (false, false) => (Kind::SelfExcited, None),
+        };
+        let shown = question.of.clone().unwrap_or_else(|| Expr::from(equations.coordinates[0]));
+        let foreign =
+            shown.symbols().into_iter().find(|name| !equations.coordinates.contains(name));
+        if let Some(name) = foreign {
+            let known = equations.coordinates.clone();
+            return Err(ResponseError::NotShown { name, known });
+        }
+        let problem = Self {
+            question,
+            kind,
+            coordinates: equations.coordinates.len(),
+            shown: CompiledFunction::new(&shown, &equations.coordinates)?,
+            states,
+            right,
+            in_time,
+            in_phase,
+            series,
+            undamped,
+        };
+        problem.has_frequency()?;
+        Ok(problem)
+    }
+
+    /// Checks that the frequency of a motion is positive in all of the range.
+    fn has_frequency(&self) -> Result<(), ResponseError> {
+        let [low, high] = self.question.range;
+        let frequency = match &self.kind {
+            Kind::Driven(drive) => drive.frequency.to_string(),
+            Kind::Free => self.question.parameter.to_string(),
+            Kind::SelfExcited => return Ok(()),
+        };
+        for part in 0..=20 {
+            let at = low + (high - low) * f64::from(part) / 20.0;
+            let value = self.frequency_at(at);
+            if !(value > 0.0 && value.is_finite()) {
+                let (value, parameter) =
+                    (value * self.question.periods as f64, self.question.parameter);
+                return Err(ResponseError::Frequency { frequency, value, parameter, at });
+            }
+        }
+        Ok(())
+    }
+
+    /// The frequency of a motion at a parameter; NaN for cycles, each of which has its own.
+    pub(super) fn frequency_at(&self, parameter: f64) -> f64 {
+        match &self.kind {
+            Kind::Driven(drive) => drive.base.call(&[parameter]),
+            Kind::Free => parameter,
+            Kind::SelfExcited => f64::NAN,
+        }
+    }
+
+    /// The frequency of an orbit.
+    pub(super) fn frequency_of(&self, orbit: &Orbit) -> f64 {
+        match self.kind {
+            Kind::SelfExcited => TAU / orbit.unknowns[self.states.len()],
+            _ => self.frequency_at(orbit.parameter()),
+        }
+    }
+
+    /// The sizes of the states near a motion with this travel, where other motions have that of
+    /// `scale`: at least a tenth of the largest of its kind, positions or velocities.
+    pub(super) fn state_sizes(&self, travel: &[f64], scale: &[f64]) -> Vec<f64> {
+        let n = self.coordinates;
+        let own = |index: usize| {
+            let of_kind = if index < n { &travel[..n] } else { &travel[n..self.states.len()] };
+            let largest = of_kind.iter().copied().fold(0.0, f64::max);
+            let others = scale.get(index).copied().unwrap_or(0.0);
+            let size = travel[index].max(SMALLEST * largest.max(others));
+            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        };
+        (0..self.states.len()).map(own).collect()
+    }
+
+    /// The sizes of all unknowns of an orbit.
+    pub(super) fn sizes(
+        &self,
+        travel: &[f64],
+        scale: &[f64],
+        unknowns: &DVector<f64>,
+    ) -> DVector<f64> {
+        let mut sizes = self.state_sizes(travel, scale);
+        let [low, high] = self.question.range;
+        match self.kind {
+            Kind::SelfExcited => sizes.push(unknowns[self.states.len()].abs()),
+            Kind::Free => sizes.push(unknowns[unknowns.len() - 1].abs()),
+            Kind::Driven(_) => {}
+        }
+        sizes.push(high - low);
+        DVector::from_vec(sizes)
+    }
+
+    /// Calls a function with the equations of orbits; `scale` is the travel of the largest known
+    /// motion.
+    pub(super) fn with_orbits<T>(
+        &self,
+        scale: &[f64],
+        anchor: Anchor,
+        call: impl FnOnce(&Orbits) -> T,
+    ) -> T {
+        let interrupt = self.question.interrupt;
+        let map = |start: &DVector<f64>, parameter: f64| {
+            if interrupt.is_requested() {
+                return None;
+            }
+            match self.kind {
+                Kind::Driven(_) => self.driven_image(start.as_slice(), parameter, scale),
+                Kind::SelfExcited => self.cycle_image(start.as_slice(), parameter, scale, anchor),
+                Kind::Free => self.free_image(start.as_slice(), parameter, scale, anchor),
+            }
+        };
+        let keep = |_: &DVector<f64>, image: &PeriodImage<Travel>| image.path.clone();
+        let sizes = |orbit: &Orbit| self.sizes(&orbit.kept, scale, &orbit.unknowns);
+        call(&OrbitEquations { map: &map, keep: &keep, sizes: &sizes })
+    }
+
+    /// The sizes in which a motion from a start is followed.
+    fn sizes_of_start(&self, start: &[f64], scale: &[f64]) -> Vec<f64> {
+        let absolute: Vec<f64> = start.iter().map(|value| value.abs()).collect();
+        let largest: Vec<f64> = absolute
+            .iter()
+            .enumerate()
+            .map(|(index, value)| value.max(scale.get(index).copied().unwrap_or(0.0)))
+            .collect();
+        self.state_sizes(&largest[..self.states.len()], scale)
+    }
+
+    /// The state of a driven motion after phases; `None` if it cannot be followed.
+    pub(super) fn after(
+        &self,
+        start: &[f64],
+        phases: [f64; 2],
+        parameter: f64,
+        scale: &[f64],
+    ) -> Option<Vec<f64>> {
+        let sizes = self.sizes_of_start(start, scale);
+        let Kind::Driven(_) = self.kind else {
+            return self.in_time.end(start, phases, parameter, &sizes);
+        };
+        self.in_phase.as_ref()?.end(start, phases, parameter, &sizes)
+    }
+
+    fn driven_image(
+        &self,
+        start: &[f64],
+        parameter: f64,
+        scale: &[f64],
+    ) -> Option<PeriodImage<Travel>> {
+        let sizes = self.sizes_of_start(start, scale);
+        let FlowImage { end, by_start, by_parameter, travel } =
+            self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
+        Some(PeriodImage { end, by_start, by_parameter, path: travel })
+    }
+
+    fn cycle_image(
+        &self,
+        start: &[f64],
+        parameter: f64,
+        scale: &[f64],
+        Anchor { state, size }: Anchor,
+    ) -> Option<PeriodImage<Travel>> {
+        let n = self.states.len();
+        let (start, period) = (&start[..n], start[n]);
+        if !(period > 0.0 && period.is_finite()) {
+            return None;
+        }
+        let sizes = self.sizes_of_start(start, scale);
+        let image = self.in_time.image(start, period, parameter, &sizes)?;
+        let begin = self.in_time.linearised(start, 0.0, parameter);
+        let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
+        let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
+        by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
+        for column in 0..n {
+            by_start[(n, column)] = begin.by_state[(state, column)] / size;
+        }
+        by_start[(n, n)] = 1.0;
+        Some(PeriodImage {
+            end: image.end.push(period + begin.rates[state] / size),
+            by_start,
+            by_parameter: image.by_parameter.push(begin.by_parameter[state] / size),
+            path: image.travel,
+        })
+    }
+
+    fn free_image(
+        &self,
+        start: &[f64],
+        omega: f64,
+        scale: &[f64],
+        Anchor { state, size }: Anchor,
+    ) -> Option<PeriodImage<Travel>> {
+        let n = self.states.len();
+        let mut sizes = self.sizes_of_start(&start[..n], scale);
+        sizes.push(omega);
+        let FlowImage { mut end, mut by_start, by_parameter, travel } =
+            self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
+        // The damping stays what it is; its row holds the rate that is to be zero.
+        let velocity = state + self.coordinates;
+        end[n] = start[n] + start[velocity] / size;
+        for column in 0..n {
+            by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
+        }
+        let travel = travel[..n].to_vec();
+        Some(PeriodImage { end, by_start, by_parameter, path: travel })
+    }
+}
+
+/// The part of the monodromy matrix of an orbit that belongs to its states.
+pub(super) fn monodromy(orbit: &Orbit, states: usize) -> DMatrix<f64> {
+    orbit.monodromy.view((0, 0), (states, states)).into_owned()
+}
+
+/// The right sides in the phase of a motion of frequency `base`.
+fn flow_in_phase(
+    names: &[Symbol],
+    states: &[Symbol],
+    right: &[Expr],
+    base: &Expr,
+    parameter: Symbol,
+) -> Result<Flow, ResponseError> {
+    let phase = fresh("theta", &names.iter().chain(states).copied().collect::<Vec<_>>());
+    let moment = Expr::divide(&Expr::from(phase), base)?;
+    let rate = |rate: &Expr| -> Result<Expr, ResponseError> {
+        Ok(Expr::divide(&in_phase(rate, Symbol::new("t"), &moment)?, base)?)
+    };
+    let right: Vec<Expr> = right.iter().map(rate).collect::<Result<_, _>>()?;
+    Flow::new(states, phase, &right, parameter)
+}
+
+/// Whether a motion passed backward in time is a motion as well: the accelerations do not change
+/// when all velocities change their signs, and there are no equations of first order.
+fn is_reversible(
+    right: &[Expr],
+    coordinates: usize,
+    velocities: &[Symbol],
+) -> Result<bool, ResponseError> {
+    if velocities.len() < coordinates {
+        return Ok(false);
+    }
+    let reversed = velocities.iter().map(|name| (*name, -Expr::from(*name))).collect();
+    for rate in &right[coordinates..] {
+        let same = (rate - &rate.substitute_all(&reversed)?).expand()?;
+        if !same.is_zero() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Whether a rate jumps: `sgn` or `H` occurs in it.
+fn has_jump(rate: &Expr) -> bool {
+    rate.contains_function(Function::Sign) || rate.contains_function(Function::Step)
+}

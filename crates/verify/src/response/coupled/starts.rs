@@ -1,0 +1,276 @@
+//! The motions from which branches of a driven system start.
+//!
+//! At several values of the parameter: the motion that Newton's method finds from rest; those to
+//! which simulations settle, from rest and from states of every size; and those near guesses of one
+//! harmonic. Then the motions that branch off where branches cross. Simulations afterwards show
+//! what was missed.
+
+use std::f64::consts::TAU;
+
+use super::branches::{Known, Start};
+use super::problem::{Anchor, CoupledProblem};
+use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
+
+/// Values of the parameter at which branches are searched for.
+const VALUES: usize = 9;
+
+/// Simulated starts at each of them.
+const STARTS: usize = 4;
+
+/// Largest number of periods of a simulation.
+const SETTLING: usize = 150;
+
+/// Values of the parameter at which simulations look for motions that were missed, and starts at
+/// each.
+const CHECKS: [usize; 2] = [7, 4];
+
+/// A number between 0 and 1 for each index and dimension, evenly spread.
+pub(super) fn spread(index: usize, dimension: usize) -> f64 {
+    // The fractional parts of multiples of square roots of primes are independent.
+    const PRIMES: [f64; 16] = [
+        2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0,
+    ];
+    let root = PRIMES[dimension % PRIMES.len()].sqrt() * (1.0 + (dimension / PRIMES.len()) as f64);
+    ((index + 1) as f64 * root).fract()
+}
+
+/// A simulation that has gone on for a time.
+pub(super) struct Settled {
+    /// The state at the end of it.
+    pub(super) state: Vec<f64>,
+    /// After how many periods of the motion it repeats itself; `None` if it does not.
+    pub(super) periods: Option<usize>,
+}
+
+impl CoupledProblem<'_> {
+    /// Follows a motion until it repeats itself, or for the longest time.
+    fn settle(
+        &self,
+        start: Vec<f64>,
+        parameter: f64,
+        scale: &[f64],
+        most: usize,
+    ) -> Option<Settled> {
+        /// Change over a period, relative to the sizes, below which a motion has settled.
+        const SETTLED: f64 = 1e-8;
+        const MOST_REPEATS: usize = 8;
+        let sizes = self.state_sizes(&vec![0.0; self.states.len()], scale);
+        let apart = |one: &[f64], other: &[f64]| {
+            let each = one.iter().zip(other).zip(&sizes);
+            each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+        };
+        let mut past: Vec<Vec<f64>> = vec![start];
+        for _ in 0..most {
+            let last = past.last()?;
+            let next = self.after(last, [0.0, TAU], parameter, scale)?;
+            let repeats = past.iter().rev().take(MOST_REPEATS);
+            let repeats = { repeats }.position(|before| apart(before, &next) <= SETTLED);
+            if past.len() >= 2 * MOST_REPEATS {
+                past.remove(0);
+            }
+            past.push(next);
+            if let Some(count) = repeats {
+                return Some(Settled { state: past.pop()?, periods: Some(count + 1) });
+            }
+        }
+        Some(Settled { state: past.pop()?, periods: None })
+    }
+
+    /// A state of random directions, of a size between a part of that of the largest motion and
+    /// several times it.
+    fn random_state(&self, index: usize, parameter: f64, scale: &[f64]) -> Vec<f64> {
+        const SIZES: [f64; 2] = [0.1, 6.0];
+        let n = self.coordinates;
+        let largest = scale[..n].iter().copied().fold(0.0, f64::max);
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let factor = SIZES[0] * (SIZES[1] / SIZES[0]).powf(spread(index, 0));
+        let omega = self.frequency_at(parameter) * self.question.periods as f64;
+        (0..self.states.len())
+            .map(|state| {
+                let own = largest * factor * (2.0 * spread(index, state + 1) - 1.0);
+                if state < n { own } else { own * omega }
+            })
+            .collect()
+    }
+
+    /// The values of the parameter at which something is done, in the middle of equal parts of the
+    /// range.
+    fn values(&self, count: usize) -> Vec<f64> {
+        let [low, high] = self.question.range;
+        (0..count).map(|i| low + (high - low) * (i as f64 + 0.5) / count as f64).collect()
+    }
+
+    /// All steady states of a driven system that are found.
+    pub(super) fn driven_response(&self) -> Result<ResponseDiagram, ResponseError> {
+        let n = self.states.len();
+        let mut known = Known::default();
+        let interrupt = self.question.interrupt;
+        self.question.progress.begin(3 * VALUES);
+        let mut tried = SeedSearch::default();
+        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
+        for parameter in self.values(VALUES) {
+            self.follow_from(&rest(parameter), &mut known);
+            tried.values += 1;
+            self.question.progress.advance();
+        }
+        if !self.undamped {
+            for parameter in self.values(VALUES) {
+                for index in 0..STARTS {
+                    if interrupt.is_requested() {
+                        break;
+                    }
+                    let start = match index {
+                        0 => vec![0.0; n],
+                        index => {
+                            let scale = with_size(&known.scale, n);
+                            self.random_state(tried.starts + index, parameter, &scale)
+                        }
+                    };
+                    tried.starts += 1;
+                    let scale = known.scale.clone();
+                    let Some(settled) = self.settle(start, parameter, &scale, SETTLING / 3) else {
+                        continue;
+                    };
+                    self.follow_from(&Start { parameter, unknowns: settled.state }, &mut known);
+                }
+                self.question.progress.advance();
+            }
+        }
+        for parameter in self.values(VALUES) {
+            for unknowns in self.guesses(parameter, &known.scale) {
+                self.follow_from(&Start { parameter, unknowns }, &mut known);
+            }
+            self.question.progress.advance();
+        }
+        self.follow_crossings(&mut known);
+        if known.branches.is_empty() {
+            tried.motions = 0;
+            return Err(self.nothing_found(tried));
+        }
+        let (simulated, elsewhere) = match self.undamped {
+            true => (vec![], vec![]),
+            false => self.checked_by_simulation(&mut known),
+        };
+        self.follow_crossings(&mut known);
+        Ok(self.diagram(&known, vec![], simulated, elsewhere))
+    }
+
+    /// The error where no motion was found.
+    pub(super) fn nothing_found(&self, tried: SeedSearch) -> ResponseError {
+        let parameter = self.question.parameter;
+        match self.question.interrupt.is_requested() {
+            true => ResponseError::Interrupted { parameter, tried },
+            false => ResponseError::NoMotion {
+                parameter,
+                at: 0.5 * (self.question.range[0] + self.question.range[1]),
+                undamped: self.undamped,
+            },
+        }
+    }
+
+    /// Simulations that settle on known motions, and those that settle elsewhere. A motion of the
+    /// period that is not known gives its branch.
+    fn checked_by_simulation(&self, known: &mut Known) -> (Vec<Simulated>, Vec<Elsewhere>) {
+        let (mut simulated, mut elsewhere) = (Vec::new(), Vec::new());
+        let [values, starts] = CHECKS;
+        for (place, parameter) in self.values(values).into_iter().enumerate() {
+            for index in 0..starts {
+                if self.question.interrupt.is_requested() {
+                    return (simulated, elsewhere);
+                }
+                let scale = known.scale.clone();
+                let start = self.random_state(1000 + place * starts + index, parameter, &scale);
+                let Some(settled) = self.settle(start, parameter, &scale, SETTLING) else {
+                    continue;
+                };
+                let Settled { state, periods } = settled;
+                let start = Start { parameter, unknowns: state.clone() };
+                if periods == Some(1) {
+                    self.follow_from(&start, known);
+                }
+                match self.compared(&start, periods, known) {
+                    Some(found) => simulated.push(found),
+                    None => elsewhere.extend(self.elsewhere(&start, periods)),
+                }
+            }
+        }
+        Elsewhere::sort(&mut elsewhere);
+        simulated.dedup_by(|one, other| {
+            one.parameter == other.parameter && (one.peak / other.peak - 1.0).abs() < 1e-3
+        });
+        (simulated, elsewhere)
+    }
+
+    /// A settled simulation beside the known orbit on which it lies; `None` if there is none.
+    fn compared(&self, start: &Start, periods: Option<usize>, known: &Known) -> Option<Simulated> {
+        /// Distance from an orbit, relative to its size, within which a simulation has settled on it,
+        /// or comes to it still.
+        const NEAR: f64 = 0.05;
+        let orbit = self.orbit_near(start, &known.scale, Anchor::NONE)?;
+        let sizes = self.state_sizes(&orbit.kept, &known.scale);
+        let each = orbit.unknowns.iter().zip(&start.unknowns).zip(&sizes);
+        let apart = each.map(|((one, other), size)| ((one - other) / size).abs());
+        let apart = apart.fold(0.0, f64::max);
+        // A motion that winds about an orbit on its way to it may seem to repeat itself later.
+        const WINDING: f64 = 1e-4;
+        let near = if periods.is_some_and(|count| count > 1) { WINDING } else { NEAR };
+        if apart > near {
+            return None;
+        }
+        let multipliers = self.multipliers(&orbit)?;
+        if !self.is_stable(&multipliers) && periods.is_none() {
+            return None;
+        }
+        self.find(&orbit, known)?;
+        let transform = crate::numeric::harmonics::Transform::new(256);
+        let motion = self.motion(&orbit, &transform, &known.scale);
+        Some(Simulated {
+            parameter: start.parameter,
+            frequency: motion.frequency,
+            amplitude: motion.amplitude,
+            peak: motion.peak,
+            error: if periods.is_some() { apart } else { 0.0 },
+        })
+    }
+
+    /// A simulation that has settled on something that is not among the branches.
+    fn elsewhere(&self, start: &Start, periods: Option<usize>) -> Option<Elsewhere> {
+        let parameter = start.parameter;
+        let period = TAU / self.frequency_at(parameter);
+        let path =
+            self.by_series(&start.unknowns, period * periods.unwrap_or(1) as f64, parameter)?;
+        const SAMPLES: usize = 512;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut cosine, mut sine) = (0.0, 0.0);
+        for index in 0..SAMPLES {
+            let part = index as f64 / SAMPLES as f64;
+            let states = path.states_at(path.end() * part)?;
+            let value = self.shown.call(&states[..self.coordinates]);
+            (low, high) = (low.min(value), high.max(value));
+            let angle = TAU * part * periods.unwrap_or(1) as f64;
+            cosine += value * angle.cos() * 2.0 / SAMPLES as f64;
+            sine += value * angle.sin() * 2.0 / SAMPLES as f64;
+        }
+        let places = &start.unknowns[..self.coordinates];
+        let rates = self.in_time.rates_at(&start.unknowns, 0.0, parameter);
+        let moved: Vec<f64> = places.iter().zip(rates.iter()).map(|(x, v)| x + 1e-6 * v).collect();
+        let place = self.shown.call(places);
+        Some(Elsewhere {
+            parameter,
+            periods,
+            drive_periods: periods.map(|count| count * self.question.periods),
+            start: [place, (self.shown.call(&moved) - place) / 1e-6],
+            state: start.unknowns.clone(),
+            amplitude: cosine.hypot(sine),
+            peak: 0.5 * (high - low),
+        })
+    }
+}
+
+/// Sizes of all states where none are known yet.
+fn with_size(scale: &[f64], states: usize) -> Vec<f64> {
+    match scale.is_empty() {
+        true => vec![0.0; states],
+        false => scale.to_vec(),
+    }
+}

@@ -20,7 +20,7 @@
 //! A point costs two or three periods with their variations, and as many linear equations of n + 1
 //! unknowns.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 use super::continuation::{self, ContinuationStep, passes, sign_of_determinant, tangent};
 use crate::interrupt::Interrupt;
@@ -132,6 +132,7 @@ pub struct OrbitBranchLimits {
 /// let limits = OrbitBranchLimits { range: [0.0, 1.0], longest: 0.1, most: 100, interrupt: Interrupt::default() };
 /// let equations = OrbitEquations {
 ///     map: &map,
+///     smooth: true,
 ///     keep: &|_, _| (),
 ///     sizes: &|_| vector(&[1.0, 1.0]),
 /// };
@@ -146,6 +147,9 @@ pub struct OrbitEquations<'a, Path, Kept> {
     /// The motion over a period from a state with the parameter; `None` if it cannot be followed.
     /// Where the period depends on the parameter, time is counted in the phase of the drive.
     pub map: &'a PeriodMap<'a, Path>,
+    /// Whether the derivatives of the map change no faster than the map, so that those a last small
+    /// step beside an orbit are its own; otherwise they are computed once more on the orbit.
+    pub smooth: bool,
     /// The data that are kept of an orbit with these unknowns.
     pub keep: &'a dyn Fn(&DVector<f64>, &PeriodImage<Path>) -> Kept,
     /// The positive sizes in which changes of the unknowns are measured near an orbit.
@@ -193,8 +197,10 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         sizes: &DVector<f64>,
     ) -> Option<(OrbitPoint<Kept>, usize)> {
         const MOST: usize = 12;
-        /// Length of a step below which Newton's method has converged.
+        /// Length of a step below which Newton's method has converged; for a smooth map the next one
+        /// would be its square.
         const CONVERGED: f64 = 1e-10;
+        const NEXT_IS_ROUNDING: f64 = 1e-7;
         /// Length below which steps that no longer shrink are rounding, which is magnified near
         /// folds.
         const ROUNDING: f64 = 1e-6;
@@ -213,6 +219,10 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             if !moved.is_finite() {
                 return None;
             }
+            if self.smooth && moved <= NEXT_IS_ROUNDING {
+                unknowns -= step.component_mul(sizes);
+                return self.point(unknowns, &image, &factors, sizes).map(|point| (point, periods));
+            }
             if moved > CONVERGED && (moved > ROUNDING || moved < 0.5 * before) {
                 unknowns -= step.component_mul(sizes);
                 before = moved;
@@ -229,18 +239,28 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
                     (image, matrix.lu())
                 }
             };
-            let tangent = tangent(&factors)?;
-            let length = tangent.norm();
-            let point = || OrbitPoint {
-                kept: (self.keep)(&unknowns, &image),
-                monodromy: image.by_start.clone(),
-                tangent: (tangent / length).component_mul(sizes),
-                orientation: sign_of_determinant(&factors),
-                unknowns: unknowns.clone(),
-            };
-            return (length > 0.0 && length.is_finite()).then(|| (point(), periods));
+            return self.point(unknowns, &image, &factors, sizes).map(|point| (point, periods));
         }
         None
+    }
+
+    /// The orbit with these unknowns, of this image and these bordered equations.
+    fn point(
+        &self,
+        unknowns: DVector<f64>,
+        image: &PeriodImage<Path>,
+        factors: &LU<f64, Dyn, Dyn>,
+        sizes: &DVector<f64>,
+    ) -> Option<OrbitPoint<Kept>> {
+        let tangent = tangent(factors)?;
+        let length = tangent.norm();
+        (length > 0.0 && length.is_finite()).then(|| OrbitPoint {
+            kept: (self.keep)(&unknowns, image),
+            monodromy: image.by_start.clone(),
+            tangent: (tangent / length).component_mul(sizes),
+            orientation: sign_of_determinant(factors),
+            unknowns,
+        })
     }
 
     /// The orbit at a parameter near a state; its tangent leads to larger parameters. `None` if Newton's method does not converge.

@@ -63,7 +63,7 @@ impl Known {
 
 impl CoupledProblem<'_> {
     /// The orbit that Newton's method finds near a start, of a motion of its size; searched for
-    /// twice where the size is not known.
+    /// twice where no size of a motion is known.
     pub(super) fn orbit_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
         let n = self.states.len();
         let guess = DVector::from_column_slice(&start.unknowns);
@@ -76,6 +76,9 @@ impl CoupledProblem<'_> {
             })
         };
         let first = near(&guess, &absolute)?;
+        if !scale.is_empty() {
+            return Some(first);
+        }
         let guess = first.unknowns.rows(0, guess.len()).into_owned();
         near(&guess, &first.kept)
     }

@@ -84,6 +84,8 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) in_phase: Option<Flow>,
     /// The Taylor series of the motion, which judges.
     pub(super) series: Solver,
+    /// Whether no corner occurs, such as `abs` or `max`.
+    pub(super) smooth: bool,
     /// Whether a motion backward in time is a motion, so that nothing damps.
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
@@ -168,6 +170,7 @@ impl<'a> CoupledProblem<'a> {
         }
         let problem = Self {
             question,
+            smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
             shown: CompiledFunction::new(&shown, &equations.coordinates)?,
@@ -272,7 +275,7 @@ impl<'a> CoupledProblem<'a> {
         };
         let keep = |_: &DVector<f64>, image: &PeriodImage<Travel>| image.path.clone();
         let sizes = |orbit: &Orbit| self.sizes(&orbit.kept, scale, &orbit.unknowns);
-        call(&OrbitEquations { map: &map, keep: &keep, sizes: &sizes })
+        call(&OrbitEquations { map: &map, smooth: self.smooth, keep: &keep, sizes: &sizes })
     }
 
     /// The sizes in which a motion from a start is followed.

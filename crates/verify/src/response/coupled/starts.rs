@@ -11,18 +11,32 @@ use super::branches::{Known, Start};
 use super::problem::{Anchor, CoupledProblem};
 use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
 
-/// Values of the parameter at which branches are searched for.
-const VALUES: usize = 9;
+/// The extent of the search.
+struct Effort {
+    /// Values of the parameter at which branches are searched for.
+    values: usize,
+    /// Simulated starts at each of them.
+    starts: usize,
+    /// Values of the parameter at which simulations look for motions that were missed, and starts
+    /// at each.
+    checks: [usize; 2],
+}
 
-/// Simulated starts at each of them.
-const STARTS: usize = 4;
+impl Effort {
+    /// The extent for this many states: a period with its variations costs as their cube in the
+    /// worst case, and a search is to take about as long as its branches.
+    fn of(states: usize) -> Self {
+        match states {
+            ..=8 => Self { values: 9, starts: 4, checks: [7, 4] },
+            ..=20 => Self { values: 5, starts: 3, checks: [5, 2] },
+            _ => Self { values: 3, starts: 1, checks: [2, 1] },
+        }
+    }
+}
 
-/// Largest number of periods of a simulation.
-const SETTLING: usize = 150;
-
-/// Values of the parameter at which simulations look for motions that were missed, and starts at
-/// each.
-const CHECKS: [usize; 2] = [7, 4];
+/// Numbers of periods of a simulation: after the first ones it is looked at whether it comes to a
+/// known motion.
+const SETTLING: [usize; 2] = [40, 150];
 
 /// A number between 0 and 1 for each index and dimension, evenly spread.
 pub(super) fn spread(index: usize, dimension: usize) -> f64 {
@@ -105,17 +119,18 @@ impl CoupledProblem<'_> {
         let n = self.states.len();
         let mut known = Known::default();
         let interrupt = self.question.interrupt;
-        self.question.progress.begin(3 * VALUES);
+        let Effort { values, starts, .. } = Effort::of(n);
+        self.question.progress.begin(3 * values);
         let mut tried = SeedSearch::default();
         let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
-        for parameter in self.values(VALUES) {
+        for parameter in self.values(values) {
             self.follow_from(&rest(parameter), &mut known);
             tried.values += 1;
             self.question.progress.advance();
         }
         if !self.undamped {
-            for parameter in self.values(VALUES) {
-                for index in 0..STARTS {
+            for parameter in self.values(values) {
+                for index in 0..starts {
                     if interrupt.is_requested() {
                         break;
                     }
@@ -128,7 +143,7 @@ impl CoupledProblem<'_> {
                     };
                     tried.starts += 1;
                     let scale = known.scale.clone();
-                    let Some(settled) = self.settle(start, parameter, &scale, SETTLING / 3) else {
+                    let Some(settled) = self.settle(start, parameter, &scale, SETTLING[0]) else {
                         continue;
                     };
                     self.follow_from(&Start { parameter, unknowns: settled.state }, &mut known);
@@ -136,7 +151,7 @@ impl CoupledProblem<'_> {
                 self.question.progress.advance();
             }
         }
-        for parameter in self.values(VALUES) {
+        for parameter in self.values(values) {
             for unknowns in self.guesses(parameter, &known.scale) {
                 self.follow_from(&Start { parameter, unknowns }, &mut known);
             }
@@ -172,7 +187,7 @@ impl CoupledProblem<'_> {
     /// period that is not known gives its branch.
     fn checked_by_simulation(&self, known: &mut Known) -> (Vec<Simulated>, Vec<Elsewhere>) {
         let (mut simulated, mut elsewhere) = (Vec::new(), Vec::new());
-        let [values, starts] = CHECKS;
+        let [values, starts] = Effort::of(self.states.len()).checks;
         for (place, parameter) in self.values(values).into_iter().enumerate() {
             for index in 0..starts {
                 if self.question.interrupt.is_requested() {
@@ -180,11 +195,19 @@ impl CoupledProblem<'_> {
                 }
                 let scale = known.scale.clone();
                 let start = self.random_state(1000 + place * starts + index, parameter, &scale);
-                let Some(settled) = self.settle(start, parameter, &scale, SETTLING) else {
+                let [first, more] = SETTLING;
+                let Some(Settled { state, periods }) = self.settle(start, parameter, &scale, first)
+                else {
                     continue;
                 };
-                let Settled { state, periods } = settled;
-                let start = Start { parameter, unknowns: state.clone() };
+                let early = Start { parameter, unknowns: state };
+                if let Some(found) = self.compared(&early, periods, known) {
+                    simulated.push(found);
+                    continue;
+                }
+                let settled = self.settle(early.unknowns, parameter, &scale, more);
+                let Some(Settled { state, periods }) = settled else { continue };
+                let start = Start { parameter, unknowns: state };
                 if periods == Some(1) {
                     self.follow_from(&start, known);
                 }

@@ -55,6 +55,12 @@ impl Known {
         self.branches.push(branch);
     }
 
+    /// The travel of the largest motions, with one more.
+    fn scale_with(&self, travel: &[f64]) -> Travel {
+        let known = |index: usize| self.scale.get(index).copied().unwrap_or(0.0);
+        travel.iter().enumerate().map(|(index, travel)| travel.max(known(index))).collect()
+    }
+
     /// Whether as many branches are known as are followed.
     pub(super) fn is_full(&self) -> bool {
         self.branches.len() >= MOST_BRANCHES
@@ -92,10 +98,34 @@ impl CoupledProblem<'_> {
         if self.is_known(&orbit, known) {
             return;
         }
-        let scale = known.scale.clone();
-        let branch = self.with_orbits(&scale, Anchor::NONE, |orbits| {
-            self.branch_through(orbits, orbit, &scale, Anchor::NONE)
-        });
+        self.push_branch(orbit, Anchor::NONE, known);
+    }
+
+    /// Follows the branch through an orbit and adds it. Where its motions turn out to be much larger
+    /// than those known before, it is followed once more, with steps of their size.
+    fn push_branch(&self, orbit: Orbit, anchor: Anchor, known: &mut Known) {
+        const LARGER: f64 = 3.0;
+        let n = self.coordinates;
+        let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
+        let follow = |orbit: Orbit, scale: &[f64]| {
+            self.with_orbits(scale, anchor, |orbits| {
+                self.branch_through(orbits, orbit, scale, anchor)
+            })
+        };
+        let scale = known.scale_with(&orbit.kept);
+        let branch = follow(orbit, &scale);
+        let largest = branch
+            .orbits
+            .iter()
+            .max_by(|one, other| extent(&one.kept).total_cmp(&extent(&other.kept)));
+        let again = largest.filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale));
+        let branch = match again.cloned() {
+            Some(orbit) => {
+                let scale = known.scale_with(&orbit.kept);
+                follow(orbit, &scale)
+            }
+            None => branch,
+        };
         known.push(branch);
     }
 
@@ -177,10 +207,7 @@ impl CoupledProblem<'_> {
                     if known.is_full() || self.is_known(&orbit, known) {
                         continue;
                     }
-                    let branch = self.with_orbits(&scale, branch.anchor, |orbits| {
-                        self.branch_through(orbits, orbit, &scale, branch.anchor)
-                    });
-                    known.push(branch);
+                    self.push_branch(orbit, branch.anchor, known);
                 }
             }
             index += 1;
@@ -192,11 +219,7 @@ impl CoupledProblem<'_> {
         if known.is_full() || self.is_known(&orbit, known) {
             return;
         }
-        let scale = known.scale.clone();
-        let branch = self.with_orbits(&scale, anchor, |orbits| {
-            self.branch_through(orbits, orbit, &scale, anchor)
-        });
-        known.push(branch);
+        self.push_branch(orbit, anchor, known);
     }
 
     /// The states in which an orbit passes the beginning of each drive period, and those of its

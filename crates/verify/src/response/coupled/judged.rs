@@ -136,10 +136,12 @@ impl CoupledProblem<'_> {
                 least_squares(matrix, &std::mem::replace(&mut missed, DVector::zeros(0)))?
             }
         };
-        let own = &orbit.kept[..m];
-        let largest = own.iter().copied().fold(0.0, f64::max);
+        /// Motions smaller than this part of the largest are compared as if they were as large.
+        const SMALL: f64 = 1e-3;
+        let extent = |travel: &[f64]| travel.iter().take(m).copied().fold(0.0, f64::max);
+        let least = (super::problem::SMALLEST * extent(&orbit.kept)).max(SMALL * extent(scale));
         let of_place = (0..m).map(|i| {
-            let size = own[i].max(super::problem::SMALLEST * largest);
+            let size = orbit.kept[i].max(least);
             if size > 0.0 { (step[i] * sizes[i] / size).abs() } else { 0.0 }
         });
         let of_period = step.get(n).copied().unwrap_or(0.0).abs();

@@ -34,9 +34,9 @@ impl Effort {
     }
 }
 
-/// Numbers of periods of a simulation: after the first ones it is looked at whether it comes to a
-/// known motion.
-const SETTLING: [usize; 2] = [40, 150];
+/// Numbers of periods of a simulation: after each of the first number it is looked at whether the
+/// motion comes to a known one; the second is the largest number.
+const SETTLING: [usize; 2] = [40, 400];
 
 /// A number between 0 and 1 for each index and dimension, evenly spread.
 pub(super) fn spread(index: usize, dimension: usize) -> f64 {
@@ -54,6 +54,9 @@ pub(super) struct Settled {
     pub(super) state: Vec<f64>,
     /// After how many periods of the motion it repeats itself; `None` if it does not.
     pub(super) periods: Option<usize>,
+    /// The largest distance, in the sizes of the states, of its end from the beginnings of periods
+    /// before.
+    pub(super) spread: f64,
 }
 
 impl CoupledProblem<'_> {
@@ -79,15 +82,14 @@ impl CoupledProblem<'_> {
             let next = self.after(last, [0.0, TAU], parameter, scale)?;
             let repeats = past.iter().rev().take(MOST_REPEATS);
             let repeats = { repeats }.position(|before| apart(before, &next) <= SETTLED);
-            if past.len() >= 2 * MOST_REPEATS {
-                past.remove(0);
-            }
             past.push(next);
             if let Some(count) = repeats {
-                return Some(Settled { state: past.pop()?, periods: Some(count + 1) });
+                return Some(Settled { state: past.pop()?, periods: Some(count + 1), spread: 0.0 });
             }
         }
-        Some(Settled { state: past.pop()?, periods: None })
+        let state = past.pop()?;
+        let spread = past.iter().map(|before| apart(before, &state)).fold(0.0, f64::max);
+        Some(Settled { state, periods: None, spread })
     }
 
     /// A state of random directions, of a size between a part of that of the largest motion and
@@ -195,23 +197,10 @@ impl CoupledProblem<'_> {
                 }
                 let scale = known.scale.clone();
                 let start = self.random_state(1000 + place * starts + index, parameter, &scale);
-                let [first, more] = SETTLING;
-                let Some(Settled { state, periods }) = self.settle(start, parameter, &scale, first)
-                else {
+                let Some((start, periods, found)) = self.settled_on(start, parameter, known) else {
                     continue;
                 };
-                let early = Start { parameter, unknowns: state };
-                if let Some(found) = self.compared(&early, periods, known) {
-                    simulated.push(found);
-                    continue;
-                }
-                let settled = self.settle(early.unknowns, parameter, &scale, more);
-                let Some(Settled { state, periods }) = settled else { continue };
-                let start = Start { parameter, unknowns: state };
-                if periods == Some(1) {
-                    self.follow_from(&start, known);
-                }
-                match self.compared(&start, periods, known) {
+                match found {
                     Some(found) => simulated.push(found),
                     None => elsewhere.extend(self.elsewhere(&start, periods)),
                 }
@@ -222,6 +211,45 @@ impl CoupledProblem<'_> {
             one.parameter == other.parameter && (one.peak / other.peak - 1.0).abs() < 1e-3
         });
         (simulated, elsewhere)
+    }
+
+    /// Simulates until the motion is beside a known orbit, repeats itself, or goes on without coming to
+    /// rest although whatever damping takes away has died out; `None` if it has not settled. In: the
+    /// start. Out: the end, after how many periods it repeats itself, and the known orbit.
+    fn settled_on(
+        &self,
+        start: Vec<f64>,
+        parameter: f64,
+        known: &mut Known,
+    ) -> Option<(Start, Option<usize>, Option<Simulated>)> {
+        /// Powers of e by which disturbances have decayed on the average.
+        const DECAYED: f64 = 12.0;
+        /// Ratio of the spread of a motion to what it was before, below which it still shrinks.
+        const SHRINKS: f64 = 0.9;
+        let [chunk, most] = SETTLING;
+        let period = TAU / self.frequency_at(parameter);
+        let mut state = start;
+        let (mut before, mut decayed) = (f64::INFINITY, 0.0);
+        for _ in 0..most / chunk {
+            let scale = known.scale.clone();
+            let Settled { state: end, periods, spread } =
+                self.settle(state, parameter, &scale, chunk)?;
+            let start = Start { parameter, unknowns: end.clone() };
+            if periods == Some(1) {
+                self.follow_from(&start, known);
+            }
+            let found = self.compared(&start, periods, known);
+            if found.is_some() || periods.is_some() {
+                return Some((start, periods, found));
+            }
+            let trace = self.in_time.linearised(&end, 0.0, parameter).by_state.trace();
+            decayed -= trace * period * chunk as f64 / self.states.len() as f64;
+            if decayed > DECAYED && spread > SHRINKS * before {
+                return Some((start, None, None));
+            }
+            (state, before) = (end, spread);
+        }
+        None
     }
 
     /// A settled simulation beside the known orbit on which it lies; `None` if there is none.

@@ -135,6 +135,14 @@ pub enum ResponseError {
         "the rate `{0}` jumps: motions of several coordinates are not followed across `sgn` and `H`"
     )]
     CoupledJump(String),
+    /// Bifurcations in two parameters of motions that nothing drives.
+    #[error("bifurcations are followed in two parameters where something drives the motion")]
+    NoDriveAlong,
+    /// Bifurcations in two parameters of motions with corners of the force.
+    #[error(
+        "bifurcations are followed in two parameters where no force has a corner, such as `abs` or `max`"
+    )]
+    CornersAlong,
     /// The rates have no series.
     #[error("the motion has no Taylor series: {0}")]
     Rates(String),

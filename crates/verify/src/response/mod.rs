@@ -64,8 +64,11 @@ mod unfollowed;
 
 use num_complex::Complex;
 
+use crate::coupled::CoupledEquations;
+use crate::exact::rational::from_f64;
 use crate::expr::Expr;
 use crate::interrupt::{Interrupt, Progress};
+use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
@@ -464,10 +467,28 @@ const MOST_BRANCHES: usize = 32;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
-    let oscillator = match &question.equations {
-        Equations::One(oscillator) => oscillator,
-        Equations::Coupled(equations) => return coupled::respond(question, equations),
-    };
+    let question = &question.with_second_value()?;
+    match &question.equations {
+        Equations::Coupled(equations) => coupled::respond(question, equations),
+        Equations::One(oscillator) => {
+            let response = respond_one(question, oscillator)?;
+            match question.along {
+                None => Ok(response),
+                Some(_) => {
+                    let equations = CoupledEquations::new(question.equations.sides())
+                        .map_err(|error| ResponseError::Rates(error.to_string()))?;
+                    coupled::with_curves(response, question, &equations)
+                }
+            }
+        }
+    }
+}
+
+/// The response of a single coordinate.
+fn respond_one(
+    question: &ResponseRequest,
+    oscillator: &Oscillator,
+) -> Result<ResponseDiagram, ResponseError> {
     let asked = PreparedRequest::new(question, oscillator)?;
     if asked.period_series.is_none() {
         return asked.balanced_response();
@@ -535,6 +556,37 @@ impl ResponseDiagram {
 }
 
 impl ResponseRequest {
+    /// This request with another value of a parameter.
+    fn at(&self, name: Symbol, value: f64) -> Self {
+        let mut values = self.values.split(&[name]).1;
+        if let Some(exact) = from_f64(value) {
+            // A number that is finite and not there yet is a value.
+            let _ = values.insert(name, Expr::number(exact));
+        }
+        Self { values, ..self.clone() }
+    }
+
+    /// This request with the middle of its range as the value of the second parameter, if that has
+    /// none.
+    ///
+    /// # Errors
+    /// A second parameter that is none of the equations or the first one, or a range out of order.
+    fn with_second_value(&self) -> Result<Self, ResponseError> {
+        let Some((name, [low, high])) = self.along else { return Ok(self.clone()) };
+        let known = self.equations.parameters();
+        if !known.contains(&name) || name == self.parameter {
+            let known = known.iter().copied().filter(|known| *known != self.parameter);
+            return Err(ResponseError::NoParameter { name, known: known.collect() });
+        }
+        if !(low < high && (high - low).is_finite()) {
+            return Err(ResponseError::Range(name));
+        }
+        Ok(match self.values.get(name) {
+            Some(_) => self.clone(),
+            None => self.at(name, 0.5 * (low + high)),
+        })
+    }
+
     /// Checks parameter, values, range and counts, where these are the parameters of the equations;
     /// `None` in place of the varying parameter if it is none of them.
     ///

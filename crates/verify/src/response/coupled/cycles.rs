@@ -13,7 +13,7 @@ use super::equilibria::HopfPoint;
 use super::problem::{Anchor, CoupledProblem, Orbit, SMALLEST};
 use super::starts::spread;
 use crate::numeric::ode::root::find_root;
-use crate::response::{ResponseDiagram, ResponseError, SeedSearch};
+use crate::response::{Criticality, ResponseDiagram, ResponseError, SeedSearch};
 
 /// Values of the parameter at which simulations start, and starts at each.
 const SEARCH: [usize; 2] = [7, 4];
@@ -27,10 +27,17 @@ impl CoupledProblem<'_> {
         let [low, high] = self.question.range;
         let [values, starts] = SEARCH;
         self.question.progress.begin(values);
-        let (equilibria, hopf) = self.equilibria();
+        let (mut equilibria, hopf) = self.equilibria();
         let mut known = Known::default();
         for point in &hopf {
             if let Some((orbit, anchor)) = self.small_cycle(point) {
+                let is_above = orbit.parameter() > point.parameter;
+                let criticality = match is_above == point.unstable_above {
+                    true => Criticality::Supercritical,
+                    false => Criticality::Subcritical,
+                };
+                let [branch, change] = point.place;
+                equilibria[branch].changes[change].criticality = Some(criticality);
                 self.add_branch(orbit, anchor, &mut known);
             }
         }
@@ -62,7 +69,7 @@ impl CoupledProblem<'_> {
                 },
             });
         }
-        let mut response = self.diagram(&known, vec![], vec![], vec![]);
+        let mut response = self.diagram(&known, vec![], vec![]);
         response.equilibria = equilibria;
         Ok(response.with_verdict())
     }

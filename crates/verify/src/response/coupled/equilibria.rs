@@ -29,6 +29,10 @@ pub(super) struct HopfPoint {
     pub(super) state: Vec<f64>,
     pub(super) frequency: f64,
     pub(super) direction: DVector<f64>,
+    /// Whether the equilibrium is the less stable for larger parameters.
+    pub(super) unstable_above: bool,
+    /// The branch of equilibria and the change on it that this is.
+    pub(super) place: [usize; 2],
 }
 
 type Rest = OrbitPoint<()>;
@@ -134,7 +138,22 @@ impl CoupledProblem<'_> {
             index += 1;
         }
         let mut hopf = Vec::new();
-        let described = branches.iter().map(|branch| {
+        // A branch that begins at a crossing turns back there without a fold of its own.
+        let mut crossings: Vec<Rest> = Vec::new();
+        for pair in branches.iter().flat_map(|branch| branch.windows(2)) {
+            if let [from, to] = pair
+                && from.orientation != to.orientation
+                && from.parameter_slope() * to.parameter_slope() > 0.0
+            {
+                crossings.extend(crossing(&equations, from, to));
+            }
+        }
+        let is_crossing = |rest: &Rest| {
+            crossings.iter().any(|other| {
+                (&other.unknowns - &rest.unknowns).component_div(&sizes(rest)).norm() < 1e-3
+            })
+        };
+        let described = branches.iter().enumerate().map(|(index, branch)| {
             let mut changes = Vec::new();
             for pair in branch.windows(2) {
                 let [from, to] = pair else { continue };
@@ -153,7 +172,8 @@ impl CoupledProblem<'_> {
                             .map_or(f64::NAN, |at| at.parameter_slope())
                     };
                     let part = find_root(slope, 0.0, 1.0).ok();
-                    if let Some(at) = part.and_then(|part| equations.between(from, to, part)) {
+                    let at = part.and_then(|part| equations.between(from, to, part));
+                    if let Some(at) = at.filter(|at| !is_crossing(at)) {
                         push(BifurcationKind::Fold, &at);
                     }
                 } else if from.orientation != to.orientation
@@ -163,7 +183,7 @@ impl CoupledProblem<'_> {
                 }
                 if let Some((at, point)) = self.hopf_between(&equations, from, to) {
                     push(BifurcationKind::Hopf, &at);
-                    hopf.push(point);
+                    hopf.push(HopfPoint { place: [index, changes.len() - 1], ..point });
                 }
             }
             let point = |rest: &Rest| {
@@ -220,7 +240,16 @@ impl CoupledProblem<'_> {
         let square = &jacobian * &jacobian + DMatrix::identity(n, n) * (frequency * frequency);
         let direction = null_vector(square)?;
         let state = at.start().to_vec();
-        let point = HopfPoint { parameter: at.parameter(), state, frequency, direction };
+        let unstable_above =
+            (unstable(&after) > unstable(&before)) == (to.parameter() > from.parameter());
+        let point = HopfPoint {
+            parameter: at.parameter(),
+            state,
+            frequency,
+            direction,
+            unstable_above,
+            place: [0, 0],
+        };
         Some((at, point))
     }
 }

@@ -17,8 +17,8 @@ use crate::expr::Expr;
 use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{
-    Bifurcation, Branch, CoordinateMotion, Elsewhere, MOST_HARMONICS, ResponseDiagram, Simulated,
-    SteadyMotion,
+    Bifurcation, Branch, CoordinateMotion, Criticality, Elsewhere, MOST_HARMONICS, ResponseDiagram,
+    Simulated, SteadyMotion,
 };
 use crate::symbol::Symbol;
 use crate::system::{Path, PathEnd};
@@ -224,7 +224,6 @@ impl CoupledProblem<'_> {
     pub(super) fn diagram(
         &self,
         known: &Known,
-        extra: Vec<(usize, BifurcationKind, Orbit)>,
         simulated: Vec<Simulated>,
         elsewhere: Vec<Elsewhere>,
     ) -> ResponseDiagram {
@@ -242,10 +241,7 @@ impl CoupledProblem<'_> {
                 points.push(self.motion(orbit, &transform, &known.scale));
                 question.progress.advance();
             }
-            let mut found = self.changes_along(branch, &known.scale);
-            let own = extra.iter().filter(|(of, _, _)| *of == index);
-            found.extend(own.map(|(_, kind, orbit)| (*kind, orbit.clone())));
-            for (kind, orbit) in found {
+            for (kind, orbit, criticality) in self.changes_along(branch, &known.scale) {
                 let motion = self.motion(&orbit, &transform, &known.scale);
                 let bifurcation = Bifurcation {
                     kind,
@@ -254,7 +250,7 @@ impl CoupledProblem<'_> {
                     frequency: motion.frequency,
                     amplitude: motion.amplitude,
                     peak: motion.peak,
-                    criticality: None,
+                    criticality,
                 };
                 let is_listed = bifurcations
                     .iter()
@@ -297,16 +293,18 @@ impl CoupledProblem<'_> {
     }
 
     /// The bifurcations of a branch.
-    pub(super) fn changes_along(
+    fn changes_along(
         &self,
         branch: &OrbitBranch,
         scale: &[f64],
-    ) -> Vec<(BifurcationKind, Orbit)> {
+    ) -> Vec<(BifurcationKind, Orbit, Option<Criticality>)> {
         self.with_orbits(scale, branch.anchor, |orbits| {
             let mut found = Vec::new();
             for pair in branch.orbits.windows(2) {
-                if let [from, to] = pair {
-                    found.extend(changes_between(self, orbits, from, to));
+                let [from, to] = pair else { continue };
+                for (kind, at) in changes_between(self, orbits, from, to) {
+                    let criticality = self.criticality(kind, &at, [from, to], orbits, scale);
+                    found.push((kind, at, criticality));
                 }
             }
             found

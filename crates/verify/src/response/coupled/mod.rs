@@ -17,6 +17,8 @@
 //! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
 //! - `modes`: nonlinear normal modes, the free motions without damping.
 //! - `changes`: multipliers, and bifurcations between two points of a branch.
+//! - `criticality`: whether the motions that come off there are stable.
+//! - `curves`: bifurcations in two parameters.
 //! - `judged`: a point of a branch as a steady motion with its error.
 //!
 //! In: a [`ResponseRequest`] of coupled equations. Out: the same [`ResponseDiagram`] as for one
@@ -24,6 +26,8 @@
 
 mod branches;
 mod changes;
+mod criticality;
+mod curves;
 mod cycles;
 mod equilibria;
 mod flow;
@@ -35,6 +39,7 @@ mod starts;
 
 use super::{ResponseDiagram, ResponseError, ResponseRequest};
 use crate::coupled::CoupledEquations;
+use branches::Known;
 use problem::{CoupledProblem, Kind};
 
 /// Computes and verifies all steady states that are found.
@@ -46,9 +51,50 @@ pub(super) fn respond(
     equations: &CoupledEquations,
 ) -> Result<ResponseDiagram, ResponseError> {
     let problem = CoupledProblem::new(question, equations)?;
+    if question.along.is_some() {
+        curves::check(&problem)?;
+    }
     match problem.kind {
-        Kind::Driven(_) => problem.driven_response(),
+        Kind::Driven(_) => {
+            let (response, known) = problem.driven_response()?;
+            problem.with_curves(response, equations, &known)
+        }
         Kind::SelfExcited => problem.cycle_response(),
         Kind::Free => problem.mode_response(),
+    }
+}
+
+/// The response of a single coordinate with the curves of its bifurcations in two parameters.
+///
+/// # Errors
+/// [`ResponseError`].
+pub(super) fn with_curves(
+    response: ResponseDiagram,
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+) -> Result<ResponseDiagram, ResponseError> {
+    let problem = CoupledProblem::new(question, equations)?;
+    curves::check(&problem)?;
+    let known = problem.driven_branches(false);
+    problem.with_curves(response, equations, &known)
+}
+
+impl CoupledProblem<'_> {
+    /// A response with the curves of its bifurcations in two parameters, if a second one is given.
+    ///
+    /// # Errors
+    /// [`ResponseError`].
+    fn with_curves(
+        &self,
+        mut response: ResponseDiagram,
+        equations: &CoupledEquations,
+        known: &Known,
+    ) -> Result<ResponseDiagram, ResponseError> {
+        let question = self.question;
+        let Some(along) = question.along else { return Ok(response) };
+        response.curves = self.curves(equations, known, along)?;
+        response.stable_motions = Some(curves::stable_motions(question, equations, along)?);
+        response.complete &= !question.interrupt.is_requested();
+        Ok(response)
     }
 }

@@ -12,7 +12,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::branches::Known;
-use super::equilibria::null_vector;
 use super::problem::{Anchor, CoupledProblem, Orbit};
 use crate::response::{ResponseDiagram, ResponseError};
 
@@ -35,10 +34,10 @@ impl CoupledProblem<'_> {
         self.question.progress.begin(frequencies.len());
         for frequency in frequencies {
             let square = frequency * frequency;
-            let matrix = &stiffness - DMatrix::identity(n, n) * square;
-            let Some(shape) = null_vector(matrix) else { continue };
-            if let Some((orbit, anchor)) = self.small_mode(&rest, frequency, &shape) {
-                self.add_branch(orbit, anchor, &mut known);
+            for shape in shapes(&stiffness - DMatrix::identity(n, n) * square) {
+                if let Some((orbit, anchor)) = self.small_mode(&rest, frequency, &shape) {
+                    self.add_branch(orbit, anchor, &mut known);
+                }
             }
             self.question.progress.advance();
         }
@@ -46,7 +45,7 @@ impl CoupledProblem<'_> {
         if known.branches.is_empty() {
             return Err(self.nothing_found(Default::default()));
         }
-        Ok(self.diagram(&known, vec![], vec![], vec![]))
+        Ok(self.diagram(&known, vec![], vec![]))
     }
 
     /// The equilibrium that Newton's method finds from zero.
@@ -125,4 +124,47 @@ impl CoupledProblem<'_> {
         }
         None
     }
+}
+
+/// The directions that a matrix makes zero. Of several independent ones, whose sums are modes as
+/// well, those along single coordinates and the sums and differences of pairs of them: of two equal
+/// oscillators each alone, both in phase, and both out of phase.
+fn shapes(matrix: DMatrix<f64>) -> Vec<DVector<f64>> {
+    /// Ratio to the largest singular value of those that count as zero.
+    const ZERO: f64 = 1e-8;
+    let n = matrix.ncols();
+    let eigen = (matrix.transpose() * &matrix).symmetric_eigen();
+    let largest = eigen.eigenvalues.max().max(f64::MIN_POSITIVE);
+    let is_zero = |index: &usize| eigen.eigenvalues[*index] <= ZERO * ZERO * largest;
+    let zeros: Vec<usize> = (0..n).filter(is_zero).collect();
+    if zeros.len() <= 1 || largest <= f64::MIN_POSITIVE {
+        let least = eigen.eigenvalues.imin();
+        let all = largest <= f64::MIN_POSITIVE;
+        if !all {
+            return vec![eigen.eigenvectors.column(least).into_owned()];
+        }
+    }
+    let onto = |vector: DVector<f64>| {
+        let mut projected = DVector::zeros(n);
+        for index in &zeros {
+            let column = eigen.eigenvectors.column(*index);
+            projected += column * column.dot(&vector);
+        }
+        projected
+    };
+    let unit = |index: usize| DVector::from_fn(n, |i, _| f64::from(u8::from(i == index)));
+    let mut wanted: Vec<DVector<f64>> = (0..n).map(unit).collect();
+    for i in 0..n {
+        for j in 0..i {
+            wanted.extend([unit(i) + unit(j), unit(i) - unit(j)]);
+        }
+    }
+    let mut found: Vec<DVector<f64>> = Vec::new();
+    for shape in wanted.into_iter().map(onto).filter(|shape| shape.norm() > 1e-6) {
+        let shape = shape.normalize();
+        if !found.iter().any(|other| other.dot(&shape).abs() > 1.0 - 1e-9) {
+            found.push(shape);
+        }
+    }
+    found
 }

@@ -375,7 +375,7 @@ pub(super) fn monodromy(orbit: &Orbit, states: usize) -> DMatrix<f64> {
 }
 
 /// The right sides in the phase of a motion of frequency `base`.
-fn flow_in_phase(
+pub(super) fn flow_in_phase(
     names: &[Symbol],
     states: &[Symbol],
     right: &[Expr],

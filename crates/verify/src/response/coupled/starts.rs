@@ -116,60 +116,64 @@ impl CoupledProblem<'_> {
         (0..count).map(|i| low + (high - low) * (i as f64 + 0.5) / count as f64).collect()
     }
 
-    /// All steady states of a driven system that are found.
-    pub(super) fn driven_response(&self) -> Result<ResponseDiagram, ResponseError> {
-        let n = self.states.len();
-        let mut known = Known::default();
-        let interrupt = self.question.interrupt;
-        let Effort { values, starts, .. } = Effort::of(n);
-        self.question.progress.begin(3 * values);
-        let mut tried = SeedSearch::default();
-        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
-        for parameter in self.values(values) {
-            self.follow_from(&rest(parameter), &mut known);
-            tried.values += 1;
-            self.question.progress.advance();
-        }
-        if !self.undamped {
-            for parameter in self.values(values) {
-                for index in 0..starts {
-                    if interrupt.is_requested() {
-                        break;
-                    }
-                    let start = match index {
-                        0 => vec![0.0; n],
-                        index => {
-                            let scale = with_size(&known.scale, n);
-                            self.random_state(tried.starts + index, parameter, &scale)
-                        }
-                    };
-                    tried.starts += 1;
-                    let scale = known.scale.clone();
-                    let Some(settled) = self.settle(start, parameter, &scale, SETTLING[0]) else {
-                        continue;
-                    };
-                    self.follow_from(&Start { parameter, unknowns: settled.state }, &mut known);
-                }
-                self.question.progress.advance();
-            }
-        }
-        for parameter in self.values(values) {
-            for unknowns in self.guesses(parameter, &known.scale) {
-                self.follow_from(&Start { parameter, unknowns }, &mut known);
-            }
-            self.question.progress.advance();
-        }
-        self.follow_crossings(&mut known);
+    /// All steady states of a driven system that are found, and their orbits.
+    pub(super) fn driven_response(&self) -> Result<(ResponseDiagram, Known), ResponseError> {
+        let mut known = self.driven_branches(false);
         if known.branches.is_empty() {
-            tried.motions = 0;
-            return Err(self.nothing_found(tried));
+            return Err(self.nothing_found(SeedSearch::default()));
         }
         let (simulated, elsewhere) = match self.undamped {
             true => (vec![], vec![]),
             false => self.checked_by_simulation(&mut known),
         };
         self.follow_crossings(&mut known);
-        Ok(self.diagram(&known, vec![], simulated, elsewhere))
+        Ok((self.diagram(&known, simulated, elsewhere), known))
+    }
+
+    /// The branches of a driven system; a `quick` search has fewer simulations.
+    pub(super) fn driven_branches(&self, quick: bool) -> Known {
+        let n = self.states.len();
+        let mut known = Known::default();
+        let interrupt = self.question.interrupt;
+        let Effort { values, starts, .. } = Effort::of(n);
+        let starts = if quick { 1 } else { starts };
+        if !quick {
+            self.question.progress.begin(3 * values);
+        }
+        let advance = || {
+            if !quick {
+                self.question.progress.advance();
+            }
+        };
+        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
+        for parameter in self.values(values) {
+            self.follow_from(&rest(parameter), &mut known);
+            advance();
+        }
+        for (place, parameter) in self.values(values).into_iter().enumerate() {
+            for index in 0..starts {
+                if interrupt.is_requested() || self.undamped {
+                    break;
+                }
+                let scale = with_size(&known.scale, n);
+                let start = match index {
+                    0 => vec![0.0; n],
+                    index => self.random_state(place * starts + index, parameter, &scale),
+                };
+                let settled = self.settle(start, parameter, &scale, SETTLING[0]);
+                let Some(settled) = settled else { continue };
+                self.follow_from(&Start { parameter, unknowns: settled.state }, &mut known);
+            }
+            advance();
+        }
+        for parameter in self.values(values) {
+            for unknowns in self.guesses(parameter, &known.scale) {
+                self.follow_from(&Start { parameter, unknowns }, &mut known);
+            }
+            advance();
+        }
+        self.follow_crossings(&mut known);
+        known
     }
 
     /// The error where no motion was found.

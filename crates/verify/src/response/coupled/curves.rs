@@ -1,0 +1,355 @@
+//! Curves of bifurcations of driven motions in two parameters, and the number of stable motions over
+//! both.
+//!
+//! ```text
+//! P(y; p, q) = y,   s(M) = 0        unknowns y, p; q
+//! fold               s = det(M - 1)
+//! period doubling    s = det(M + 1)
+//! Neimark-Sacker     s = det(M o M - 1),    o: the bialternate product, with the products of two multipliers
+//! ```
+//!
+//! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, section 10.3.) The curve
+//! is a branch of orbits of the map `(y, p) -> (P(y; p, q), p + s)`, whose last row is
+//! differentiated by central differences: a point costs some 4 (n + 2) periods.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::branches::Known;
+use super::changes::changes_between;
+use super::flow::Flow;
+use super::problem::{Anchor, CoupledProblem, Kind, flow_in_phase};
+use crate::coupled::CoupledEquations;
+use crate::expr::Expr;
+use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::{
+    BifurcationCurve, BifurcationCurvePoint, LONGEST_STEP, ResponseError, ResponseRequest,
+    StableMotions,
+};
+use crate::symbol::Symbol;
+
+/// Numbers of values of the first and of the second parameter at which stable motions are counted.
+const COUNTED: [usize; 2] = [41, 15];
+
+/// Largest number of points of a curve in one direction.
+const MOST: usize = 200;
+
+/// The map of a period with a second parameter, as one more state that does not change.
+struct TwoParameters<'a> {
+    problem: &'a CoupledProblem<'a>,
+    flow: Flow,
+    scale: &'a [f64],
+}
+
+/// The images and derivatives at a state with both parameters.
+struct Image {
+    end: DVector<f64>,
+    monodromy: DMatrix<f64>,
+    by_parameter: DVector<f64>,
+    by_second: DVector<f64>,
+    travel: Vec<f64>,
+}
+
+impl TwoParameters<'_> {
+    fn image(&self, start: &[f64], parameter: f64, second: f64) -> Option<Image> {
+        let n = self.problem.states.len();
+        let mut sizes = self.problem.state_sizes(&self.scale[..n], self.scale);
+        sizes.push(second.abs().max(1e-12));
+        let begin: Vec<f64> = start.iter().copied().chain([second]).collect();
+        let image = self.flow.image(&begin, TAU, parameter, &sizes)?;
+        Some(Image {
+            end: image.end.rows(0, n).into_owned(),
+            monodromy: image.by_start.view((0, 0), (n, n)).into_owned(),
+            by_parameter: image.by_parameter.rows(0, n).into_owned(),
+            by_second: image.by_start.view((0, n), (n, 1)).column(0).into_owned(),
+            travel: image.travel[..n].to_vec(),
+        })
+    }
+}
+
+/// The test function of a bifurcation, which is smooth and zero on its curve.
+fn test(kind: BifurcationKind, monodromy: &DMatrix<f64>) -> f64 {
+    let n = monodromy.nrows();
+    let unit = DMatrix::<f64>::identity(n, n);
+    match kind {
+        BifurcationKind::PeriodDoubling => (monodromy + unit).determinant(),
+        BifurcationKind::NeimarkSacker => {
+            let pairs: Vec<(usize, usize)> =
+                (1..n).flat_map(|i| (0..i).map(move |j| (i, j))).collect();
+            let entry = |row: usize, column: usize| {
+                let ((i, j), (k, l)) = (pairs[row], pairs[column]);
+                let m = |a: usize, b: usize| monodromy[(a, b)];
+                let product = m(i, k) * m(j, l) - m(i, l) * m(j, k);
+                if row == column { product - 1.0 } else { product }
+            };
+            DMatrix::from_fn(pairs.len(), pairs.len(), entry).determinant()
+        }
+        _ => (monodromy - unit).determinant(),
+    }
+}
+
+impl CoupledProblem<'_> {
+    /// The curves of the bifurcations of these branches in the parameter that varies and a second one.
+    ///
+    /// # Errors
+    /// [`ResponseError`] for a drive whose frequency cannot be written.
+    pub(super) fn curves(
+        &self,
+        equations: &CoupledEquations,
+        known: &Known,
+        (second, range): (Symbol, [f64; 2]),
+    ) -> Result<Vec<BifurcationCurve>, ResponseError> {
+        let at = self.question.values.get(second).unwrap_or(f64::NAN);
+        let n = self.states.len();
+        let mut values: BTreeMap<Symbol, Expr> =
+            self.question.values.split(&equations.parameters).0;
+        values.remove(&second);
+        let mut right: Vec<Expr> = equations
+            .rates
+            .right
+            .iter()
+            .map(|rate| rate.substitute_all(&values))
+            .collect::<Result<_, _>>()?;
+        let frequency = crate::response::driven::drive_frequency(&right, &self.states)?;
+        let periods = Expr::from(i64::try_from(self.question.periods).unwrap_or(1));
+        let base = Expr::divide(&frequency, &periods)?;
+        right.push(Expr::zero());
+        let states: Vec<Symbol> = self.states.iter().copied().chain([second]).collect();
+        let names: Vec<Symbol> =
+            states.iter().copied().chain([self.question.parameter, Symbol::new("t")]).collect();
+        let flow = flow_in_phase(&names, &states, &right, &base, self.question.parameter)?;
+        let two = TwoParameters { problem: self, flow, scale: &known.scale };
+        let mut curves: Vec<BifurcationCurve> = Vec::new();
+        for branch in &known.branches {
+            let found = self.with_orbits(&known.scale, Anchor::NONE, |orbits| {
+                let pairs = branch.orbits.windows(2);
+                pairs.flat_map(|pair| changes_between(self, orbits, &pair[0], &pair[1])).collect()
+            });
+            let found: Vec<_> = found;
+            for (kind, orbit) in found {
+                if kind == BifurcationKind::BranchPoint || self.question.interrupt.is_requested() {
+                    continue;
+                }
+                let place = [orbit.parameter(), at];
+                if curves.iter().any(|curve| self.is_on(curve, kind, place, range)) {
+                    continue;
+                }
+                let start = DVector::from_column_slice(&orbit.unknowns.as_slice()[..n]);
+                let start = start.push(orbit.parameter());
+                let points = two.curve(kind, &start, at, range);
+                if points.len() > 1 {
+                    let peak = |point: &OrbitPoint<Vec<f64>>| self.shown_travel(&point.kept);
+                    let points = points
+                        .iter()
+                        .map(|point| BifurcationCurvePoint {
+                            parameter: point.unknowns[n],
+                            along: point.unknowns[n + 1],
+                            peak: peak(point),
+                        })
+                        .collect();
+                    curves.push(BifurcationCurve { kind, points });
+                }
+            }
+        }
+        Ok(curves)
+    }
+
+    /// Whether a curve of this kind passes a place.
+    fn is_on(
+        &self,
+        curve: &BifurcationCurve,
+        kind: BifurcationKind,
+        place: [f64; 2],
+        [low, high]: [f64; 2],
+    ) -> bool {
+        /// Distance, in parts of the ranges.
+        const NEAR: f64 = 2e-3;
+        let [first, last] = self.question.range;
+        let scaled = |point: &BifurcationCurvePoint| {
+            [(point.parameter - place[0]) / (last - first), (point.along - place[1]) / (high - low)]
+        };
+        curve.kind == kind
+            && curve.points.windows(2).any(|pair| {
+                let [a, b] = [&pair[0], &pair[1]].map(scaled);
+                let way = [b[0] - a[0], b[1] - a[1]];
+                let length = way[0].hypot(way[1]);
+                let along = -(a[0] * way[0] + a[1] * way[1]) / (length * length);
+                let part = if length > 0.0 { along.clamp(0.0, 1.0) } else { 0.0 };
+                (a[0] + part * way[0]).hypot(a[1] + part * way[1]) < NEAR
+            })
+    }
+
+    /// The travel of the listed quantity, bounded by that of the coordinates in it where it is none of
+    /// them itself.
+    fn shown_travel(&self, travel: &[f64]) -> f64 {
+        let n = self.coordinates;
+        let zero = vec![0.0; n];
+        let at_rest = self.shown.call(&zero);
+        let slopes = (0..n).map(|index| {
+            let mut unit = zero.clone();
+            unit[index] = 1.0;
+            self.shown.call(&unit) - at_rest
+        });
+        slopes.zip(travel).map(|(slope, travel)| (slope * travel).abs()).sum()
+    }
+}
+
+impl TwoParameters<'_> {
+    /// The points of a curve through a bifurcation, in order.
+    fn curve(
+        &self,
+        kind: BifurcationKind,
+        start: &DVector<f64>,
+        second: f64,
+        range: [f64; 2],
+    ) -> Vec<OrbitPoint<Vec<f64>>> {
+        let n = self.problem.states.len();
+        let [low, high] = self.problem.question.range;
+        let states = self.problem.state_sizes(&self.scale[..n], self.scale);
+        let mut all = states.clone();
+        all.extend([high - low, range[1] - range[0]]);
+        let value = |unknowns: &[f64]| {
+            let image = self.image(&unknowns[..n], unknowns[n], unknowns[n + 1])?;
+            Some(test(kind, &image.monodromy))
+        };
+        // The gradient of the test function by all unknowns, by central differences.
+        let gradient = |unknowns: &[f64]| -> Option<Vec<f64>> {
+            const STEP: f64 = 1e-5;
+            let slope = |index: usize| {
+                let moved = |sign: f64| {
+                    let mut moved = unknowns.to_vec();
+                    moved[index] += sign * STEP * all[index];
+                    value(&moved)
+                };
+                Some((moved(1.0)? - moved(-1.0)?) / (2.0 * STEP * all[index]))
+            };
+            (0..n + 2).map(slope).collect()
+        };
+        let first: Vec<f64> = start.iter().copied().chain([second]).collect();
+        let Some(slopes) = gradient(&first) else { return vec![] };
+        let steep = slopes.iter().zip(&all).map(|(slope, size)| (slope * size).abs());
+        let steep = steep.fold(0.0, f64::max);
+        if !(steep > 0.0 && steep.is_finite()) {
+            return vec![];
+        }
+        // In units of the first parameter.
+        let unit = (high - low) / steep;
+        let map = |start: &DVector<f64>, second: f64| {
+            let unknowns: Vec<f64> = start.iter().copied().chain([second]).collect();
+            let image = self.image(&unknowns[..n], unknowns[n], second)?;
+            let slopes = gradient(&unknowns)?;
+            let mut by_start = image.monodromy.clone().resize(n + 1, n + 1, 0.0);
+            by_start.view_mut((0, n), (n, 1)).copy_from(&image.by_parameter);
+            for column in 0..n {
+                by_start[(n, column)] = unit * slopes[column];
+            }
+            by_start[(n, n)] = 1.0 + unit * slopes[n];
+            Some(PeriodImage {
+                end: image.end.push(unknowns[n] + unit * test(kind, &image.monodromy)),
+                by_start,
+                by_parameter: image.by_second.push(unit * slopes[n + 1]),
+                path: image.travel,
+            })
+        };
+        let sizes = DVector::from_vec(all.clone());
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: true,
+            keep: &|_, image: &PeriodImage<Vec<f64>>| image.path.clone(),
+            sizes: &|_| sizes.clone(),
+        };
+        let Some(point) = equations.orbit_at(start, second, &sizes) else { return vec![] };
+        let limits = OrbitBranchLimits {
+            range,
+            longest: LONGEST_STEP,
+            most: MOST,
+            interrupt: self.problem.question.interrupt,
+        };
+        let outside = |point: &OrbitPoint<Vec<f64>>| {
+            let parameter = point.unknowns[n];
+            !(low..=high).contains(&parameter)
+                || kind == BifurcationKind::NeimarkSacker && !self.has_pair(point)
+        };
+        equations.branch_through(point, &limits, &outside).0
+    }
+
+    /// Whether a complex pair of multipliers lies on the unit circle: the test function is zero as
+    /// well where the product of two real ones is 1.
+    fn has_pair(&self, point: &OrbitPoint<Vec<f64>>) -> bool {
+        let n = self.problem.states.len();
+        let monodromy = point.monodromy.view((0, 0), (n, n)).into_owned();
+        let all = super::changes::eigenvalues(monodromy).unwrap_or_default();
+        all.iter().any(|value| value.im > 1e-3 && (value.norm() - 1.0).abs() < 1e-3)
+    }
+}
+
+/// The numbers of stable motions at values of the parameter that varies and of a second one. The
+/// branches at each value of the second are searched for anew, with less effort.
+///
+/// # Errors
+/// [`ResponseError`].
+pub(super) fn stable_motions(
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+    (second, range): (Symbol, [f64; 2]),
+) -> Result<StableMotions, ResponseError> {
+    let spaced = |count: usize, [low, high]: [f64; 2]| -> Vec<f64> {
+        (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
+    };
+    let parameters = spaced(COUNTED[0], question.range);
+    let along = spaced(COUNTED[1], range);
+    let mut counts = Vec::new();
+    question.progress.begin(along.len());
+    for value in &along {
+        let question = question.at(second, *value);
+        let problem = CoupledProblem::new(&question, equations)?;
+        let known = problem.driven_branches(true);
+        counts.push(parameters.iter().map(|p| problem.stable_at(&known, *p)).collect());
+        question.progress.advance();
+        if question.interrupt.is_requested() {
+            break;
+        }
+    }
+    let along = along[..counts.len()].to_vec();
+    Ok(StableMotions { parameters, along, counts })
+}
+
+impl CoupledProblem<'_> {
+    /// The number of stable motions of these branches at a value of the parameter.
+    fn stable_at(&self, known: &Known, parameter: f64) -> usize {
+        let mut count = 0;
+        for branch in &known.branches {
+            let stable: Vec<bool> = branch
+                .orbits
+                .iter()
+                .map(|orbit| self.multipliers(orbit).is_some_and(|all| self.is_stable(&all)))
+                .collect();
+            for (pair, stable) in branch.orbits.windows(2).zip(stable.windows(2)) {
+                let [from, to] = [pair[0].parameter(), pair[1].parameter()];
+                // Each point belongs to the way that begins at it.
+                let passes = if from < to {
+                    (from..to).contains(&parameter)
+                } else {
+                    from > parameter && parameter >= to
+                };
+                let is_last = to == parameter && to == self.question.range[1];
+                if (passes || is_last) && stable[0] && stable[1] {
+                    count += if branch.mirrored { 2 } else { 1 };
+                }
+            }
+        }
+        count
+    }
+}
+
+/// Whether curves are followed for these equations.
+pub(super) fn check(problem: &CoupledProblem) -> Result<(), ResponseError> {
+    match problem.kind {
+        Kind::Driven(_) if problem.smooth => Ok(()),
+        Kind::Driven(_) => Err(ResponseError::CornersAlong),
+        Kind::SelfExcited | Kind::Free => Err(ResponseError::NoDriveAlong),
+    }
+}

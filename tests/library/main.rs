@@ -40,6 +40,7 @@ mod random;
 mod random_equations;
 mod random_responses;
 mod ranges;
+mod coupled_response;
 mod response;
 mod ring;
 mod section;

@@ -200,7 +200,7 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         /// Length of a step below which Newton's method has converged; for a smooth map the next one
         /// would be its square.
         const CONVERGED: f64 = 1e-10;
-        const NEXT_IS_ROUNDING: f64 = 1e-7;
+        const NEXT_IS_ROUNDING: f64 = 1e-8;
         /// Length below which steps that no longer shrink are rounding, which is magnified near
         /// folds.
         const ROUNDING: f64 = 1e-6;
@@ -364,7 +364,8 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
         refused: &dyn Fn(&OrbitPoint<Kept>) -> bool,
     ) -> (Vec<OrbitPoint<Kept>>, OrbitBranchEnd) {
         const FIRST: f64 = 0.2;
-        const SHORTEST: f64 = 1e-9;
+        // A smooth branch turns in no less than this; one by contacts may.
+        let shortest = if self.smooth { 1e-6 } else { 1e-9 };
         /// Numbers of periods per point up to which the next step is longer, and from which on it
         /// is shorter.
         const FEW: usize = 4;
@@ -382,10 +383,11 @@ impl<Path, Kept: Clone> OrbitEquations<'_, Path, Kept> {
             let here = &points[points.len() - 1];
             let found = self.next(points, *length);
             let Some((point, periods)) = found else {
-                if 0.5 * *length >= SHORTEST {
+                if 0.5 * *length >= shortest {
                     return TooLong;
                 }
-                let Some((point, gone)) = self.around_corner(here, limits) else {
+                let beyond = if self.smooth { None } else { self.around_corner(here, limits) };
+                let Some((point, gone)) = beyond else {
                     return Ended(None, OrbitBranchEnd::Lost);
                 };
                 *length = gone;

@@ -94,7 +94,16 @@ impl CoupledProblem<'_> {
         if known.is_full() || self.question.interrupt.is_requested() {
             return;
         }
+        // Newton's method may come to a motion of another order of magnitude, whose period holds
+        // hundreds of swings.
+        const ENORMOUS: f64 = 100.0;
+        let n = self.coordinates;
+        let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
         let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
+        let largest = extent(&known.scale);
+        if largest > 0.0 && extent(&orbit.kept) > ENORMOUS * largest {
+            return;
+        }
         if self.is_known(&orbit, known) {
             return;
         }

@@ -102,7 +102,16 @@ impl CoupledProblem<'_> {
             let direction = direction.normalize();
             let orbit = self.with_orbits(&[], anchor, |orbits| {
                 orbits.orbit_along(&guess, &direction, &sizes)
-            })?;
+            });
+            // Of equal frequencies small motions of every shape are nearly periodic, and the search
+            // succeeds at a larger amplitude.
+            let Some(orbit) = orbit else {
+                for i in 0..m {
+                    guess[i] = rest[i] + 2.0 * (guess[i] - rest[i]);
+                }
+                size *= 2.0;
+                continue;
+            };
             let moved = orbit.parameter() - frequency;
             let inside = (low..=high).contains(&orbit.parameter());
             if moved.abs() >= MOVED * (high - low) && inside {

@@ -101,11 +101,12 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     };
     let (parameter, range) = self::range("--vary", vary)?;
     let along = arguments.along.as_deref().or(problem.along.as_deref());
+    let along = along.map(|text| second_parameter(text, parameter, &equations)).transpose()?;
     let of = arguments.of.as_deref().or(problem.of.as_deref());
     let Supervision { interrupt, progress } = session::supervision();
     let mut question = ResponseRequest {
         of: of.map(|text| quantity(text, &equations)).transpose()?.flatten(),
-        along: along.map(|text| self::range("--along", text)).transpose()?,
+        along,
         equations,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
@@ -191,6 +192,32 @@ fn is_free(equations: &CoupledEquations) -> bool {
         && right[count..]
             .iter()
             .all(|rate| !rate.contains(Symbol::new("t")) && is_even(rate) == Some(true))
+}
+
+/// The second parameter with its range: a parameter of the equations beside the one that varies.
+fn second_parameter(
+    text: &str,
+    parameter: Symbol,
+    equations: &Equations,
+) -> Result<(Symbol, [f64; 2]), Failure> {
+    let (name, [low, high]) = range("--along", text)?;
+    let usage = |message: String| Err(Failure::Usage(format!("--along {text}: {message}")));
+    let known = equations.parameters();
+    if name == parameter {
+        return usage(format!("{name} varies already"));
+    }
+    if !known.contains(&name) {
+        let others: Vec<&str> =
+            known.iter().filter(|other| **other != parameter).map(|other| other.name()).collect();
+        return usage(match others.is_empty() {
+            true => format!("there is no parameter {name}, and no other one beside {parameter}"),
+            false => format!("there is no parameter {name}: choose one of {}", others.join(", ")),
+        });
+    }
+    if !(low < high && (high - low).is_finite()) {
+        return Err(refused(ResponseError::Range(name)));
+    }
+    Ok((name, [low, high]))
 }
 
 /// The quantity that is to be listed; `None` for that of one coordinate, which is the coordinate.

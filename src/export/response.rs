@@ -266,8 +266,8 @@ fn equilibria(response: &ResponseDiagram) -> Vec<(&'static str, Points, CurveSty
     };
     let mut drawn = Vec::new();
     for (stable, label, style) in [
-        (false, "unstable", CurveStyle::UNSTABLE_EQUILIBRIUM),
-        (true, "stable", CurveStyle::EQUILIBRIUM),
+        (false, "unstable equilibrium", CurveStyle::UNSTABLE_EQUILIBRIUM),
+        (true, "stable equilibrium", CurveStyle::EQUILIBRIUM),
     ] {
         drawn.extend(of_stability(stable).into_iter().map(|points| (label, points, style)));
     }

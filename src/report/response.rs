@@ -352,6 +352,7 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
         return None;
     }
     let name = response.question.parameter.name();
+    let has_frequency = response.self_excited && !are_modes(response);
     let row = |bifurcation: &crate::response::Bifurcation| {
         let mut row = vec![
             coupled::kind_in_words(bifurcation.kind, bifurcation.criticality),
@@ -360,13 +361,13 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
             decimal(bifurcation.peak),
             (bifurcation.branch + 1).to_string(),
         ];
-        if response.self_excited {
+        if has_frequency {
             row.insert(3, decimal(bifurcation.frequency));
         }
         row
     };
     let mut columns = vec!["", name, "amplitude", "peak", "branch"];
-    if response.self_excited {
+    if has_frequency {
         columns.insert(3, "frequency");
     }
     let mut blocks = vec![Block::Heading("where branches change".to_owned())];
@@ -524,6 +525,7 @@ fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Blo
 
 fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
+    let has_frequency = response.self_excited && !are_modes(response);
     let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
     let mut facts = vec![(
         "largest error",
@@ -531,7 +533,7 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
             Some(error) => format!(
                 "{} of the true {}, of {} points against {} and {} against simulation",
                 significant(error, 2),
-                if response.self_excited { "peak or frequency" } else { "peak" },
+                if has_frequency { "peak or frequency" } else { "peak" },
                 points - response.unjudged,
                 judge(response),
                 response.simulated.len()

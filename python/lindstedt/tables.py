@@ -48,7 +48,7 @@ class Table(tuple[R, ...], Generic[R]):
         """The first rows as a table of a notebook."""
         if not self:
             return None
-        left_out = getattr(self[0], "OPTIONAL", frozenset())
+        left_out: frozenset[str] = getattr(self[0], "OPTIONAL", frozenset())
         names = [
             field.name
             for field in fields(self[0])  # type: ignore[arg-type]

@@ -177,3 +177,70 @@ fn two_equations_are_drawn_with_all_that_is_drawn_of_one() {
     let picture = printed(&arguments);
     assert!(picture.contains("<svg") && picture.contains("of x - y"), "{picture}");
 }
+
+/// Curves of bifurcations, numbers of stable motions and criticality are told in every form.
+#[test]
+fn two_parameters_have_their_tables_and_their_panel() {
+    use lindstedt::response::bifurcation::BifurcationKind;
+    use lindstedt::response::{
+        Bifurcation, BifurcationCurve, BifurcationCurvePoint, Criticality, ResponseRequest,
+        StableMotions, respond,
+    };
+
+    let equations = "x'' + x'/5 + 2*x - y = F*cos(Omega*t); y'' + y'/5 + 2*y - x = 0";
+    let mut question =
+        ResponseRequest::new(equations, "Omega", [0.5, 0.7], "F = 1/5").expect("a question");
+    question.along = Some(("F".into(), [0.1, 0.5]));
+    let mut response = respond(&question).expect("branches");
+    let point = |index: usize| BifurcationCurvePoint {
+        parameter: 0.5 + 0.01 * index as f64,
+        along: 0.1 + 0.02 * index as f64,
+        peak: 0.25,
+    };
+    response.curves = vec![BifurcationCurve {
+        kind: BifurcationKind::NeimarkSacker,
+        points: (0..20).map(point).collect(),
+    }];
+    response.stable_motions = Some(StableMotions {
+        parameters: (0..30).map(|index| 0.5 + 0.2 * f64::from(index) / 29.0).collect(),
+        along: vec![0.1, 0.3, 0.5],
+        counts: vec![vec![1; 30], vec![2; 30], vec![0; 30]],
+    });
+    response.bifurcations = vec![Bifurcation {
+        kind: BifurcationKind::NeimarkSacker,
+        branch: 0,
+        parameter: 0.6,
+        frequency: 0.6,
+        amplitude: 0.2,
+        peak: 0.2,
+        criticality: Some(Criticality::Subcritical),
+    }];
+    let document = lindstedt::report::response(&response);
+    let text = lindstedt::export::text::document(&document, 120);
+    for words in [
+        "Neimark-Sacker, subcritical",
+        "bifurcations in two parameters, Omega and F",
+        "Curve 1: Neimark-Sacker, 20 points.",
+        "Number of stable motions; F down, Omega across:",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let table = lindstedt::export::response::csv(&response);
+    let columns = |line: &str| line.split(',').count();
+    let head = table.lines().nth(1).expect("a head");
+    assert!(head.ends_with(",amplitude_x,amplitude_y,F"), "{head}");
+    assert!(table.lines().skip(1).all(|line| columns(line) == columns(head)), "{table}");
+    assert_eq!(
+        table.lines().filter(|line| line.starts_with("curve-neimark-sacker,1,")).count(),
+        20
+    );
+    let json = lindstedt::export::json::response(&response);
+    assert_eq!((json.along.as_deref(), json.curves_of_bifurcations.len()), (Some("F"), 1));
+    #[cfg(feature = "plot")]
+    {
+        let picture = lindstedt::export::response::picture(&response).expect("a picture");
+        for words in ["Bifurcations in two parameters", "2 stable motions", "no stable motion"] {
+            assert!(picture.contains(words), "{words}");
+        }
+    }
+}

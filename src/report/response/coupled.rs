@@ -3,7 +3,7 @@
 
 use super::bifurcation_in_words;
 use crate::decimal::{decimal, significant};
-use crate::report::Block;
+use crate::report::{Block, Heading};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{
     BifurcationCurve, Criticality, Elsewhere, Equations, EquilibriumBranch, ResponseDiagram,
@@ -100,9 +100,10 @@ pub(super) fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
 }
 
 /// A text as the heading of a column.
-fn heading(text: &str) -> &'static str {
+fn heading(text: &str) -> Heading {
     // The names of symbols live as long as the program, and those of coordinates are few.
-    Symbol::new(text).name()
+    let kept = |text: &str| Symbol::new(text).name();
+    Heading { text: kept(text), latex: kept(&text.replace('_', "\\_")) }
 }
 
 /// The table of some points of a branch.
@@ -112,13 +113,13 @@ pub(super) fn points<'a>(
 ) -> Block<'static> {
     let own = columns_of_their_own(response);
     let has_frequency = response.self_excited && !are_modes(response);
-    let mut columns = vec![response.question.parameter.name()];
+    let mut columns = vec![heading(response.question.parameter.name())];
     match own.is_empty() {
-        true => columns.push("amplitude"),
+        true => columns.push("amplitude".into()),
         false => columns.extend(own.iter().map(|name| heading(&format!("amplitude {name}")))),
     }
-    columns.extend(has_frequency.then_some("frequency"));
-    columns.extend(["peak", "stable", "multiplier", "error"]);
+    columns.extend(has_frequency.then(|| Heading::from("frequency")));
+    columns.extend(["peak", "stable", "multiplier", "error"].map(Heading::from));
     let rows = points.map(|point| {
         let mut row = vec![decimal(point.parameter)];
         match own.is_empty() {
@@ -234,7 +235,10 @@ fn equilibrium_branch(
             point.growth.map_or("-".to_owned(), |growth| significant(growth, 4)),
         ])
     });
-    blocks.push(Block::table([name, "value", "stable", "growth"], rows));
+    blocks.push(Block::table(
+        [heading(name), "value".into(), "stable".into(), "growth".into()],
+        rows,
+    ));
     if !branch.changes.is_empty() {
         let rows = branch.changes.iter().map(|change| {
             vec![
@@ -243,7 +247,7 @@ fn equilibrium_branch(
                 decimal(change.value),
             ]
         });
-        blocks.push(Block::table(["", name, "value"], rows));
+        blocks.push(Block::table(["".into(), heading(name), "value".into()], rows));
     }
     blocks
 }
@@ -294,7 +298,7 @@ fn bifurcation_curve(
             bifurcation_in_words(curve.kind),
             curve.points.len()
         )),
-        Block::table([parameter.name(), along.name(), "peak"], rows),
+        Block::table([heading(parameter.name()), heading(along.name()), "peak".into()], rows),
     ]
 }
 
@@ -309,5 +313,5 @@ fn stable_motions(counts: &StableMotions, along: Symbol) -> Block<'static> {
             .map(|column| cells.get(*column).map_or("-".to_owned(), ToString::to_string));
         Some(std::iter::once(decimal(*counts.along.get(row)?)).chain(cells).collect())
     });
-    Block::table(std::iter::once(along.name()).chain(head), rows)
+    Block::table(std::iter::once(heading(along.name())).chain(head), rows)
 }

@@ -242,7 +242,9 @@ fn pieces_by<T>(
     let mut open = false;
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
-        if (stability(to) == Some(true)) != stable {
+        // A motion that could not be followed over its period has no size.
+        let is_finite = [from, to].map(&place).iter().all(|(x, y)| x.is_finite() && y.is_finite());
+        if (stability(to) == Some(true)) != stable || !is_finite {
             open = false;
             continue;
         }

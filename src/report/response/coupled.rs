@@ -23,6 +23,10 @@ const CURVE_ROWS: usize = 7;
 /// Number of columns of the table of numbers of stable motions.
 const COUNT_COLUMNS: usize = 9;
 
+/// An amplitude below this part of the largest peak is that of rounding, and printed as zero: of a
+/// coordinate that moves at even multiples of the frequency alone, as one that a square drives.
+const ROUNDING: f64 = 1e-12;
+
 /// Whether the equations are coupled, or of first order.
 pub(super) fn is_coupled(response: &ResponseDiagram) -> bool {
     response.question.equations.oscillator().is_none()
@@ -125,7 +129,13 @@ pub(super) fn points<'a>(
         match own.is_empty() {
             true => row.push(decimal(point.amplitude)),
             false => {
-                row.extend(point.coordinates.iter().map(|motion| decimal(motion.amplitude)));
+                let peaks = point.coordinates.iter().map(|motion| motion.peak);
+                let least = ROUNDING * peaks.fold(0.0, f64::max);
+                let amplitudes = point.coordinates.iter().map(|motion| motion.amplitude);
+                row.extend(amplitudes.map(|amplitude| match amplitude < least {
+                    true => decimal(0.0),
+                    false => decimal(amplitude),
+                }));
             }
         }
         row.extend(has_frequency.then(|| decimal(point.frequency)));

@@ -344,6 +344,7 @@ TYPES = {
     "N": "int",
     "NAME=VALUE,...": "Values",
     "NAME=FROM:TO": "Values",
+    "QUANTITY": "str",
     "NAME=from:to:count": "Values",
     "x=VALUE": "Values",
     "VALUE": "Value",

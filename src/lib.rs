@@ -31,6 +31,7 @@
 //! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
 //! | [`response`] | follows steady states through resonances: branches, stability, bifurcations | [`response::respond`] |
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
+//! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form, or event by event | [`impact::solve`], [`impact::simulate`](impact::simulate()) |
 //! | [`optimize`] | searches the damper that rests soonest: constraints, fronts, what decides | [`optimize::optimize`](optimize::optimize()) |
@@ -64,7 +65,7 @@
 #![warn(missing_docs)]
 
 #[doc(inline)]
-pub use lindstedt_dynamics::{mechanics, system};
+pub use lindstedt_dynamics::{coupled, mechanics, system};
 #[doc(inline)]
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]

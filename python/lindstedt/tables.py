@@ -48,7 +48,12 @@ class Table(tuple[R, ...], Generic[R]):
         """The first rows as a table of a notebook."""
         if not self:
             return None
-        names = [field.name for field in fields(self[0])]  # type: ignore[arg-type]
+        left_out: frozenset[str] = getattr(self[0], "OPTIONAL", frozenset())
+        names = [
+            field.name
+            for field in fields(self[0])  # type: ignore[arg-type]
+            if field.name not in left_out or any(getattr(row, field.name) is not None for row in self)
+        ]
         lines = [names, *([shown(getattr(row, name)) for name in names] for row in self[:MOST_SHOWN])]
         cells = ["".join(f"<td>{html.escape(cell)}</td>" for cell in line) for line in lines]
         more = len(self) - MOST_SHOWN
@@ -61,9 +66,11 @@ class Table(tuple[R, ...], Generic[R]):
 def shown(value: Any) -> str:
     """A value in a cell of a table.
 
-    >>> shown(None), shown(1 / 3), shown((1.0, 2)), shown("fold")
-    ('', '0.333333', '1, 2', 'fold')
+    >>> shown(None), shown(1 / 3), shown((1.0, 2)), shown("fold"), shown({"x": 0.5, "y": 2})
+    ('', '0.333333', '1, 2', 'fold', 'x: 0.5, y: 2')
     """
+    if isinstance(value, dict):
+        return ", ".join(f"{name}: {shown(part)}" for name, part in value.items())
     if isinstance(value, (list, tuple)):
         return ", ".join(map(shown, value))
     if isinstance(value, float):

@@ -30,6 +30,26 @@ def test_branches():
     assert 1.3 < lower < upper < 1.8
 
 
+def test_branches_of_coupled_equations():
+    equations = "x'' + x'/5 + 2*x - y = cos(W*t); y'' + y'/5 + 2*y - x = 0"
+    branches = ls.response(equations, vary={"W": (0.5, 0.7)}, of="x - y")
+    assert (branches.coordinates, branches.of) == (("x", "y"), "x - y")
+    point = branches.points[0]
+    assert branches.points.column("amplitude_y")[0] == point.amplitudes["y"]
+    assert len(point.state) == 4
+    pytest.importorskip("pandas")
+    frame = branches.points.to_pandas()
+    assert {"amplitude", "amplitude_x", "phase_y", "peak_y", "state"} < set(frame.columns)
+    assert "amplitude_y" in branches.to_pandas().columns
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    lines = branches.plot().lines
+    assert [line.get_label() for line in lines[:3]] == ["x", "y", "x - y"]
+    one = ls.response("x'' + x'/5 + x = cos(W*t)", vary={"W": (0.5, 0.7)})
+    assert "amplitudes" not in one.points.to_pandas().columns and one.of is None
+    assert "amplitudes" not in one.points._repr_html_()
+
+
 def test_a_sweep_over_several_axes():
     pytest.importorskip("xarray")
     sweep = ls.simulate(sweep={"zeta": (0.01, 0.03, 3), "barrier": [0.1, 0.2]})

@@ -24,11 +24,15 @@ pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
         None => from_words(text),
     }?;
     let equation = problem.equation.map(|typed| {
-        let read = equation_in_grammar(&typed);
-        if read != typed.as_str() {
-            session::current().note(&format!("the equation is read as {read}"));
+        let parts: Vec<_> = typed.split(';').map(equation_in_grammar).collect();
+        let read = parts.join(";");
+        if read != typed {
+            session::current().note(&match parts.len() {
+                1 => format!("the equation is read as {read}"),
+                _ => format!("the equations are read as {read}"),
+            });
         }
-        read.into_owned()
+        read
     });
     Ok(Problem { equation, ..problem })
 }

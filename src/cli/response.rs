@@ -2,10 +2,13 @@
 
 use std::path::Path;
 
+use crate::coupled::{CoupledEquations, CoupledError};
 use crate::export::{self, json};
 use crate::expr::Expr;
-use crate::problem::{Order, ReadingCommand};
-use crate::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
+use crate::problem::{Order, Problem, ReadingCommand};
+use crate::response::{
+    Equations, EquationsError, MOST_HARMONICS, ResponseError, ResponseRequest, respond,
+};
 use crate::solution::{Method, Solution};
 use crate::{Options, Oscillator, Supervision, Symbol, report, solve};
 use clap::Args;
@@ -17,15 +20,24 @@ use super::progress::with_progress;
 use super::session;
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
-/// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
-/// period doublings, backbone
+/// Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every
+/// branch with its stability, folds, period doublings, backbone
 #[derive(Args)]
 pub struct ResponseArguments {
-    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
+    /// An equation in quotes, several separated by `;`, a TOML file, a name of the catalogue, or -
+    /// for standard input
     pub problem: String,
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
     vary: Option<String>,
+    /// A second parameter, and from where to where: bifurcations are followed in both, and stable
+    /// motions counted
+    #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
+    along: Option<String>,
+    /// The quantity that is listed and drawn: a coordinate, or an expression in them such as x - y;
+    /// the first coordinate without it
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
+    of: Option<String>,
     /// harmonic-balance; or multiple-scales or averaging, their steady motions beside the branches
     /// of harmonic balance, which judge them
     #[arg(long)]
@@ -61,11 +73,15 @@ impl Work for ResponseArguments {
 
 fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, ReadingCommand::Response)?;
-    let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::with_advice(&error, error.help()))?;
-    let method = method(arguments.method.as_deref().or(formula.method))?;
-    let order = match (arguments.order, formula.order) {
+    let equations = equations(&problem)?;
+    let method = method(arguments.method.as_deref().or(problem.method.as_deref()))?;
+    if method != Method::HarmonicBalance && equations.oscillator().is_none() {
+        return Err(Failure::Usage(format!(
+            "--method {}: slow equations are those of one coordinate; the steady states of coupled equations are found by shooting: leave it out",
+            method.name()
+        )));
+    }
+    let order = match (arguments.order, problem.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
         (None, None) => None,
         (None, Some(Order::Degrees(_))) => {
@@ -75,15 +91,23 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         }
     };
     let Some(vary) = arguments.vary.as_deref().or(problem.vary.as_deref()) else {
-        let name = oscillator.parameters.first().map_or("Omega", |name| name.name());
+        let name = match &equations {
+            Equations::Coupled(coupled) if is_free(coupled) => "omega",
+            _ => equations.parameters().first().map_or("Omega", |name| name.name()),
+        };
         return Err(Failure::because(format!(
             "nothing varies\n  help: --vary {name}=FROM:TO, or vary = \"{name}=FROM:TO\" in the file"
         )));
     };
-    let (parameter, range) = range(vary)?;
+    let (parameter, range) = self::range("--vary", vary)?;
+    let along = arguments.along.as_deref().or(problem.along.as_deref());
+    let along = along.map(|text| second_parameter(text, parameter, &equations)).transpose()?;
+    let of = arguments.of.as_deref().or(problem.of.as_deref());
     let Supervision { interrupt, progress } = session::supervision();
     let mut question = ResponseRequest {
-        oscillator,
+        of: of.map(|text| quantity(text, &equations)).transpose()?.flatten(),
+        along,
+        equations,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
         range,
@@ -94,22 +118,22 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         interrupt,
         progress,
     };
-    let slow = match method {
-        Method::HarmonicBalance => None,
-        method => {
+    let slow = match (method, question.equations.oscillator()) {
+        (Method::HarmonicBalance, _) | (_, None) => None,
+        (method, Some(oscillator)) => {
             let asked = arguments.periods.or(problem.periods);
-            let solution = slow_equations(&question, method, order, asked)?;
+            let solution = slow_equations(oscillator, method, order, asked)?;
+            // Slow equations relative to a base that moves are held against motions in that
+            // coordinate.
+            if solution.coordinate() != oscillator.coordinate {
+                let moved = Oscillator::from_equation(&solution.equation)
+                    .map_err(|error| Failure::with_advice(&error, error.help()))?;
+                question.equations = Equations::One(moved);
+            }
             question.periods = periods_of(&solution).unwrap_or(question.periods);
             Some(solution)
         }
     };
-    // Slow equations relative to a base that moves are held against motions in that coordinate.
-    if let Some(slow) =
-        slow.as_ref().filter(|slow| slow.coordinate() != question.oscillator.coordinate)
-    {
-        question.oscillator = Oscillator::from_equation(&slow.equation)
-            .map_err(|error| Failure::with_advice(&error, error.help()))?;
-    }
     let mut response = with_progress("of this search, or of its points", || respond(&question))
         .map_err(refused)?;
     if let Some(solution) = slow {
@@ -138,6 +162,78 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     })
 }
 
+/// The equations of a problem.
+fn equations(problem: &Problem) -> Result<Equations, Failure> {
+    let coupled = |error: CoupledError| Failure::refused(&error, error.help());
+    let several = problem
+        .coupled_equations(ReadingCommand::Response)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    if let Some(equations) = several {
+        return CoupledEquations::of_mechanism(&equations).map(Equations::Coupled).map_err(coupled);
+    }
+    let formula = formula(problem, ReadingCommand::Response)?;
+    Equations::parse(formula.equation).map_err(|error| match error {
+        EquationsError::One(error) => Failure::with_advice(&error, error.help()),
+        EquationsError::Coupled(error) => coupled(error),
+    })
+}
+
+/// Whether nothing drives or damps the motion: time does not occur, and a motion backward in time is
+/// a motion.
+fn is_free(equations: &CoupledEquations) -> bool {
+    let count = equations.coordinates.len();
+    let (states, right) = (&equations.rates.states, &equations.rates.right);
+    let backward = states[count..].iter().map(|name| (*name, -Expr::from(*name))).collect();
+    let is_even = |rate: &Expr| {
+        let backward = rate.substitute_all(&backward).ok()?;
+        (&backward - rate).expand().ok().map(|odd| odd.is_zero())
+    };
+    states.len() == 2 * count
+        && right[count..]
+            .iter()
+            .all(|rate| !rate.contains(Symbol::new("t")) && is_even(rate) == Some(true))
+}
+
+/// The second parameter with its range: a parameter of the equations beside the one that varies.
+fn second_parameter(
+    text: &str,
+    parameter: Symbol,
+    equations: &Equations,
+) -> Result<(Symbol, [f64; 2]), Failure> {
+    let (name, [low, high]) = range("--along", text)?;
+    let usage = |message: String| Err(Failure::Usage(format!("--along {text}: {message}")));
+    let known = equations.parameters();
+    if name == parameter {
+        return usage(format!("{name} varies already"));
+    }
+    if !known.contains(&name) {
+        let others: Vec<&str> =
+            known.iter().filter(|other| **other != parameter).map(|other| other.name()).collect();
+        return usage(match others.is_empty() {
+            true => format!("there is no parameter {name}, and no other one beside {parameter}"),
+            false => format!("there is no parameter {name}: choose one of {}", others.join(", ")),
+        });
+    }
+    if !(low < high && (high - low).is_finite()) {
+        return Err(refused(ResponseError::Range(name)));
+    }
+    Ok((name, [low, high]))
+}
+
+/// The quantity that is to be listed; `None` for that of one coordinate, which is the coordinate.
+fn quantity(text: &str, equations: &Equations) -> Result<Option<Expr>, Failure> {
+    let usage = |message: String| Failure::Usage(format!("--of {text}: {message}"));
+    let quantity = expression(text).map_err(|error| usage(error.to_string()))?;
+    match equations.oscillator() {
+        None => Ok(Some(quantity)),
+        Some(oscillator) if quantity == Expr::from(oscillator.coordinate) => Ok(None),
+        Some(oscillator) => {
+            let x = oscillator.coordinate;
+            Err(usage(format!("the equation has the coordinate {x} alone, which is listed")))
+        }
+    }
+}
+
 /// Parses the name of a method for steady states.
 fn method(name: Option<&str>) -> Result<Method, Failure> {
     let (balance, scales) = (Method::HarmonicBalance, Method::MultipleScales);
@@ -157,12 +253,12 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
 /// is asked for it is the primary resonance, or, without a force, the likeliest one, such as the
 /// principal parametric resonance with motions of two drive periods.
 fn slow_equations(
-    question: &ResponseRequest,
+    oscillator: &Oscillator,
     method: Method,
     order: Option<u32>,
     periods: Option<u32>,
 ) -> Result<Solution, Failure> {
-    if !question.oscillator.force.contains(Symbol::new("t")) {
+    if !oscillator.force.contains(Symbol::new("t")) {
         return Err(Failure::Usage(format!(
             "--method {0}: there is no drive; `lindstedt derive --method {0}` has the limit cycle, and harmonic balance its branches",
             method.name()
@@ -170,10 +266,9 @@ fn slow_equations(
     }
     let at = |resonance: Option<(u32, u32)>| {
         let options = Options { method: Some(method), order, resonance, ..Options::default() };
-        solve(&question.oscillator, &options)
+        solve(oscillator, &options)
     };
     // Without a force a motion of the drive's own period is at rest.
-    let oscillator = &question.oscillator;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let at_rest = oscillator.force.substitute_all(&own.map(|name| (name, Expr::zero())).into());
     let is_forced = at_rest.is_ok_and(|force| force.contains(Symbol::new("t")));
@@ -193,19 +288,19 @@ fn periods_of(solution: &Solution) -> Option<usize> {
     (resonance.times_driving == 1).then_some(resonance.times_linear as usize)
 }
 
-/// A name and a range: `Omega=0.5:1.5`.
-fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
+/// A name and a range, the value of an option: `Omega=0.5:1.5`.
+fn range(option: &str, text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
     let name = text.split(['=', ':']).next().map(str::trim).filter(|name| !name.is_empty());
     let form = || {
         let name = name.unwrap_or("Omega");
-        Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as {name}=0.5:1.5"))
+        Failure::Usage(format!("{option} {text}: expected NAME=FROM:TO, such as {name}=0.5:1.5"))
     };
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = range.split_once(':').ok_or_else(form)?;
     let name = expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
     let number = |text: &str| {
-        let value =
-            expression(text).map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
+        let value = expression(text)
+            .map_err(|error| Failure::Usage(format!("{option} {text}: {error}")))?;
         value.evaluate(&Default::default()).map_err(|_| form())
     };
     Ok((name, [number(from)?, number(to)?]))
@@ -242,6 +337,19 @@ fn refused(error: ResponseError) -> Failure {
         }
         ResponseError::NotFollowed { parameter, .. } => Some(format!(
             "the steps are parts of the range: try a shorter one, or one that does not begin at zero, --vary {parameter}=FROM:TO"
+        )),
+        ResponseError::FreeParameter(_) => Some(
+            "--vary omega=FROM:TO gives the nonlinear normal modes by their frequency, or add damping or a drive".to_owned(),
+        ),
+        ResponseError::CoupledJump(_) => Some(
+            "write k*max(x - d, 0) for a stop, and (2/pi)*atan(100*x') for friction".to_owned(),
+        ),
+        ResponseError::NotShown { known, .. } => Some(format!(
+            "--of takes a coordinate, or an expression in them{}",
+            match known.as_slice() {
+                [first, second, ..] => format!(", such as {first} - {second}"),
+                _ => String::new(),
+            }
         )),
         ResponseError::NoMotion { undamped: true, .. } => Some("add damping, such as 2*zeta*x'".to_owned()),
         ResponseError::NoMotion { .. } => {

@@ -85,6 +85,18 @@ impl CurveStyle {
     pub const UNSTABLE: Self = Self("#0072b2", "5 3", 1.3);
     /// Free motions without damping: thin and grey.
     pub const BACKBONE: Self = Self("#777777", "none", 0.9);
+    /// Stable equilibria: thin, black and solid.
+    pub const EQUILIBRIUM: Self = Self("#000000", "none", 1.2);
+    /// Unstable equilibria: thin, black and dashed.
+    pub const UNSTABLE_EQUILIBRIUM: Self = Self("#000000", "5 3", 0.9);
+    /// Places without a stable motion.
+    pub const NO_MOTION: Self = Self("#bbbbbb", POINTS, 1.0);
+    /// Places with one stable motion.
+    pub const ONE_MOTION: Self = Self("#56b4e9", POINTS, 1.6);
+    /// Places with two stable motions.
+    pub const TWO_MOTIONS: Self = Self("#e69f00", POINTS, 2.2);
+    /// Places with more stable motions.
+    pub const MANY_MOTIONS: Self = Self("#cc79a7", POINTS, 2.8);
     /// One of many curves, which need not be distinguished.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
     #[cfg(feature = "plot")]

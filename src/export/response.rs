@@ -3,13 +3,15 @@
 
 use std::fmt::Write as _;
 
-use super::csv::cell;
+use super::csv::{cell, quoted};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
-use crate::response::ResponseDiagram;
-use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
+use crate::report::{are_modes, listed_quantity};
+use crate::response::bifurcation::BifurcationKind;
+use crate::response::{Equilibrium, ResponseDiagram, SteadyMotion};
 
 /// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; the
-/// first line is a comment that explains the columns.
+/// first line is a comment that explains the columns. Of coupled equations the amplitude of each
+/// coordinate stands at the end of a row; equilibria and curves of bifurcations have rows of their own.
 ///
 /// ```
 /// use lindstedt::response::{ResponseRequest, respond};
@@ -29,37 +31,40 @@ pub fn csv(response: &ResponseDiagram) -> String {
         true => frequency.to_string(),
         false => otherwise,
     };
+    let coupled = Coupled::of(response);
     let mut text = format!(
-        "# kind: branch, slow (by slow equations), simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak{meaning}\n\
-         kind,branch,{},amplitude,{own},peak,stable,multiplier,error\n",
-        response.question.parameter
+        "# kind: branch, slow (by slow equations), simulated, backbone or the kind of a bifurcation; amplitude: of the first harmonic; peak: half of peak to peak{meaning}{}\n\
+         kind,branch,{},amplitude,{own},peak,stable,multiplier,error{}\n",
+        coupled.meaning, response.question.parameter, coupled.columns
     );
     for (index, branch) in response.branches.iter().enumerate() {
         for point in &branch.points {
             let stable = cell(point.stable.map(u8::from));
             let _ = writeln!(
                 text,
-                "branch,{},{},{},{},{},{stable},{},{}",
+                "branch,{},{},{},{},{},{stable},{},{}{}",
                 index + 1,
                 point.parameter,
                 point.amplitude,
                 of_own(point.frequency, point.phase.to_string()),
                 point.peak,
                 cell(point.multipliers.map(|multipliers| multipliers[0].norm())),
-                cell(point.error)
+                cell(point.error),
+                coupled.amplitudes(point)
             );
         }
     }
     for found in &response.bifurcations {
         let _ = writeln!(
             text,
-            "{},{},{},{},{},{},,,",
+            "{},{},{},{},{},{},,,{}",
             found.kind.name(),
             found.branch + 1,
             found.parameter,
             found.amplitude,
             of_own(found.frequency, String::new()),
-            found.peak
+            found.peak,
+            coupled.empty
         );
     }
     for state in response.slow.iter().flat_map(|slow| &slow.states) {
@@ -75,18 +80,114 @@ pub fn csv(response: &ResponseDiagram) -> String {
     for simulated in &response.simulated {
         let _ = writeln!(
             text,
-            "simulated,,{},{},{},{},,,{}",
+            "simulated,,{},{},{},{},,,{}{}",
             simulated.parameter,
             simulated.amplitude,
             of_own(simulated.frequency, String::new()),
             simulated.peak,
-            simulated.error
+            simulated.error,
+            coupled.empty
         );
     }
     for point in response.backbone.iter().flatten() {
         let _ = writeln!(text, "backbone,,{},{},,,,,", point.parameter, point.amplitude);
     }
+    coupled.write_rows_of_their_own(response, &mut text);
     text
+}
+
+/// The columns and the rows that coupled equations have beside those of one coordinate.
+struct Coupled {
+    /// What the comment says of them.
+    meaning: String,
+    /// The names of the columns, each after a comma.
+    columns: String,
+    /// The empty cells of a row without amplitudes.
+    empty: String,
+    /// Whether a second parameter has a column.
+    has_second: bool,
+}
+
+impl Coupled {
+    fn of(response: &ResponseDiagram) -> Self {
+        let asked = &response.question;
+        let coordinates = match asked.equations.oscillator() {
+            Some(_) => vec![],
+            None => asked.equations.coordinates(),
+        };
+        let mut meaning = match coordinates.is_empty() {
+            true => String::new(),
+            false => format!(
+                "; amplitude and peak: of {}; equilibrium: its value below amplitude, its growth below multiplier",
+                listed_quantity(response)
+            ),
+        };
+        let mut columns: String = coordinates
+            .iter()
+            .map(|name| format!(",{}", quoted(&format!("amplitude_{name}"))))
+            .collect();
+        let mut empty = ",".repeat(coordinates.len());
+        if let Some((along, _)) = asked.along {
+            let _ = write!(meaning, "; curve: bifurcations in {} and {along}", asked.parameter);
+            let _ = write!(columns, ",{along}");
+            empty.push(',');
+        }
+        Self { meaning, columns, empty, has_second: asked.along.is_some() }
+    }
+
+    /// The amplitudes of a motion, each after a comma.
+    fn amplitudes(&self, point: &SteadyMotion) -> String {
+        let amplitudes = point.coordinates.iter();
+        let mut cells: String = amplitudes.map(|motion| format!(",{}", motion.amplitude)).collect();
+        if self.has_second {
+            cells.push(',');
+        }
+        cells
+    }
+
+    /// Equilibria, their changes, and curves of bifurcations.
+    fn write_rows_of_their_own(&self, response: &ResponseDiagram, text: &mut String) {
+        for (index, branch) in response.equilibria.iter().enumerate() {
+            for point in &branch.points {
+                let _ = writeln!(
+                    text,
+                    "equilibrium,{},{},{},,,{},{},{}",
+                    index + 1,
+                    point.parameter,
+                    point.value,
+                    cell(point.stable.map(u8::from)),
+                    cell(point.growth),
+                    self.empty
+                );
+            }
+            for change in &branch.changes {
+                let _ = writeln!(
+                    text,
+                    "equilibrium-{},{},{},{},,,,,{}",
+                    change.kind.name(),
+                    index + 1,
+                    change.parameter,
+                    change.value,
+                    self.empty
+                );
+            }
+        }
+        // The second parameter is the last of the columns.
+        let before = self.empty.strip_suffix(',').unwrap_or_default();
+        for (index, curve) in response.curves.iter().enumerate() {
+            for point in &curve.points {
+                let _ = writeln!(
+                    text,
+                    "curve-{},{},{},,,{},,,{before},{}",
+                    curve.kind.name(),
+                    index + 1,
+                    point.parameter,
+                    point.peak,
+                    point.along
+                );
+            }
+        }
+    }
 }
 
 /// The ordinates of the panels: the peak for motions of several drive periods, and for self-excited
@@ -99,11 +200,16 @@ enum Ordinate {
 }
 
 impl Ordinate {
-    fn label(self) -> &'static str {
-        match self {
+    /// The words at the axis; those of coupled equations name the quantity.
+    fn label(self, response: &ResponseDiagram) -> String {
+        let words = match self {
             Self::Amplitude => "amplitude of the first harmonic",
             Self::Peak => "half of peak to peak",
             Self::Frequency => "frequency",
+        };
+        match (self, response.question.equations.oscillator()) {
+            (Self::Frequency, _) | (_, Some(_)) => words.to_owned(),
+            (_, None) => format!("{words} of {}", listed_quantity(response)),
         }
     }
 
@@ -119,14 +225,26 @@ impl Ordinate {
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
 fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points> {
-    let mut pieces: Vec<Points> = Vec::new();
-    let mut open = false;
     let place = |point: &SteadyMotion| {
         (point.parameter, height.value(point.amplitude, point.peak, point.frequency))
     };
+    pieces_by(points, place, |point| point.stable, stable)
+}
+
+/// The pieces of a curve, given by the place of each point, that are stable, or that are not.
+fn pieces_by<T>(
+    points: &[T],
+    place: impl Fn(&T) -> (f64, f64),
+    stability: impl Fn(&T) -> Option<bool>,
+    stable: bool,
+) -> Vec<Points> {
+    let mut pieces: Vec<Points> = Vec::new();
+    let mut open = false;
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
-        if (to.stable == Some(true)) != stable {
+        // A motion that could not be followed over its period has no size.
+        let is_finite = [from, to].map(&place).iter().all(|(x, y)| x.is_finite() && y.is_finite());
+        if (stability(to) == Some(true)) != stable || !is_finite {
             open = false;
             continue;
         }
@@ -137,6 +255,76 @@ fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points
         open = true;
     }
     pieces
+}
+
+/// The equilibria with their labels: their values, stable ones solid and unstable ones dashed.
+fn equilibria(response: &ResponseDiagram) -> Vec<(&'static str, Points, CurveStyle)> {
+    let place = |point: &Equilibrium| (point.parameter, point.value);
+    let of_stability = |stable: bool| {
+        let branches = response.equilibria.iter();
+        branches
+            .flat_map(|branch| pieces_by(&branch.points, place, |point| point.stable, stable))
+            .collect::<Vec<_>>()
+    };
+    let mut drawn = Vec::new();
+    for (stable, label, style) in [
+        (false, "unstable equilibrium", CurveStyle::UNSTABLE_EQUILIBRIUM),
+        (true, "stable equilibrium", CurveStyle::EQUILIBRIUM),
+    ] {
+        drawn.extend(of_stability(stable).into_iter().map(|points| (label, points, style)));
+    }
+    for (kind, label, style) in MARKS {
+        let changes = response.equilibria.iter().flat_map(|branch| &branch.changes);
+        let places = changes.filter(|change| change.kind == kind);
+        let places: Points = places.map(|change| (change.parameter, change.value)).collect();
+        if !places.is_empty() {
+            drawn.push((label, places, style));
+        }
+    }
+    drawn
+}
+
+/// The numbers of stable motions that have a mark of their own, with its label and its style; more are
+/// marked as the last.
+const COUNTS: [(&str, CurveStyle); 4] = [
+    ("no stable motion", CurveStyle::NO_MOTION),
+    ("1 stable motion", CurveStyle::ONE_MOTION),
+    ("2 stable motions", CurveStyle::TWO_MOTIONS),
+    ("3 stable motions or more", CurveStyle::MANY_MOTIONS),
+];
+
+/// The curves of bifurcations in two parameters over a pattern of the numbers of stable motions.
+fn two_parameters(response: &ResponseDiagram) -> Vec<(&'static str, Points, CurveStyle)> {
+    let mut drawn = Vec::new();
+    for (number, (label, style)) in COUNTS.into_iter().enumerate() {
+        let counts = response.stable_motions.iter();
+        let places: Points = counts
+            .flat_map(|grid| {
+                grid.along.iter().zip(&grid.counts).flat_map(move |(along, row)| {
+                    let cells = grid.parameters.iter().zip(row);
+                    cells
+                        .filter(move |(_, count)| (**count).min(COUNTS.len() - 1) == number)
+                        .map(move |(parameter, _)| (*parameter, *along))
+                })
+            })
+            .collect();
+        if !places.is_empty() {
+            drawn.push((label, places, style));
+        }
+    }
+    let styles = CurveStyle::SERIES.into_iter().cycle();
+    for ((kind, label, _), style) in MARKS.into_iter().zip(styles) {
+        let of_kind = response.curves.iter().filter(|curve| curve.kind == kind);
+        drawn.extend(
+            of_kind
+                .map(|curve| {
+                    curve.points.iter().map(|point| (point.parameter, point.along)).collect()
+                })
+                .filter(|points: &Points| points.len() > 1)
+                .map(|points| (label, points, style)),
+        );
+    }
+    drawn
 }
 
 /// The marks of bifurcations.
@@ -206,28 +394,59 @@ fn curves<'a>(
 pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     let asked = &response.question;
     let heights: &[Ordinate] = match (response.self_excited, asked.periods) {
+        // The parameter is the frequency.
+        _ if are_modes(response) => &[Ordinate::Amplitude],
         (true, _) => &[Ordinate::Amplitude, Ordinate::Frequency],
         (false, 1) => &[Ordinate::Amplitude],
         _ => &[Ordinate::Peak],
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    let drawn: Vec<Vec<(&str, Points, CurveStyle)>> =
-        heights.iter().map(|height| curves(response, *height, &title)).collect();
-    let panels: Vec<Panel> = heights
+    // What is drawn in each panel, below its title and the words at its axes.
+    let mut drawn: Vec<Drawing> = heights
         .iter()
-        .zip(&drawn)
-        .map(|(height, drawn)| {
-            let curves = drawn.iter().map(|(label, points, style)| curve(label, points, *style));
-            let labels = [asked.parameter.name(), height.label()];
-            panel("Steady states", labels, curves.collect(), vec![])
+        .map(|height| Drawing {
+            title: "Steady states",
+            labels: [asked.parameter.name().to_owned(), height.label(response)],
+            curves: curves(response, *height, &title),
+        })
+        .collect();
+    drawn.push(Drawing {
+        title: "Equilibria",
+        labels: [asked.parameter.name().to_owned(), listed_quantity(response)],
+        curves: equilibria(response),
+    });
+    let along = asked.along.map(|(name, _)| name.to_string());
+    drawn.push(Drawing {
+        title: "Bifurcations in two parameters",
+        labels: [asked.parameter.name().to_owned(), along.unwrap_or_default()],
+        curves: two_parameters(response),
+    });
+    let panels: Vec<Panel> = drawn
+        .iter()
+        .filter(|drawing| !drawing.curves.is_empty())
+        .map(|drawing| {
+            let curves =
+                drawing.curves.iter().map(|(label, points, style)| curve(label, points, *style));
+            let labels = drawing.labels.each_ref().map(String::as_str);
+            panel(drawing.title, labels, curves.collect(), vec![])
         })
         .collect();
     let values = asked.values.numbers().into_iter();
     let values: Vec<String> =
         values.map(|(name, value)| format!("{name} = {}", super::decimal(value))).collect();
-    let equation = asked.oscillator.equation();
+    let equations = match asked.equations.oscillator() {
+        Some(oscillator) => format!("{} = 0", oscillator.equation().left),
+        None => asked.equations.to_string(),
+    };
     let values = values.iter().map(|value| format!("; {value}")).collect::<String>();
-    let caption = format!("{} = 0{values}; harmonics 0 to {}.", equation.left, response.harmonics);
+    let caption = format!("{equations}{values}; harmonics 0 to {}.", response.harmonics);
     figure(&panels, &caption)
+}
+
+/// What is drawn in a panel.
+struct Drawing<'a> {
+    title: &'static str,
+    labels: [String; 2],
+    curves: Vec<(&'a str, Points, CurveStyle)>,
 }

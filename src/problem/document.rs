@@ -4,7 +4,7 @@
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
 
-use serde::de::Error as _;
+use serde::de::{Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::impact::hertz::StiffnessDesign;
@@ -15,7 +15,9 @@ use crate::solution::Degrees;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Problem {
-    /// The equation of motion, for formulas.
+    /// The equation of motion, for formulas; several, as a list or separated by `;`, for what takes
+    /// coupled equations.
+    #[serde(deserialize_with = "equations")]
     pub equation: Option<String>,
     /// The name of a method.
     pub method: Option<String>,
@@ -31,6 +33,10 @@ pub struct Problem {
     pub vary: Option<String>,
     /// Periods of the drive in a period of the motion.
     pub periods: Option<u32>,
+    /// The quantity of coupled equations that is listed, in their coordinates: `"x - y"`.
+    pub of: Option<String>,
+    /// A second parameter, and its range: `"F=0.1:0.5"`.
+    pub along: Option<String>,
     /// Values for `--at`: numbers, or text such as "pi/3".
     pub values: toml::Table,
     /// The swing.
@@ -71,6 +77,33 @@ pub struct Problem {
     /// Letters of the energies that cancel in the equations of motion.
     #[serde(skip)]
     pub cancelled: Vec<Symbol>,
+}
+
+/// An equation, or a list of them, which are joined by `; `.
+fn equations<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
+    struct Equations;
+
+    impl<'de> Visitor<'de> for Equations {
+        type Value = String;
+
+        fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            formatter.write_str("a string")
+        }
+
+        fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<String, A::Error> {
+            let mut equations: Vec<String> = Vec::new();
+            while let Some(equation) = list.next_element()? {
+                equations.push(equation);
+            }
+            Ok(equations.join("; "))
+        }
+    }
+
+    deserializer.deserialize_any(Equations).map(Some)
 }
 
 /// A whole number, or the degrees of an approximant: `order = 4`, `order = [2, 1]`.

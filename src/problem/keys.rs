@@ -62,7 +62,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("", "equation") => &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
         ("", "method") => &[Derive, Impact, Response],
         ("", "order") => &[Derive, Impact, Stability, Response],
-        ("", "vary" | "periods") => &[Response],
+        ("", "vary" | "periods" | "of" | "along") => &[Response],
         ("", "small") => &[Derive, Compare, Stability],
         ("", "amplitude") => &[Derive, Impact],
         ("", "about") => &[Derive, Compare, Impact],
@@ -101,6 +101,8 @@ const SECTIONS: [KeySection; 15] = [
             "order",
             "vary",
             "periods",
+            "of",
+            "along",
             "small",
             "amplitude",
             "about",
@@ -253,6 +255,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 95);
+        assert_eq!(known.len(), 97);
     }
 }

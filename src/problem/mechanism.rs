@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use super::document::LagrangianSection;
-use super::{Problem, ProblemError, refused};
+use super::{Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::{Expr, parse_equation, parse_expression};
-use crate::mechanics::{Dimension, Mechanism, MechanismQuestion, UnitError};
+use crate::mechanics::{Dimension, EquationsOfMotion, Mechanism, MechanismQuestion, UnitError};
 use crate::symbol::Symbol;
 
 impl Problem {
@@ -82,6 +82,33 @@ impl Problem {
             self.equation = Some(format!("{left} = 0"));
         }
         Ok(self)
+    }
+
+    /// The equations of a mechanism of several coordinates, for a command that takes coupled
+    /// equations; `None` of a file that has a single equation.
+    ///
+    /// # Errors
+    /// A key that the command would ignore; energies that give no equation.
+    ///
+    /// ```
+    /// use lindstedt::problem::{Problem, ReadingCommand};
+    ///
+    /// let file: Problem = "[lagrangian]\ncoordinates = [\"x\", \"y\"]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"(x^2 + (x - y)^2)/2\"".parse()?;
+    /// let equations = file.coupled_equations(ReadingCommand::Response)?.ok_or("one coordinate")?;
+    /// assert_eq!(equations.left.len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn coupled_equations(
+        &self,
+        reader: ReadingCommand,
+    ) -> Result<Option<EquationsOfMotion>, ProblemError> {
+        match &self.lagrangian {
+            Some(section) if section.coordinates.len() > 1 => {
+                self.check_keys(reader)?;
+                Ok(Some(self.mechanism()?.mechanism.equations()?))
+            }
+            _ => Ok(None),
+        }
     }
 
     /// Whether the derived equation can be read as one that was typed.

@@ -13,7 +13,8 @@
 //! - a search for the best design, [`Problem::optimize`];
 //! - the motion of a given equation, [`Problem::course`];
 //! - a mechanism by its energies, [`Problem::mechanism`]: if it has a single coordinate, its
-//!   equation is derived at once, and every command that reads an equation reads that one.
+//!   equation is derived at once, and every command that reads an equation reads that one; of
+//!   several the equations are [`Problem::coupled_equations`], for `response`.
 
 mod design;
 mod document;

@@ -1,6 +1,8 @@
 //! Steady states of an oscillator: branches with their stability, their bifurcations, and the error
 //! against the true motion.
 
+mod coupled;
+
 use std::borrow::Cow;
 
 use super::{Block, Document};
@@ -13,6 +15,8 @@ use crate::response::slow::SlowResponse;
 use crate::response::{Branch, Elsewhere, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
 use crate::symbol::Symbol;
 use crate::values::Values;
+
+pub(crate) use coupled::{are_modes, listed_quantity};
 
 /// Number of rows of the table of a branch.
 const ROWS: usize = 13;
@@ -36,7 +40,9 @@ pub fn response(response: &ResponseDiagram) -> Document<'static> {
     for (index, branch) in response.branches.iter().enumerate() {
         sections.push(self::branch(response, index, branch));
     }
+    sections.extend(coupled::equilibria(response));
     sections.extend(changes(response));
+    sections.extend(coupled::two_parameters(response));
     sections.extend(backbone(response));
     sections.push(judgement(response));
     sections.extend(response.slow.as_ref().map(|slow| by_slow_equations(response, slow)));
@@ -45,15 +51,20 @@ pub fn response(response: &ResponseDiagram) -> Document<'static> {
 
 fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let asked = &response.question;
-    let equation = asked.oscillator.equation();
-    let mut blocks =
-        vec![Block::Line(Cow::Owned(DerivationLine::equation(equation.left, equation.right)))];
+    let sides = asked.equations.sides().into_iter();
+    let mut blocks: Vec<Block> = sides
+        .map(|(left, right)| Block::Line(Cow::Owned(DerivationLine::equation(left, right))))
+        .collect();
     blocks.extend(numbers(&asked.values).map(|(name, value)| Block::Value {
         name,
         value,
         source: None,
     }));
     let (name, [low, high]) = (asked.parameter, asked.range);
+    if coupled::is_coupled(response) {
+        blocks.extend(coupled::question(response));
+        return blocks;
+    }
     if response.self_excited {
         blocks.extend(self_excited(response));
         return blocks;
@@ -82,6 +93,9 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
 
 /// The method that finds the branches.
 fn method(response: &ResponseDiagram) -> &'static str {
+    if coupled::is_coupled(response) {
+        return "shooting";
+    }
     match (response.by_map, response.jumps) {
         (true, true) => "the map of a period from jump to jump of the force",
         (true, false) => "shooting, across the corners of the force",
@@ -91,6 +105,9 @@ fn method(response: &ResponseDiagram) -> &'static str {
 
 /// The judge of the points of the branches.
 fn judge(response: &ResponseDiagram) -> &'static str {
+    if coupled::is_coupled(response) {
+        return "a period by Taylor series";
+    }
     match response.by_map && !response.jumps {
         true => "a period by Runge-Kutta",
         false => "shooting",
@@ -156,16 +173,32 @@ fn rows(points: &[SteadyMotion]) -> Vec<usize> {
     rows
 }
 
-fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Block<'static>> {
-    let name = response.question.parameter.name();
-    let stable = |state: Option<bool>| match state {
+/// Whether a motion is stable, in a cell of a table.
+fn yes_or_no(stable: Option<bool>) -> &'static str {
+    match stable {
         Some(true) => "yes",
         Some(false) => "no",
         None => "-",
-    };
-    let row = |index: usize| {
-        let point = &branch.points[index];
-        let largest = point.multipliers.map(|multipliers| multipliers[0].norm());
+    }
+}
+
+/// The cells on stability, the largest multiplier and the error of a point.
+fn stability_cells(point: &SteadyMotion) -> [String; 3] {
+    let largest = point.multipliers.map(|multipliers| multipliers[0].norm());
+    [
+        yes_or_no(point.stable).to_owned(),
+        largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
+        point.error.map_or("-".to_owned(), |error| significant(error, 2)),
+    ]
+}
+
+/// The table of some points of a branch of one coordinate.
+fn points<'a>(
+    response: &ResponseDiagram,
+    points: impl Iterator<Item = &'a SteadyMotion>,
+) -> Block<'static> {
+    let name = response.question.parameter.name();
+    let row = |point: &SteadyMotion| {
         let place = match response.self_excited {
             true => vec![
                 decimal(point.frequency),
@@ -175,12 +208,7 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
             false => vec![decimal(point.phase), decimal(point.peak)],
         };
         let first = [decimal(point.parameter), decimal(point.amplitude)].into_iter();
-        let last = [
-            stable(point.stable).to_owned(),
-            largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
-            point.error.map_or("-".to_owned(), |error| significant(error, 2)),
-        ];
-        first.chain(place).chain(last).collect()
+        first.chain(place).chain(stability_cells(point)).collect()
     };
     let columns: &[&'static str] = match response.self_excited {
         true => {
@@ -188,11 +216,21 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
         }
         false => &[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"],
     };
+    Block::table(columns.iter().copied(), points.map(row))
+}
+
+fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Block<'static>> {
+    let chosen = rows(&branch.points).into_iter().filter_map(|index| branch.points.get(index));
     let mut blocks = vec![
         Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
-        Block::table(columns.iter().copied(), rows(&branch.points).into_iter().map(row)),
+        match coupled::is_coupled(response) {
+            true => coupled::points(response, chosen),
+            false => points(response, chosen),
+        },
     ];
-    if branch.mirrored {
+    if branch.mirrored && coupled::is_coupled(response) {
+        blocks.push(Block::Sentence(coupled::mirror_image(response)));
+    } else if branch.mirrored {
         let image = match response.self_excited {
             true => "-x",
             false => "-x half a period of the drive later",
@@ -314,21 +352,22 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
         return None;
     }
     let name = response.question.parameter.name();
+    let has_frequency = response.self_excited && !are_modes(response);
     let row = |bifurcation: &crate::response::Bifurcation| {
         let mut row = vec![
-            bifurcation_in_words(bifurcation.kind).to_owned(),
+            coupled::kind_in_words(bifurcation.kind, bifurcation.criticality),
             decimal(bifurcation.parameter),
             decimal(bifurcation.amplitude),
             decimal(bifurcation.peak),
             (bifurcation.branch + 1).to_string(),
         ];
-        if response.self_excited {
+        if has_frequency {
             row.insert(3, decimal(bifurcation.frequency));
         }
         row
     };
     let mut columns = vec!["", name, "amplitude", "peak", "branch"];
-    if response.self_excited {
+    if has_frequency {
         columns.insert(3, "frequency");
     }
     let mut blocks = vec![Block::Heading("where branches change".to_owned())];
@@ -341,6 +380,9 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
         blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
     }
     let meaning = |kind: BifurcationKind| match kind {
+        BifurcationKind::Fold if coupled::are_modes(response) => {
+            "At a fold the family turns back in its frequency."
+        }
         BifurcationKind::Fold if response.self_excited => "At a fold two cycles meet and vanish.",
         BifurcationKind::Fold => "At a fold the motion jumps to another branch.",
         BifurcationKind::BranchPoint => "At a branch point another branch crosses.",
@@ -483,6 +525,7 @@ fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Blo
 
 fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
+    let has_frequency = response.self_excited && !are_modes(response);
     let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
     let mut facts = vec![(
         "largest error",
@@ -490,7 +533,7 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
             Some(error) => format!(
                 "{} of the true {}, of {} points against {} and {} against simulation",
                 significant(error, 2),
-                if response.self_excited { "peak or frequency" } else { "peak" },
+                if has_frequency { "peak or frequency" } else { "peak" },
                 points - response.unjudged,
                 judge(response),
                 response.simulated.len()
@@ -524,7 +567,6 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
         response.elsewhere.iter().map(|place| (place.periods, place.drive_periods)).collect();
     kinds.sort();
     kinds.dedup();
-    let x = response.question.oscillator.coordinate;
     for (count, drive_periods) in kinds {
         let places = response
             .elsewhere
@@ -538,11 +580,10 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
         largest.sort_by(|one, other| other.peak.total_cmp(&one.peak));
         let example = largest.first().map_or_else(String::new, |place| {
             format!(
-                " The largest has the peak {} at {name} = {} and begins at {x} = {}, {x}' = {}.",
+                " The largest has the peak {} at {name} = {} and begins at {}.",
                 significant(place.peak, 4),
                 significant(place.parameter, 4),
-                significant(place.start[0], 6),
-                significant(place.start[1], 6)
+                coupled::states_in_words(response, place)
             )
         });
         let places = values.join(", ");

@@ -546,7 +546,9 @@ fn slow_equations_come_nearer_with_their_order() {
             resonance: Some((1, 1)),
             ..lindstedt::Options::default()
         };
-        let solution = lindstedt::solve(&question.oscillator, &options).expect("slow equations");
+        let solution =
+            lindstedt::solve(question.equations.oscillator().expect("one coordinate"), &options)
+                .expect("slow equations");
         let slow = respond(&question)
             .expect("a response")
             .with_slow_equations(solution)
@@ -576,7 +578,8 @@ fn slow_equations_of_a_parametric_resonance_pass() {
         resonance: Some((2, 1)),
         ..lindstedt::Options::default()
     };
-    let solution = solve(&asked.oscillator, &options).expect("slow equations");
+    let solution = solve(asked.equations.oscillator().expect("one coordinate"), &options)
+        .expect("slow equations");
     let found = respond(&asked).expect("a response").with_slow_equations(solution);
     let edges = places(&found, BifurcationKind::BranchPoint);
     assert_eq!(edges.len(), 2, "{edges:?}");

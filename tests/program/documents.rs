@@ -144,6 +144,10 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/response", ".toml") {
         add(&["response", &file.to_string_lossy()]);
     }
+    let two = "x'' + x'/5 + 2*x - y = cos(Omega*t); y'' + y'/5 + 2*y - x = 0";
+    add(&["response", two, "--vary", "Omega=0.5:0.7", "--of", "x - y"]);
+    let cycles = "v' = v - v^3/3 - w + I; w' = (v + 0.7 - 0.8*w)/5";
+    add(&["response", cycles, "--vary", "I=0:0.6"]);
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
     }

@@ -16,6 +16,7 @@ mod pages;
 #[cfg(feature = "plot")]
 mod pictures;
 mod programs;
+mod responses;
 mod shards;
 mod simulate_cli;
 mod unread;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from .._answer import Answer
 from .._document import Document, mapped, several
@@ -28,6 +28,13 @@ class ResponsePoint(Document):
         start: Position and velocity at t = 0, by shooting where that found the true motion.
         error: The error of amplitude or peak, the larger, over the true peak, or that of the
             frequency; null where no true motion was found near.
+        amplitudes: The amplitude of the first harmonic of each coordinate of coupled equations.
+            Left out for one coordinate.
+        phases: The phase of each, in radians. Left out for one coordinate.
+        peaks: Half of the way from the lowest to the highest point of each. Left out for one
+            coordinate.
+        state: The positions of all coordinates at t = 0, then their rates. Left out for one
+            coordinate.
     """
 
     parameter: float
@@ -39,6 +46,10 @@ class ResponsePoint(Document):
     multipliers: tuple[tuple[float, float], tuple[float, float]] | None
     start: tuple[float, float]
     error: float | None
+    amplitudes: dict[str, float] | None
+    phases: dict[str, float] | None
+    peaks: dict[str, float] | None
+    state: tuple[float, ...] | None
 
 
 ResponsePoint.FIELDS = (
@@ -51,7 +62,16 @@ ResponsePoint.FIELDS = (
     ("multipliers", "multipliers", several(tuple)),
     ("start", "start", tuple),
     ("error", "error", None),
+    ("amplitudes", "amplitudes", dict),
+    ("phases", "phases", dict),
+    ("peaks", "peaks", dict),
+    ("state", "state", tuple),
 )
+ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'peaks', 'phases', 'state'])
+
+
+#: The side on which motions come off at a bifurcation, and so whether they are stable beside it.
+Criticality: TypeAlias = Literal["subcritical", "supercritical"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,6 +87,7 @@ class ResponseBifurcation(Document):
         frequency: The frequency of the motion.
         amplitude: The amplitude of the first harmonic.
         peak: Half of peak to peak.
+        criticality: Whether the motions that come off are stable, where that is known.
     """
 
     kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
@@ -75,6 +96,7 @@ class ResponseBifurcation(Document):
     frequency: float
     amplitude: float
     peak: float
+    criticality: Criticality | None
 
 
 ResponseBifurcation.FIELDS = (
@@ -84,6 +106,147 @@ ResponseBifurcation.FIELDS = (
     ("frequency", "frequency", None),
     ("amplitude", "amplitude", None),
     ("peak", "peak", None),
+    ("criticality", "criticality", None),
+)
+ResponseBifurcation.OPTIONAL = frozenset(['criticality'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Equilibrium(Document):
+    """An equilibrium of coupled equations that nothing drives.
+
+    Attributes:
+        parameter: The value of the parameter that varies.
+        value: The quantity that is listed.
+        state: All coordinates, then the velocities of those of second order.
+        growth: The largest real part of an eigenvalue of the linear equations; null where there
+            is none.
+        stable: Whether small disturbances die out; without damping, whether they do not grow.
+    """
+
+    parameter: float
+    value: float
+    state: tuple[float, ...]
+    growth: float | None
+    stable: bool | None
+
+
+Equilibrium.FIELDS = (
+    ("parameter", "parameter", None),
+    ("value", "value", None),
+    ("state", "state", tuple),
+    ("growth", "growth", None),
+    ("stable", "stable", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EquilibriumChange(Document):
+    """A place where a branch of equilibria changes.
+
+    Attributes:
+        kind: What happens: a fold, a branch point, or a Hopf point, where cycles are born.
+        parameter: The value of the parameter that varies.
+        value: The quantity that is listed.
+        criticality: Whether the cycles that come off at a Hopf point are stable, where that is
+            known.
+    """
+
+    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
+    parameter: float
+    value: float
+    criticality: Criticality | None
+
+
+EquilibriumChange.FIELDS = (
+    ("kind", "kind", None),
+    ("parameter", "parameter", None),
+    ("value", "value", None),
+    ("criticality", "criticality", None),
+)
+EquilibriumChange.OPTIONAL = frozenset(['criticality'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EquilibriumBranch(Document):
+    """A branch of equilibria in order, with its changes.
+
+    Attributes:
+        points: Its points.
+        changes: Its folds, branch points and Hopf points.
+    """
+
+    points: tuple[Equilibrium, ...]
+    changes: tuple[EquilibriumChange, ...]
+
+
+EquilibriumBranch.FIELDS = (
+    ("points", "points", several(Equilibrium.from_json)),
+    ("changes", "changes", several(EquilibriumChange.from_json)),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BifurcationCurvePoint(Document):
+    """A bifurcation at values of two parameters.
+
+    Attributes:
+        parameter: The value of the parameter that varies.
+        along: The value of the second parameter.
+        peak: Half of peak to peak of the motion there.
+    """
+
+    parameter: float
+    along: float
+    peak: float
+
+
+BifurcationCurvePoint.FIELDS = (
+    ("parameter", "parameter", None),
+    ("along", "along", None),
+    ("peak", "peak", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class BifurcationCurve(Document):
+    """A curve of bifurcations in two parameters.
+
+    Attributes:
+        kind: What happens on it: fold, period doubling or Neimark-Sacker.
+        points: Its points in order.
+    """
+
+    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
+    points: tuple[BifurcationCurvePoint, ...]
+
+
+BifurcationCurve.FIELDS = (
+    ("kind", "kind", None),
+    ("points", "points", several(BifurcationCurvePoint.from_json)),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StableMotions(Document):
+    """Numbers of stable motions at values of two parameters.
+
+    Attributes:
+        parameters: The values of the parameter that varies.
+        along: The values of the second parameter.
+        counts: For each value of the second parameter the number of stable motions that were
+            found at each value of the first.
+    """
+
+    parameters: tuple[float, ...]
+    along: tuple[float, ...]
+    counts: tuple[tuple[int, ...], ...]
+
+
+StableMotions.FIELDS = (
+    ("parameters", "parameters", tuple),
+    ("along", "along", tuple),
+    ("counts", "counts", several(tuple)),
 )
 
 
@@ -245,6 +408,8 @@ class ElsewherePoint(Document):
             not.
         start: Position and velocity at t = 0 or a whole number of periods later, from where it
             goes on as it has settled.
+        state: Of coupled equations all states there: coordinates, then velocities. Left out for
+            one coordinate.
         amplitude: The amplitude of the first harmonic of a period of the motion from there.
         peak: Half of the way from the lowest to the highest point of this period.
     """
@@ -253,6 +418,7 @@ class ElsewherePoint(Document):
     periods: int | None
     drive_periods: int | None
     start: tuple[float, float]
+    state: tuple[float, ...] | None
     amplitude: float
     peak: float
 
@@ -262,9 +428,11 @@ ElsewherePoint.FIELDS = (
     ("periods", "periods", None),
     ("drive_periods", "drive_periods", None),
     ("start", "start", tuple),
+    ("state", "state", tuple),
     ("amplitude", "amplitude", None),
     ("peak", "peak", None),
 )
+ElsewherePoint.OPTIONAL = frozenset(['state'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -295,23 +463,28 @@ ResponseVerification.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response(Answer):
-    """Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those
+    """Steady states of an oscillator, or of coupled equations, as a parameter varies. Units are those
     of the equation and the values given.
 
     Attributes:
         schema: The kind of document.
-        equation: The equation of motion.
+        equation: The equation of motion; coupled equations are separated by `;`.
+        coordinates: The coordinates of coupled equations. Left out for one coordinate.
+        of: The quantity of coupled equations whose amplitude, phase and peak are listed, in the
+            coordinates. Left out for one coordinate.
         parameters: The values of all other parameters.
         parameter: The name of the parameter that varies.
         range: Its lowest and its highest value.
         method: How the branches were found: `harmonic-balance`, or `period-map` where the force
-            has corners, or jumps that harmonic balance does not take.
+            has corners, or jumps that harmonic balance does not take; `shooting` for coupled
+            equations.
         harmonics: The highest harmonic kept.
         periods: How many periods of the drive a period of the motion takes.
         frequency: theta/t: the frequency of the motion, that of the drive over `periods`; a name
             where nothing drives it.
         self_excited: Whether nothing drives the motion: each point then has a frequency of its
-            own.
+            own, or, of coupled equations that nothing damps either, the parameter is the
+            frequency.
         undamped: Whether nothing damps the motion; `stable` then means that disturbances do not
             grow.
         branches: The branches, each a list of points in order.
@@ -320,6 +493,14 @@ class Response(Answer):
         stuck: Of each point of a branch the part of a period in which dry friction holds it;
             empty for a branch that nothing holds.
         bifurcations: Where branches change.
+        equilibria: The equilibria of coupled equations that nothing drives, a branch each. Left
+            out where there are none.
+        along: The name of a second parameter, along which bifurcations are followed. Left out
+            where none was given.
+        curves_of_bifurcations: The curves of bifurcations in both parameters. Left out where
+            there are none.
+        stable_motions: The numbers of stable motions over both parameters. Left out where they
+            were not counted.
         ripple: Folds of the balance that are none of the true motion and not among those places.
             Left out where there are none.
         backbone: The free motion without damping, a list of points for each stable place of rest;
@@ -334,6 +515,8 @@ class Response(Answer):
 
     schema: Literal["lindstedt/response/1"]
     equation: str
+    coordinates: tuple[str, ...] | None
+    of: str | None
     parameters: dict[str, Constant]
     parameter: str
     range: tuple[float, float]
@@ -347,6 +530,10 @@ class Response(Answer):
     mirrored: tuple[bool, ...]
     stuck: tuple[tuple[float, ...], ...]
     bifurcations: tuple[ResponseBifurcation, ...]
+    equilibria: tuple[EquilibriumBranch, ...] | None
+    along: str | None
+    curves_of_bifurcations: tuple[BifurcationCurve, ...] | None
+    stable_motions: StableMotions | None
     ripple: ResponseRipple | None
     backbone: tuple[tuple[BackbonePoint, ...], ...]
     modulation: SlowResponse | None
@@ -359,6 +546,8 @@ class Response(Answer):
 Response.FIELDS = (
     ("schema", "schema", None),
     ("equation", "equation", None),
+    ("coordinates", "coordinates", tuple),
+    ("of", "of", None),
     ("parameters", "parameters", mapped(Constant.from_json)),
     ("parameter", "parameter", None),
     ("range", "range", tuple),
@@ -372,6 +561,10 @@ Response.FIELDS = (
     ("mirrored", "mirrored", tuple),
     ("stuck", "stuck", several(tuple)),
     ("bifurcations", "bifurcations", several(ResponseBifurcation.from_json)),
+    ("equilibria", "equilibria", several(EquilibriumBranch.from_json)),
+    ("along", "along", None),
+    ("curves_of_bifurcations", "curves_of_bifurcations", several(BifurcationCurve.from_json)),
+    ("stable_motions", "stable_motions", StableMotions.from_json),
     ("ripple", "ripple", ResponseRipple.from_json),
     ("backbone", "backbone", several(several(BackbonePoint.from_json))),
     ("modulation", "modulation", SlowResponse.from_json),
@@ -380,4 +573,4 @@ Response.FIELDS = (
     ("verification", "verification", ResponseVerification.from_json),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['ripple'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'of', 'ripple', 'stable_motions'])

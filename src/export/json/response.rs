@@ -1,5 +1,5 @@
-//! Kind `response`: all steady states of an oscillator, driven or self-excited, with their
-//! stability.
+//! Kind `response`: all steady states of an oscillator, driven or self-excited, or of coupled
+//! equations, with their stability.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;
@@ -7,21 +7,28 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
 use super::number::{Constant, Map, constants, is_nothing, meanings};
-use crate::report::motion_frequency;
+use crate::report::{listed_quantity, motion_frequency};
 use crate::response::slow::SlowResponse;
-use crate::response::{self, ResponseDiagram};
+use crate::response::{self, CoordinateMotion, ResponseDiagram};
 #[cfg(feature = "schema")]
 use crate::verify::Verdict;
 
-/// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those
+/// Steady states of an oscillator, or of coupled equations, as a parameter varies. Units are those
 /// of the equation and the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct ResponseDocument {
     /// The kind of document.
     pub schema: String,
-    /// The equation of motion.
+    /// The equation of motion; coupled equations are separated by `;`.
     pub equation: String,
+    /// The coordinates of coupled equations. Left out for one coordinate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub coordinates: Vec<String>,
+    /// The quantity of coupled equations whose amplitude, phase and peak are listed, in the
+    /// coordinates. Left out for one coordinate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<String>,
     /// The values of all other parameters.
     pub parameters: Map<Constant>,
     /// The name of the parameter that varies.
@@ -29,7 +36,7 @@ pub struct ResponseDocument {
     /// Its lowest and its highest value.
     pub range: [f64; 2],
     /// How the branches were found: `harmonic-balance`, or `period-map` where the force has corners,
-    /// or jumps that harmonic balance does not take.
+    /// or jumps that harmonic balance does not take; `shooting` for coupled equations.
     pub method: String,
     /// The highest harmonic kept.
     pub harmonics: usize,
@@ -38,7 +45,8 @@ pub struct ResponseDocument {
     /// theta/t: the frequency of the motion, that of the drive over `periods`; a name where nothing
     /// drives it.
     pub frequency: String,
-    /// Whether nothing drives the motion: each point then has a frequency of its own.
+    /// Whether nothing drives the motion: each point then has a frequency of its own, or, of coupled
+    /// equations that nothing damps either, the parameter is the frequency.
     pub self_excited: bool,
     /// Whether nothing damps the motion; `stable` then means that disturbances do not grow.
     pub undamped: bool,
@@ -52,6 +60,20 @@ pub struct ResponseDocument {
     pub stuck: Vec<Vec<f64>>,
     /// Where branches change.
     pub bifurcations: Vec<response::Bifurcation>,
+    /// The equilibria of coupled equations that nothing drives, a branch each. Left out where there
+    /// are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub equilibria: Vec<response::EquilibriumBranch>,
+    /// The name of a second parameter, along which bifurcations are followed. Left out where none
+    /// was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<String>,
+    /// The curves of bifurcations in both parameters. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curves_of_bifurcations: Vec<response::BifurcationCurve>,
+    /// The numbers of stable motions over both parameters. Left out where they were not counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stable_motions: Option<response::StableMotions>,
     /// Folds of the balance that are none of the true motion and not among those places. Left out
     /// where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,6 +119,19 @@ pub struct ResponsePoint {
     /// The error of amplitude or peak, the larger, over the true peak, or that of the frequency;
     /// null where no true motion was found near.
     pub error: Option<f64>,
+    /// The amplitude of the first harmonic of each coordinate of coupled equations. Left out for one
+    /// coordinate.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub amplitudes: Map<f64>,
+    /// The phase of each, in radians. Left out for one coordinate.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub phases: Map<f64>,
+    /// Half of the way from the lowest to the highest point of each. Left out for one coordinate.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub peaks: Map<f64>,
+    /// The positions of all coordinates at t = 0, then their rates. Left out for one coordinate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub state: Vec<f64>,
 }
 
 /// Steady motions by slow equations.
@@ -171,6 +206,12 @@ pub struct ResponseVerification {
 }
 
 fn point(point: &response::SteadyMotion) -> ResponsePoint {
+    let each = |quantity: fn(&CoordinateMotion) -> f64| {
+        let coordinates = point.coordinates.iter();
+        coordinates.map(|motion| (motion.coordinate.to_string(), quantity(motion))).collect()
+    };
+    let starts = point.coordinates.iter().map(|motion| motion.start);
+    let rates = point.coordinates.iter().map(|motion| motion.rate);
     ResponsePoint {
         parameter: point.parameter,
         frequency: point.frequency,
@@ -181,6 +222,10 @@ fn point(point: &response::SteadyMotion) -> ResponsePoint {
         multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
         start: point.start,
         error: point.error,
+        amplitudes: each(|motion| motion.amplitude),
+        phases: each(|motion| motion.phase),
+        peaks: each(|motion| motion.peak),
+        state: starts.chain(rates).collect(),
     }
 }
 
@@ -204,15 +249,23 @@ fn stuck(branch: &response::Branch) -> Vec<f64> {
 /// ```
 pub fn response(response: &ResponseDiagram) -> ResponseDocument {
     let asked = &response.question;
+    let coupled = asked.equations.oscillator().is_none();
+    let coordinates = match coupled {
+        true => asked.equations.coordinates().iter().map(ToString::to_string).collect(),
+        false => vec![],
+    };
     ResponseDocument {
         schema: DocumentKind::Response.schema().to_owned(),
-        equation: asked.oscillator.equation().to_string(),
+        equation: asked.equations.to_string(),
+        coordinates,
+        of: coupled.then(|| listed_quantity(response)),
         parameters: constants(&asked.values),
         parameter: asked.parameter.to_string(),
         range: asked.range,
-        method: match response.by_map {
-            true => "period-map",
-            false => "harmonic-balance",
+        method: match (coupled, response.by_map) {
+            (true, _) => "shooting",
+            (false, true) => "period-map",
+            (false, false) => "harmonic-balance",
         }
         .to_owned(),
         harmonics: response.harmonics,
@@ -228,6 +281,10 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
         bifurcations: response.bifurcations.clone(),
+        equilibria: response.equilibria.clone(),
+        along: asked.along.map(|(name, _)| name.to_string()),
+        curves_of_bifurcations: response.curves.clone(),
+        stable_motions: response.stable_motions.clone(),
         ripple: response.ripple,
         backbone: response.backbone.clone(),
         modulation: response.slow.as_ref().map(slow),

@@ -14,12 +14,14 @@ const MECHANISM: &str =
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 95] = [
+const LINES: [(&str, &str, &str); 97] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
     ("vary", "vary = \"eps=0.5:1.5\"", FORMULA),
     ("periods", "periods = 2", FORMULA),
+    ("of", "of = \"x\"", FORMULA),
+    ("along", "along = \"eps=0.5:1.5\"", FORMULA),
     ("small", "small = \"A\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
     ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),

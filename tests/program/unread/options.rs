@@ -216,6 +216,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("response", driven[1..].to_vec(), vec!["--method", "multiple-scales"]),
         ("response", driven[1..].to_vec(), vec!["--order", "2"]),
         ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
+        ("response", driven[1..].to_vec(), vec!["--of", "y"]),
+        ("response", driven[1..].to_vec(), vec!["--along", "F=0.1:0.3"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
         ("response", driven[1..].to_vec(), vec!["--format", "latex"]),
         ("response", driven[1..].to_vec(), vec!["--output", file]),

@@ -774,7 +774,7 @@ mod tests {
         assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
         let quotient =
             CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
-        assert_eq!(quotient.0.instructions.len(), 2, "{quotient:?}");
+        assert_eq!(quotient.0.list.instructions.len(), 2, "{quotient:?}");
     }
 
     #[test]

@@ -28,7 +28,8 @@ fn places(found: &ResponseDiagram, kind: BifurcationKind) -> Vec<f64> {
 /// The motions at the upper end of the range, the smallest first.
 fn at_end(found: &ResponseDiagram) -> Vec<&SteadyMotion> {
     let end = found.question.range[1];
-    let ends = found.branches.iter().flat_map(|branch| [branch.points.first(), branch.points.last()]);
+    let ends =
+        found.branches.iter().flat_map(|branch| [branch.points.first(), branch.points.last()]);
     let mut ends: Vec<&SteadyMotion> =
         ends.flatten().filter(|point| point.parameter == end).collect();
     ends.sort_by(|one, other| one.amplitude.total_cmp(&other.amplitude));
@@ -260,9 +261,7 @@ fn nonlinear_normal_modes_by_their_frequency() {
     let [point] = at_end(&found)[..] else { panic!() };
     let starts: Vec<f64> = point.coordinates.iter().map(|own| own.start.abs()).collect();
     near(&starts, &[1.137_497_60, 1.408_884_01], 1e-7);
-    closes(point, 1.0, |_, [x, y, v, u]| {
-        [*v, *u, y - 2.0 * x - 0.5 * x.powi(3), x - 2.0 * y]
-    });
+    closes(point, 1.0, |_, [x, y, v, u]| [*v, *u, y - 2.0 * x - 0.5 * x.powi(3), x - 2.0 * y]);
     let found = answer(text, "omega", [1.2, 1.29], "");
     near(&places(&found, BifurcationKind::BranchPoint), &[1.281_534_29], 1e-7);
     // The other mode begins at the square root of 3.
@@ -311,16 +310,14 @@ fn a_mechanism_has_the_response_of_its_equations() {
     )
     .expect("a mechanism");
     let mechanism = lindstedt::mechanics::Mechanism {
-        forces: [
-            ("s", "cos(w*t)/20 - s'/10"),
-            ("x", "-x'/10"),
-        ]
-        .map(|(name, force)| (name.into(), force.parse().expect(force)))
-        .into(),
+        forces: [("s", "cos(w*t)/20 - s'/10"), ("x", "-x'/10")]
+            .map(|(name, force)| (name.into(), force.parse().expect(force)))
+            .into(),
         ..mechanism
     };
     let equations = mechanism.equations().expect("equations");
-    let equations = lindstedt::coupled::CoupledEquations::of_mechanism(&equations).expect("coupled");
+    let equations =
+        lindstedt::coupled::CoupledEquations::of_mechanism(&equations).expect("coupled");
     let text = "3*s'' + x''*cos(x) - x'^2*sin(x) + 2*s + s'/10 = cos(w*t)/20; \
                 x'' + s''*cos(x) + sin(x) + x'/10 = 0";
     let request = question(text, "w", [0.5, 0.9], "");
@@ -337,7 +334,12 @@ fn a_mechanism_has_the_response_of_its_equations() {
 #[test]
 fn what_is_asked_wrongly_says_why() {
     for (equations, parameter, values, words) in [
-        ("x'' + x'/5 + x = cos(w*t) + y; y'' + y'/5 + y = cos(pi*w*t)", "w", "", "no whole multiples"),
+        (
+            "x'' + x'/5 + x = cos(w*t) + y; y'' + y'/5 + y = cos(pi*w*t)",
+            "w",
+            "",
+            "no whole multiples",
+        ),
         ("x'' + x - y = t; y'' + y'/5 + y = 0", "w", "", "not periodic in time"),
         ("x'' + k*x - y = 0; y'' + y - x = 0", "k", "", "a frequency for each energy"),
         ("x'' + x'/5 + k*x = y + cos(w*t); y'' + y'/5 + y = x", "w", "", "no value for `k`"),

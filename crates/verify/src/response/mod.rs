@@ -183,6 +183,9 @@ pub struct Equilibrium {
     pub growth: Option<f64>,
     /// Whether small disturbances die out; without damping, whether they do not grow.
     pub stable: Option<bool>,
+    /// The way to the zero of the equations as they were given, by one step of Newton's method, over the
+    /// size of the largest equilibrium; null where the linear equations are singular.
+    pub error: Option<f64>,
 }
 
 /// A place where a branch of equilibria changes.
@@ -540,6 +543,8 @@ impl ResponseDiagram {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
         let errors = points().filter_map(|point| point.error);
         let errors = errors.chain(self.simulated.iter().map(|simulated| simulated.error));
+        let equilibria = self.equilibria.iter().flat_map(|branch| &branch.points);
+        let errors = errors.chain(equilibria.filter_map(|point| point.error));
         let error = errors.fold(None, |largest: Option<f64>, error| {
             Some(largest.map_or(error, |largest| largest.max(error)))
         });

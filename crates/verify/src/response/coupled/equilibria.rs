@@ -187,6 +187,8 @@ impl CoupledProblem<'_> {
                 }
             }
             let point = |rest: &Rest| {
+                let at = self.in_time.linearised(rest.start(), 0.0, rest.parameter());
+                let step = at.by_state.lu().solve(&at.rates);
                 let growth = self.growth(rest.start(), rest.parameter());
                 let growth =
                     growth.map(|all| all.iter().map(|value| value.re).fold(f64::MIN, f64::max));
@@ -194,6 +196,9 @@ impl CoupledProblem<'_> {
                     parameter: rest.parameter(),
                     value: self.shown.call(&rest.start()[..self.coordinates]),
                     state: rest.start().to_vec(),
+                    error: step
+                        .map(|step| step.amax() / ordinary.get())
+                        .filter(|error| error.is_finite()),
                     growth,
                     stable: growth.map(|growth| match self.undamped {
                         true => growth <= 1e-7,

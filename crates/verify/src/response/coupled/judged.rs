@@ -65,7 +65,7 @@ impl CoupledProblem<'_> {
     /// A quantity of the coordinates over a period of a path.
     fn wave(
         &self,
-        path: &Path,
+        path: Option<&Path>,
         period: f64,
         samples: &[Vec<f64>],
         transform: &Transform,
@@ -82,8 +82,8 @@ impl CoupledProblem<'_> {
         });
         let step = period / SAMPLES as f64;
         let value = |time: f64| {
-            let states = path.states_at(time.rem_euclid(period)).unwrap_or_default();
-            if states.len() < n { f64::NAN } else { quantity(&states[..n]) }
+            let states = path.and_then(|path| path.states_at(time.rem_euclid(period)));
+            states.map_or(f64::NAN, |states| quantity(&states[..n]))
         };
         // The highest point near the highest sample, by parabolas through three points.
         let extreme = |sign: f64| {
@@ -100,7 +100,7 @@ impl CoupledProblem<'_> {
                     break;
                 }
                 let there = value(middle + shift);
-                if !(sign * there >= sign * best) {
+                if there.is_nan() || sign * there < sign * best {
                     break;
                 }
                 (middle, best, width) = (middle + shift, there, 0.1 * width);
@@ -108,6 +108,34 @@ impl CoupledProblem<'_> {
             best
         };
         Wave { harmonics: harmonics.collect(), peak: 0.5 * (extreme(1.0) - extreme(-1.0)) }
+    }
+
+    /// The states of a motion at these times by the integrator that found it, for one that has no
+    /// series; the last state that was reached stands for those after it.
+    fn sampled(
+        &self,
+        start: &[f64],
+        times: &[f64],
+        parameter: f64,
+        scale: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let travel: Vec<f64> = start.iter().map(|value| value.abs()).collect();
+        let sizes = self.state_sizes(&travel, scale);
+        let mut columns = vec![Vec::with_capacity(times.len()); start.len()];
+        let mut state = start.to_vec();
+        let mut before = 0.0;
+        for time in times {
+            if *time > before
+                && let Some(next) = self.in_time.end(&state, [before, *time], parameter, &sizes)
+            {
+                state = next;
+            }
+            before = *time;
+            for (column, value) in columns.iter_mut().zip(&state) {
+                column.push(*value);
+            }
+        }
+        columns
     }
 
     /// The distance of the closed orbit from this one by a path over its period, relative to the
@@ -163,16 +191,17 @@ impl CoupledProblem<'_> {
         let path = self.by_series(start, period, parameter);
         let multipliers = self.multipliers(orbit);
         let mut samples = vec![Vec::with_capacity(SAMPLES); n];
+        let times: Vec<f64> =
+            (0..SAMPLES).map(|index| period * index as f64 / SAMPLES as f64).collect();
         if let Some(path) = &path {
-            let times: Vec<f64> =
-                (0..SAMPLES).map(|index| period * index as f64 / SAMPLES as f64).collect();
             path.sample(&times, &mut vec![], &mut samples);
         }
         let path = path.filter(|_| samples.iter().all(|column| column.len() == SAMPLES));
-        let none = || Wave { harmonics: vec![[f64::NAN; 2]; 2], peak: f64::NAN };
+        if path.is_none() {
+            samples = self.sampled(start, &times, parameter, scale);
+        }
         let wave = |quantity: &dyn Fn(&[f64]) -> f64| {
-            path.as_ref()
-                .map_or_else(none, |path| self.wave(path, period, &samples, transform, quantity))
+            self.wave(path.as_ref(), period, &samples, transform, quantity)
         };
         let polar = |wave: &Wave| {
             let [cosine, sine] = wave.harmonics.get(1).copied().unwrap_or_default();

@@ -100,9 +100,8 @@ impl CoupledProblem<'_> {
                 direction[i] = size * shape[i] / sizes[i];
             }
             let direction = direction.normalize();
-            let orbit = self.with_orbits(&[], anchor, |orbits| {
-                orbits.orbit_along(&guess, &direction, &sizes)
-            });
+            let orbit = self
+                .with_orbits(&[], anchor, |orbits| orbits.orbit_along(&guess, &direction, &sizes));
             // Of equal frequencies small motions of every shape are nearly periodic, and the search
             // succeeds at a larger amplitude.
             let Some(orbit) = orbit else {

@@ -76,10 +76,11 @@ fn a_linear_pair_has_its_closed_form() {
             let turned = (motion.phase + exact.arg()).rem_euclid(std::f64::consts::TAU);
             assert!(turned.min(std::f64::consts::TAU - turned) < 1e-8, "{point:?}");
         }
-        // det M = exp(-2 c T), of four multipliers of two pairs of equal size.
+        // Both modes decay alike; where their multipliers coincide an error of the map enters by its
+        // square root.
         let expected = (-0.1 * std::f64::consts::TAU / w).exp();
         let largest = point.multipliers.expect("multipliers")[0].norm();
-        assert!((largest / expected - 1.0).abs() < 1e-8 && point.stable == Some(true));
+        assert!((largest / expected - 1.0).abs() < 1e-6 && point.stable == Some(true));
     }
 }
 
@@ -279,7 +280,8 @@ fn folds_in_two_parameters_are_those_at_each_value() {
     let request = question(text, "Omega", [0.5, 2.5], "F = 3/10");
     let request = ResponseRequest { along: Some(("F".into(), [0.1, 0.5])), ..request };
     let found = respond(&request).expect("curves");
-    let [curve] = &found.curves[..] else { panic!("{:?}", found.curves) };
+    // The two folds meet in a cusp at a smaller force.
+    assert_eq!(found.curves.len(), 2);
     for force in [0.2, 0.4] {
         let at = answer(text, "Omega", [0.5, 2.5], &format!("F = {force}"));
         for fold in places(&at, BifurcationKind::Fold) {
@@ -289,7 +291,8 @@ fn folds_in_two_parameters_are_those_at_each_value() {
                 let there = one.parameter + part * (other.parameter - one.parameter);
                 (0.0..=1.0).contains(&part) && (there - fold).abs() < 2e-3
             };
-            assert!(curve.points.windows(2).any(crossing), "{force} {fold}");
+            let mut pairs = found.curves.iter().flat_map(|curve| curve.points.windows(2));
+            assert!(pairs.any(crossing), "{force} {fold}");
         }
     }
     let counted = found.stable_motions.expect("counts");
@@ -340,7 +343,7 @@ fn what_is_asked_wrongly_says_why() {
             "",
             "no whole multiples",
         ),
-        ("x'' + x - y = t; y'' + y'/5 + y = 0", "w", "", "not periodic in time"),
+        ("x'' + x - y = w*t; y'' + y'/5 + y = 0", "w", "", "not periodic in time"),
         ("x'' + k*x - y = 0; y'' + y - x = 0", "k", "", "a frequency for each energy"),
         ("x'' + x'/5 + k*x = y + cos(w*t); y'' + y'/5 + y = x", "w", "", "no value for `k`"),
         ("x'' + x'/5 + x = y + cos(w*t); y'' + y'/5 + y = x", "w", "q = 1", "`q`"),

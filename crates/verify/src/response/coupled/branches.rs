@@ -135,7 +135,103 @@ impl CoupledProblem<'_> {
             }
             None => branch,
         };
+        let branch = self.cut_at_image(branch, &known.scale);
+        let again = self.reentries(&branch, &known.scale);
         known.push(branch);
+        for orbit in again {
+            self.add_branch(orbit, anchor, known);
+        }
+    }
+
+    /// A branch up to the crossing beyond which its motions are images of those before, shifted by
+    /// periods of the drive or mirrored.
+    fn cut_at_image(&self, mut branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
+        if !matches!(self.kind, Kind::Driven(_)) {
+            return branch;
+        }
+        for index in 1..branch.orbits.len() {
+            let [from, to] = [&branch.orbits[index - 1], &branch.orbits[index]];
+            if from.parameter_slope() * to.parameter_slope() >= 0.0 {
+                continue;
+            }
+            // One of the two may lie on the crossing itself, where it is its own image.
+            let before = [index - 1, index.saturating_sub(2)];
+            let behind = [index, (index + 1).min(branch.orbits.len() - 1)];
+            let pairs = before.into_iter().flat_map(|one| behind.map(|other| (one, other)));
+            let image = |(one, other): (usize, usize)| {
+                self.image_of(&branch.orbits[one], &branch.orbits[other], scale)
+            };
+            let Some(by_mirror) = { pairs }.find_map(image) else { continue };
+            // The longer part has all motions.
+            let ends = branch.ends;
+            if index > branch.orbits.len() / 2 {
+                branch.orbits.truncate(index);
+                branch.ends = [ends[0], BranchEnd::Crossing];
+            } else {
+                branch.orbits.drain(..index);
+                branch.ends = [BranchEnd::Crossing, ends[1]];
+            }
+            branch.mirrored |= by_mirror;
+            break;
+        }
+        branch
+    }
+
+    /// Whether an orbit is about the mirror image of another one near it, or that orbit shifted by
+    /// periods of the drive; `None` if it is neither.
+    fn image_of(&self, from: &Orbit, to: &Orbit, scale: &[f64]) -> Option<bool> {
+        let [shifted, mirrored] = self.images(from, scale)?;
+        let sizes = self.state_sizes(&from.kept, scale);
+        let apart = |one: &Vec<f64>| {
+            let each = one.iter().zip(to.unknowns.iter()).zip(&sizes);
+            each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
+        };
+        let nearest = |images: &[Vec<f64>]| images.iter().map(apart).fold(f64::MAX, f64::min);
+        let (by_shift, by_mirror) = (nearest(&shifted[1..]), nearest(&mirrored));
+        (by_shift.min(by_mirror) <= 0.5 * apart(&shifted[0])).then_some(by_mirror < by_shift)
+    }
+
+    /// The orbits at which a branch that leaves the range comes back into it.
+    fn reentries(&self, branch: &OrbitBranch, scale: &[f64]) -> Vec<Orbit> {
+        /// Largest number of points beyond the range.
+        const MOST: usize = 100;
+        let [low, high] = self.question.range;
+        let width = high - low;
+        let limits = OrbitBranchLimits {
+            // A frequency stays positive.
+            range: [(low - 0.5 * width).max(0.2 * low.abs()), high + 0.5 * width],
+            longest: 2.0 * LONGEST_STEP,
+            most: MOST,
+            interrupt: self.question.interrupt,
+        };
+        let ends = [branch.orbits.first(), branch.orbits.last()].into_iter().zip(branch.ends);
+        let outward: Vec<Orbit> = ends
+            .enumerate()
+            .filter(|(_, (_, end))| *end == BranchEnd::Range)
+            .filter_map(|(side, (orbit, _))| {
+                let orbit = orbit?.clone();
+                Some(if side == 0 { orbit.reversed() } else { orbit })
+            })
+            .collect();
+        self.with_orbits(scale, branch.anchor, |orbits| {
+            let back = |pair: &[Orbit]| {
+                let [from, to] = pair else { return None };
+                let inside = from.parameter().clamp(low, high);
+                let part = (inside - from.parameter()) / (to.parameter() - from.parameter());
+                if from.parameter() == inside || !(0.0..=1.0).contains(&part) {
+                    return None;
+                }
+                let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
+                let guess = guess.rows(0, guess.len() - 1).into_owned();
+                orbits.orbit_at(&guess, inside, &(orbits.sizes)(from))
+            };
+            let mut found = Vec::new();
+            for start in outward {
+                let (beyond, _) = orbits.follow(start, &limits, &|_| false);
+                found.extend(beyond.windows(2).find_map(back));
+            }
+            found
+        })
     }
 
     /// Whether an orbit lies on a known branch; marks the branch if it is a mirror image.

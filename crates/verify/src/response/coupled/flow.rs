@@ -30,6 +30,8 @@ const STEPS: usize = 20_000;
 pub(super) struct Flow {
     /// The number of states.
     pub(super) states: usize,
+    /// Whether no corner occurs, such as `abs` or `max`.
+    smooth: bool,
     rates: CompiledList,
     /// The rates, then the derivatives that are not zero: by states, and by the parameter.
     varied: CompiledList,
@@ -97,6 +99,7 @@ impl Flow {
         }
         Ok(Self {
             states: states.len(),
+            smooth: !right.iter().any(Expr::contains_corner),
             rates: CompiledList::new(right, &arguments)?,
             varied: CompiledList::new(&varied, &arguments)?,
             slopes,
@@ -134,8 +137,14 @@ impl Flow {
         found
     }
 
-    fn options(&self) -> IntegrationOptions {
-        IntegrationOptions { maximum_steps: STEPS, ..IntegrationOptions::with_tolerance(TOLERANCE) }
+    fn options(&self, length: f64) -> IntegrationOptions {
+        /// Least number of steps where a corner may lie between them.
+        const STEPS_WITH_CORNERS: f64 = 100.0;
+        IntegrationOptions {
+            maximum_steps: STEPS,
+            maximum_step: if self.smooth { f64::INFINITY } else { length / STEPS_WITH_CORNERS },
+            ..IntegrationOptions::with_tolerance(TOLERANCE)
+        }
     }
 
     /// The state at the end of a time; `None` if it is not reached.
@@ -160,7 +169,7 @@ impl Flow {
             }
         };
         let scaled = start.iter().zip(sizes).map(|(value, size)| value / size).collect();
-        let end = end_values(rates, Point { t: from, y: scaled }, to, &self.options())?;
+        let end = end_values(rates, Point { t: from, y: scaled }, to, &self.options(to - from))?;
         Some(end.iter().zip(sizes).map(|(value, size)| value * size).collect())
     }
 
@@ -210,7 +219,7 @@ impl Flow {
         for i in 0..n {
             begin[n + i * width + i] = 1.0;
         }
-        let end = end_values(rates, Point { t: 0.0, y: begin }, length, &self.options())?;
+        let end = end_values(rates, Point { t: 0.0, y: begin }, length, &self.options(length))?;
         let varied = |row: usize, column: usize| end[n + row * width + column] * sizes[row];
         let (low, high) = bounds.into_inner();
         Some(FlowImage {

@@ -136,6 +136,11 @@ impl CoupledProblem<'_> {
             None => branch,
         };
         let branch = self.cut_at_image(branch, &known.scale);
+        // Beside a crossing the orbit may lie before the first point of the branch that it belongs to.
+        let middle = &branch.orbits[branch.orbits.len() / 2].clone();
+        if branch.orbits.len() > 2 && self.is_known(middle, known) {
+            return;
+        }
         let again = self.reentries(&branch, &known.scale);
         known.push(branch);
         for orbit in again {

@@ -122,6 +122,9 @@ class Equilibrium(Document):
         growth: The largest real part of an eigenvalue of the linear equations; null where there
             is none.
         stable: Whether small disturbances die out; without damping, whether they do not grow.
+        error: The way to the zero of the equations as they were given, by one step of Newton's
+            method, over the size of the largest equilibrium; null where the linear equations are
+            singular.
     """
 
     parameter: float
@@ -129,6 +132,7 @@ class Equilibrium(Document):
     state: tuple[float, ...]
     growth: float | None
     stable: bool | None
+    error: float | None
 
 
 Equilibrium.FIELDS = (
@@ -137,6 +141,7 @@ Equilibrium.FIELDS = (
     ("state", "state", tuple),
     ("growth", "growth", None),
     ("stable", "stable", None),
+    ("error", "error", None),
 )
 
 

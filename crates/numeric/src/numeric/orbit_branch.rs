@@ -126,7 +126,7 @@ pub struct OrbitBranchLimits {
 ///         end: vector(&[steady + decay * (start[0] - steady)]),
 ///         by_start: DMatrix::from_element(1, 1, decay),
 ///         by_parameter: vector(&[1.0 - decay]),
-/// ///         path: (),
+///         path: (),
 ///     })
 /// };
 /// let limits = OrbitBranchLimits { range: [0.0, 1.0], longest: 0.1, most: 100, interrupt: Interrupt::default() };
@@ -621,8 +621,12 @@ mod tests {
     #[test]
     fn a_branch_goes_through_its_fold() {
         let map = scalar(|y, p| [y + p - y * y, 1.0 - 2.0 * y, 1.0]);
-        let equations =
-            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: false,
+            keep: &|_, _| (),
+            sizes: &|_| vector(&[1.0, 1.0]),
+        };
         let first = equations.orbit_at(&vector(&[0.6]), 0.5, &vector(&[1.0, 1.0])).expect("one");
         let (points, ends) =
             equations.branch_through(first, &limits([-1.0, 1.0], 0.03), &|_| false);
@@ -652,8 +656,12 @@ mod tests {
             [y + value, 1.0 + 2.0 * y * slope, 2.0 * p * slope]
         });
         let sizes = vector(&[1.0, 1.0]);
-        let equations =
-            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: false,
+            keep: &|_, _| (),
+            sizes: &|_| vector(&[1.0, 1.0]),
+        };
         let orbit = |square: f64, p: f64| {
             let guess = vector(&[(square - p * p).sqrt()]);
             equations.orbit_at(&guess, p, &sizes).expect("an orbit")
@@ -672,8 +680,12 @@ mod tests {
     #[test]
     fn where_branches_cross_the_orientation_changes_and_the_other_one_begins() {
         let map = scalar(|y, p| [y + p * y - y * y * y, 1.0 + p - 3.0 * y * y, y]);
-        let equations =
-            OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| vector(&[1.0, 1.0]) };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: false,
+            keep: &|_, _| (),
+            sizes: &|_| vector(&[1.0, 1.0]),
+        };
         let first = equations.orbit_at(&vector(&[0.0]), -0.51, &vector(&[1.0, 1.0])).expect("one");
         let (points, _) = equations.branch_through(first, &limits([-1.0, 1.0], 0.03), &|_| false);
         let crossed = points.windows(2).find(|pair| pair[0].orientation != pair[1].orientation);
@@ -719,7 +731,12 @@ mod tests {
             })
         };
         let sizes = DVector::from_element(5, 1.0);
-        let equations = OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| sizes.clone() };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: false,
+            keep: &|_, _| (),
+            sizes: &|_| sizes.clone(),
+        };
         let first = equations.orbit_at(&DVector::zeros(4), 1.0, &sizes).expect("an orbit");
         let limits = limits([0.5, 3.0], 0.03);
         let (points, ends) = equations.branch_through(first, &limits, &|_| false);
@@ -766,7 +783,12 @@ mod tests {
             })
         };
         let sizes = vector(&[2.0, 2.0, 6.0, 1.0]);
-        let equations = OrbitEquations { map: &map, keep: &|_, _| (), sizes: &|_| sizes.clone() };
+        let equations = OrbitEquations {
+            map: &map,
+            smooth: false,
+            keep: &|_, _| (),
+            sizes: &|_| sizes.clone(),
+        };
         let guess = vector(&[2.0, 0.0, 6.4]);
         let first = equations.orbit_at(&guess, 0.5, &sizes).expect("a cycle");
         let limits = limits([0.3, 1.0], 0.1);

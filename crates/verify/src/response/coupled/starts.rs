@@ -28,7 +28,7 @@ impl Effort {
     fn of(states: usize) -> Self {
         match states {
             ..=8 => Self { values: 9, starts: 4, checks: [7, 4] },
-            ..=20 => Self { values: 5, starts: 3, checks: [5, 2] },
+            9..=20 => Self { values: 5, starts: 3, checks: [5, 2] },
             _ => Self { values: 3, starts: 1, checks: [2, 1] },
         }
     }

@@ -230,6 +230,8 @@ def response(
     method: str | None = None,
     *,
     vary: Values | None = None,
+    along: Values | None = None,
+    of: str | None = None,
     order: int | None = None,
     periods: int | None = None,
     tolerance: float | None = None,
@@ -238,7 +240,7 @@ def response(
     progress: Progress | None = None,
     **values: Value,
 ) -> Response:
-    """Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone.
+    """Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every branch with its stability, folds, period doublings, backbone.
 
     Args:
         problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
@@ -246,6 +248,10 @@ def response(
         method: harmonic-balance; or multiple-scales or averaging, their steady motions beside
             the branches of harmonic balance, which judge them.
         vary: The parameter that varies, and from where to where: Omega=0.5:1.5.
+        along: A second parameter, and from where to where: bifurcations are followed in both,
+            and stable motions counted.
+        of: The quantity that is listed and drawn: a coordinate, or an expression in them such
+            as x - y; the first coordinate without it.
         order: The highest harmonic kept; without it as many as bring the error below a tenth of
             the tolerance, 64 at most; of multiple-scales its order.
         periods: Periods of the drive in a period of the motion: 2 for motions after a period
@@ -260,7 +266,7 @@ def response(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("response", problem, {"method": method, "vary": vary, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def friction(
@@ -692,6 +698,8 @@ class EquationCommands:
         method: str | None = None,
         *,
         vary: Values | None = None,
+        along: Values | None = None,
+        of: str | None = None,
         order: int | None = None,
         periods: int | None = None,
         tolerance: float | None = None,
@@ -700,12 +708,16 @@ class EquationCommands:
         progress: Progress | None = None,
         **values: Value,
     ) -> Response:
-        """Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone.
+        """Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every branch with its stability, folds, period doublings, backbone.
 
         Args:
             method: harmonic-balance; or multiple-scales or averaging, their steady motions
                 beside the branches of harmonic balance, which judge them.
             vary: The parameter that varies, and from where to where: Omega=0.5:1.5.
+            along: A second parameter, and from where to where: bifurcations are followed in
+                both, and stable motions counted.
+            of: The quantity that is listed and drawn: a coordinate, or an expression in them
+                such as x - y; the first coordinate without it.
             order: The highest harmonic kept; without it as many as bring the error below a
                 tenth of the tolerance, 64 at most; of multiple-scales its order.
             periods: Periods of the drive in a period of the motion: 2 for motions after a
@@ -720,7 +732,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("response", self.problem, {"method": method, "vary": vary, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def stability(
         self,

@@ -22,6 +22,10 @@ use crate::symbol::Symbol;
 /// Relative error of a step, in the sizes of the states.
 const TOLERANCE: f64 = 1e-12;
 
+/// Unit of the variations beside the states: their relative error may be this much larger, since they
+/// are steps of Newton's method and multipliers, and not the motion.
+const UNIT_OF_VARIATIONS: f64 = 1e-4;
+
 /// Largest number of steps over one period.
 const STEPS: usize = 20_000;
 
@@ -210,17 +214,19 @@ impl Flow {
                 }
             }
             for (row, slope) in self.by_parameter.iter().zip(&values[n + self.slopes.len()..]) {
-                rates[n + row * width + n] += slope / sizes[*row];
+                rates[n + row * width + n] += UNIT_OF_VARIATIONS * slope / sizes[*row];
             }
         };
         let mut begin: Vec<f64> =
             start.iter().zip(sizes).map(|(value, size)| value / size).collect();
         begin.resize(n + n * width, 0.0);
         for i in 0..n {
-            begin[n + i * width + i] = 1.0;
+            begin[n + i * width + i] = UNIT_OF_VARIATIONS;
         }
         let end = end_values(rates, Point { t: 0.0, y: begin }, length, &self.options(length))?;
-        let varied = |row: usize, column: usize| end[n + row * width + column] * sizes[row];
+        let varied = |row: usize, column: usize| {
+            end[n + row * width + column] * (sizes[row] / UNIT_OF_VARIATIONS)
+        };
         let (low, high) = bounds.into_inner();
         Some(FlowImage {
             end: DVector::from_iterator(n, (0..n).map(|i| end[i] * sizes[i])),

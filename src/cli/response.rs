@@ -169,7 +169,11 @@ fn equations(problem: &Problem) -> Result<Equations, Failure> {
         .coupled_equations(ReadingCommand::Response)
         .map_err(|error| Failure::refused(&error, error.help()))?;
     if let Some(equations) = several {
-        return CoupledEquations::of_mechanism(&equations).map(Equations::Coupled).map_err(coupled);
+        let equations = CoupledEquations::of_mechanism(&equations).map_err(coupled)?;
+        let mechanism =
+            problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
+        let energy = &mechanism.mechanism.kinetic + &mechanism.mechanism.potential;
+        return Ok(Equations::Coupled(equations.with_energy(energy)));
     }
     let formula = formula(problem, ReadingCommand::Response)?;
     Equations::parse(formula.equation).map_err(|error| match error {
@@ -351,6 +355,9 @@ fn refused(error: ResponseError) -> Failure {
                 _ => String::new(),
             }
         )),
+        ResponseError::NoModes { .. } => Some(
+            "--vary omega from or to beside one of them; where the forces are linear the frequency does not change with the amplitude".to_owned(),
+        ),
         ResponseError::NoMotion { undamped: true, .. } => Some("add damping, such as 2*zeta*x'".to_owned()),
         ResponseError::NoMotion { .. } => {
             Some("the motion escapes or never repeats itself there: try another range".to_owned())

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::csv::{cell, quoted};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
-use crate::report::{are_modes, listed_quantity};
+use crate::report::{are_modes, has_energy, listed_quantity};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{Equilibrium, ResponseDiagram, SteadyMotion};
 
@@ -127,6 +127,11 @@ impl Coupled {
             .map(|name| format!(",{}", quoted(&format!("amplitude_{name}"))))
             .collect();
         let mut empty = ",".repeat(coordinates.len());
+        if has_energy(response) {
+            meaning.push_str("; energy: over that of rest");
+            columns.push_str(",energy");
+            empty.push(',');
+        }
         if let Some((along, _)) = asked.along {
             let _ = write!(meaning, "; curve: bifurcations in {} and {along}", asked.parameter);
             let _ = write!(columns, ",{along}");
@@ -139,6 +144,9 @@ impl Coupled {
     fn amplitudes(&self, point: &SteadyMotion) -> String {
         let amplitudes = point.coordinates.iter();
         let mut cells: String = amplitudes.map(|motion| format!(",{}", motion.amplitude)).collect();
+        if let Some(energy) = point.energy {
+            let _ = write!(cells, ",{energy}");
+        }
         if self.has_second {
             cells.push(',');
         }
@@ -284,6 +292,25 @@ fn equilibria(response: &ResponseDiagram) -> Vec<(&'static str, Points, CurveSty
     drawn
 }
 
+/// The frequencies of nonlinear normal modes over their energy, stable ones solid and unstable ones
+/// dashed.
+fn over_energy(response: &ResponseDiagram) -> Vec<(&'static str, Points, CurveStyle)> {
+    let place = |point: &SteadyMotion| (point.energy.unwrap_or(f64::NAN), point.parameter);
+    let mut drawn = Vec::new();
+    if !has_energy(response) {
+        return drawn;
+    }
+    for (stable, label, style) in
+        [(false, "unstable", CurveStyle::UNSTABLE), (true, "stable", CurveStyle::DIFFERENCE)]
+    {
+        for branch in &response.branches {
+            let lines = pieces_by(&branch.points, place, |point| point.stable, stable);
+            drawn.extend(lines.into_iter().map(|points| (label, points, style)));
+        }
+    }
+    drawn
+}
+
 /// The numbers of stable motions that have a mark of their own, with its label and its style; more are
 /// marked as the last.
 const COUNTS: [(&str, CurveStyle); 4] = [
@@ -411,6 +438,11 @@ pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
             curves: curves(response, *height, &title),
         })
         .collect();
+    drawn.push(Drawing {
+        title: "Frequency and energy",
+        labels: ["energy over that of rest".to_owned(), asked.parameter.name().to_owned()],
+        curves: over_energy(response),
+    });
     drawn.push(Drawing {
         title: "Equilibria",
         labels: [asked.parameter.name().to_owned(), listed_quantity(response)],

@@ -43,7 +43,7 @@ pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]
 pub(crate) use response::motion_frequency;
-pub(crate) use response::{are_modes, listed_quantity};
+pub(crate) use response::{are_modes, has_energy, listed_quantity};
 pub use response::{bifurcation_in_words, response};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};

@@ -16,7 +16,7 @@ use crate::response::{Branch, Elsewhere, MOST_HARMONICS, ResponseDiagram, Steady
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-pub(crate) use coupled::{are_modes, listed_quantity};
+pub(crate) use coupled::{are_modes, has_energy, listed_quantity};
 
 /// Number of rows of the table of a branch.
 const ROWS: usize = 13;

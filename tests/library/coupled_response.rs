@@ -265,6 +265,9 @@ fn nonlinear_normal_modes_by_their_frequency() {
     closes(point, 1.0, |_, [x, y, v, u]| [*v, *u, y - 2.0 * x - 0.5 * x.powi(3), x - 2.0 * y]);
     let found = answer(text, "omega", [1.2, 1.29], "");
     near(&places(&found, BifurcationKind::BranchPoint), &[1.281_534_29], 1e-7);
+    // The frequency of a linear mode does not change.
+    let refused = respond(&question("x'' + x = y; y'' + y = x/2", "omega", [0.1, 1.0], ""));
+    assert!(refused.expect_err("linear").to_string().contains("the linear modes have"));
     // The other mode begins at the square root of 3.
     let found = answer(text, "omega", [1.74, 2.0], "");
     let [point] = at_end(&found)[..] else { panic!() };

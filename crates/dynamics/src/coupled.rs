@@ -32,6 +32,10 @@ pub struct CoupledEquations {
     pub rates: Rates,
     /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
     pub parameters: Vec<Symbol>,
+    /// The matrix of the coefficients of the highest derivatives, a row for each equation.
+    pub matrix: Vec<Vec<Expr>>,
+    /// The energy in the states, where it is known: kinetic and potential energy of a mechanism.
+    pub energy: Option<Expr>,
 }
 
 /// The reason why a text is not a system of coupled equations.
@@ -142,6 +146,12 @@ impl CoupledEquations {
         Self::new(equations.left.iter().map(|left| (left.clone(), Expr::zero())).collect())
     }
 
+    /// The same equations with their energy in the states.
+    #[must_use]
+    pub fn with_energy(self, energy: Expr) -> Self {
+        Self { energy: Some(energy), ..self }
+    }
+
     /// Solves equations, given by their sides, for the highest derivatives.
     ///
     /// # Errors
@@ -180,7 +190,7 @@ impl CoupledEquations {
                 false => name.derivative(),
             })
             .collect();
-        let found = solved(&residuals, &highest)?;
+        let (matrix, found) = solved(&residuals, &highest)?;
         let velocities: Vec<Symbol> = coordinates
             .iter()
             .filter(|name| is_second(name))
@@ -217,12 +227,17 @@ impl CoupledEquations {
             },
             equations,
             coordinates,
+            matrix,
+            energy: None,
         })
     }
 }
 
-/// The highest derivatives from linear equations.
-fn solved(residuals: &[Expr], highest: &[Symbol]) -> Result<Vec<Expr>, CoupledError> {
+/// The matrix of the highest derivatives, and these from linear equations.
+fn solved(
+    residuals: &[Expr],
+    highest: &[Symbol],
+) -> Result<(Vec<Vec<Expr>>, Vec<Expr>), CoupledError> {
     let zeros = highest.iter().map(|name| (*name, Expr::zero())).collect();
     let mut matrix = Vec::new();
     let mut right = Vec::new();
@@ -242,8 +257,9 @@ fn solved(residuals: &[Expr], highest: &[Symbol]) -> Result<Vec<Expr>, CoupledEr
         right.push(-residual.substitute_all(&zeros)?);
     }
     let singular = || MechanicsError::Singular(residuals[0].clone());
-    linear::solution(&matrix, &right, singular)
-        .map_err(|_| CoupledError::Singular(highest.to_vec()))
+    let found = linear::solution(&matrix, &right, singular)
+        .map_err(|_| CoupledError::Singular(highest.to_vec()))?;
+    Ok((matrix, found))
 }
 
 #[cfg(test)]

@@ -132,6 +132,9 @@ pub struct ResponsePoint {
     /// The positions of all coordinates at t = 0, then their rates. Left out for one coordinate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub state: Vec<f64>,
+    /// The energy of a free motion without damping over that of rest. Left out where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy: Option<f64>,
 }
 
 /// Steady motions by slow equations.
@@ -226,6 +229,7 @@ fn point(point: &response::SteadyMotion) -> ResponsePoint {
         phases: each(|motion| motion.phase),
         peaks: each(|motion| motion.peak),
         state: starts.chain(rates).collect(),
+        energy: point.energy,
     }
 }
 

@@ -38,6 +38,12 @@ pub(crate) fn are_modes(response: &ResponseDiagram) -> bool {
     is_coupled(response) && response.self_excited && response.undamped
 }
 
+/// Whether the energies of the motions are known.
+pub(crate) fn has_energy(response: &ResponseDiagram) -> bool {
+    let mut points = response.branches.iter().flat_map(|branch| &branch.points);
+    points.next().is_some_and(|point| point.energy.is_some())
+}
+
 /// The quantity that is listed, as a text.
 pub(crate) fn listed_quantity(response: &ResponseDiagram) -> String {
     let question = &response.question;
@@ -97,7 +103,10 @@ pub(super) fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
     };
     [
         format!("{name} from {low} to {high}; {motion}."),
-        format!("{amplitudes}; peak: half of peak to peak of {listed}; {stable}."),
+        format!(
+            "{amplitudes}; peak: half of peak to peak of {listed}; {}{stable}.",
+            if has_energy(response) { "energy: over that of rest; " } else { "" }
+        ),
     ]
     .map(Block::Sentence)
     .to_vec()
@@ -123,6 +132,8 @@ pub(super) fn points<'a>(
         false => columns.extend(own.iter().map(|name| heading(&format!("amplitude {name}")))),
     }
     columns.extend(has_frequency.then(|| Heading::from("frequency")));
+    let has_energy = has_energy(response);
+    columns.extend(has_energy.then(|| Heading::from("energy")));
     columns.extend(["peak", "stable", "multiplier", "error"].map(Heading::from));
     let rows = points.map(|point| {
         let mut row = vec![decimal(point.parameter)];
@@ -139,6 +150,7 @@ pub(super) fn points<'a>(
             }
         }
         row.extend(has_frequency.then(|| decimal(point.frequency)));
+        row.extend(point.energy.filter(|_| has_energy).map(decimal));
         row.push(decimal(point.peak));
         row.extend(super::stability_cells(point));
         row

@@ -135,6 +135,17 @@ pub enum ResponseError {
         "the rate `{0}` jumps: motions of several coordinates are not followed across `sgn` and `H`"
     )]
     CoupledJump(String),
+    /// No family of free motions has frequencies in the range.
+    #[error(
+        "no nonlinear normal mode was found for frequencies from {} to {}: the linear modes have {}", decimal(.range[0]), decimal(.range[1]),
+        frequencies(.linear)
+    )]
+    NoModes {
+        /// The frequencies of the linear modes.
+        linear: Vec<f64>,
+        /// The range.
+        range: [f64; 2],
+    },
     /// Bifurcations in two parameters of motions that nothing drives.
     #[error("bifurcations are followed in two parameters where something drives the motion")]
     NoDriveAlong,
@@ -181,6 +192,16 @@ fn parameters(known: &[Symbol]) -> String {
     match known {
         [] => "it has none".to_owned(),
         known => format!("its parameters are {}", list(known)),
+    }
+}
+
+/// Frequencies in words.
+fn frequencies(all: &[f64]) -> String {
+    let numbers: Vec<String> = all.iter().map(|value| decimal(*value)).collect();
+    match numbers.as_slice() {
+        [] => "none".to_owned(),
+        [one] => format!("the frequency {one}"),
+        several => format!("the frequencies {}", several.join(", ")),
     }
 }
 

@@ -210,6 +210,7 @@ impl PreparedRequest<'_> {
             stuck: truth.map_or(0.0, |truth| truth.stuck),
             error,
             coordinates: vec![],
+            energy: None,
         }
     }
 

@@ -147,6 +147,9 @@ pub struct SteadyMotion {
     /// what the other fields describe. Of coupled equations they describe the quantity that is
     /// listed, and the error is that of all coordinates.
     pub coordinates: Vec<CoordinateMotion>,
+    /// The energy of a free motion without damping over that of rest, of coupled equations whose
+    /// energy is known; else `None`.
+    pub energy: Option<f64>,
 }
 
 /// The motion of one of several coordinates.

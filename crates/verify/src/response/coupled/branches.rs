@@ -203,8 +203,7 @@ impl CoupledProblem<'_> {
         let [low, high] = self.question.range;
         let width = high - low;
         let limits = OrbitBranchLimits {
-            // A frequency stays positive.
-            range: [(low - 0.5 * width).max(0.2 * low.abs()), high + 0.5 * width],
+            range: [low - 0.5 * width, high + 0.5 * width],
             longest: 2.0 * LONGEST_STEP,
             most: MOST,
             interrupt: self.question.interrupt,

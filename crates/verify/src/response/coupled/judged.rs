@@ -246,6 +246,10 @@ impl CoupledProblem<'_> {
             stuck: 0.0,
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
+            energy: self
+                .energy
+                .as_ref()
+                .map(|(energy, rest)| energy.over(&self.in_time, rest, start)),
         }
     }
 

@@ -15,7 +15,7 @@
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
 //! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
-//! - `modes`: nonlinear normal modes, the free motions without damping.
+//! - `modes`: nonlinear normal modes, the free motions without damping; `energy`: their energy.
 //! - `changes`: multipliers, and bifurcations between two points of a branch.
 //! - `criticality`: whether the motions that come off there are stable.
 //! - `curves`: bifurcations in two parameters.
@@ -29,6 +29,7 @@ mod changes;
 mod criticality;
 mod curves;
 mod cycles;
+mod energy;
 mod equilibria;
 mod flow;
 mod guesses;

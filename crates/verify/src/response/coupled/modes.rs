@@ -30,6 +30,7 @@ impl CoupledProblem<'_> {
             .collect();
         frequencies.sort_by(f64::total_cmp);
         frequencies.dedup_by(|one, other| (*one / *other - 1.0).abs() < 1e-9);
+        let linear = frequencies.clone();
         let mut known = Known::default();
         self.question.progress.begin(frequencies.len());
         for frequency in frequencies {
@@ -43,13 +44,16 @@ impl CoupledProblem<'_> {
         }
         self.follow_crossings(&mut known);
         if known.branches.is_empty() {
-            return Err(self.nothing_found(Default::default()));
+            return Err(match self.question.interrupt.is_requested() {
+                true => self.nothing_found(Default::default()),
+                false => ResponseError::NoModes { linear, range: self.question.range },
+            });
         }
         Ok(self.diagram(&known, vec![], vec![]))
     }
 
     /// The equilibrium that Newton's method finds from zero.
-    fn rest(&self) -> Option<Vec<f64>> {
+    pub(super) fn rest(&self) -> Option<Vec<f64>> {
         let (n, m) = (self.states.len(), self.coordinates);
         let mut state = vec![0.0; n];
         for _ in 0..50 {

@@ -17,6 +17,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::energy::Energy;
 use super::flow::{Flow, FlowImage};
 use crate::coupled::CoupledEquations;
 use crate::expr::{CompiledFunction, Expr, Function};
@@ -90,6 +91,8 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
     pub(super) shown: CompiledFunction,
+    /// The energy of a free motion without damping, and the place of rest from which it is counted.
+    pub(super) energy: Option<(Energy, Vec<f64>)>,
 }
 
 /// A value of the parameter with which nothing cancels; every motion has its own.
@@ -168,8 +171,13 @@ impl<'a> CoupledProblem<'a> {
             let known = equations.coordinates.clone();
             return Err(ResponseError::NotShown { name, known });
         }
-        let problem = Self {
+        let energy = match kind {
+            Kind::Free => Energy::new(equations, &values, &in_time),
+            _ => None,
+        };
+        let mut problem = Self {
             question,
+            energy: None,
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
@@ -182,6 +190,7 @@ impl<'a> CoupledProblem<'a> {
             undamped,
         };
         problem.has_frequency()?;
+        problem.energy = energy.zip(problem.rest());
         Ok(problem)
     }
 
@@ -264,7 +273,9 @@ impl<'a> CoupledProblem<'a> {
     ) -> T {
         let interrupt = self.question.interrupt;
         let map = |start: &DVector<f64>, parameter: f64| {
-            if interrupt.is_requested() {
+            // A branch may be looked for beyond the range, where the frequency need not be positive.
+            let runs = matches!(self.kind, Kind::SelfExcited) || self.frequency_at(parameter) > 0.0;
+            if !runs || interrupt.is_requested() {
                 return None;
             }
             match self.kind {

@@ -332,8 +332,8 @@ impl CoupledProblem<'_> {
     }
 
     /// The states in which an orbit passes the beginning of each drive period, and those of its
-    /// mirror images, half a period of the drive later. A free motion begins where its velocity is
-    /// zero, at either of its turns.
+    /// mirror images, half a period of the drive later. A motion that nothing drives may begin
+    /// anywhere on itself: its only image is the mirrored one.
     fn images(&self, orbit: &Orbit, scale: &[f64]) -> Option<[Vec<Vec<f64>>; 2]> {
         use std::f64::consts::TAU;
         let start = orbit.unknowns.as_slice()[..self.states.len()].to_vec();
@@ -362,6 +362,29 @@ impl CoupledProblem<'_> {
                 Some([vec![start], vec![mirror]])
             }
         }
+    }
+
+    /// Whether an orbit passes a state, with the accuracy of a polygon of its points.
+    fn passes(&self, orbit: &Orbit, state: &[f64], sizes: &[f64]) -> bool {
+        const CORNERS: usize = 256;
+        const NEAR: f64 = 2e-3;
+        let n = self.states.len();
+        let period = std::f64::consts::TAU / self.frequency_of(orbit);
+        let start = &orbit.unknowns.as_slice()[..n];
+        let Some(path) = self.by_series(start, period, orbit.parameter()) else { return false };
+        let corner = |index: usize| -> Option<DVector<f64>> {
+            let states = path.states_at(period * index as f64 / CORNERS as f64)?;
+            let away = states.iter().zip(state).zip(sizes);
+            Some(DVector::from_iterator(n, away.map(|((one, other), size)| (one - other) / size)))
+        };
+        let corners: Vec<DVector<f64>> = (0..=CORNERS).filter_map(corner).collect();
+        corners.windows(2).any(|pair| {
+            let way = &pair[1] - &pair[0];
+            let length = way.norm_squared();
+            let part =
+                if length > 0.0 { (-pair[0].dot(&way) / length).clamp(0.0, 1.0) } else { 0.0 };
+            (&pair[0] + way * part).norm() <= NEAR
+        })
     }
 
     /// The known branch on which an orbit lies, shifted by drive periods or mirrored; `None` if there
@@ -416,13 +439,17 @@ impl CoupledProblem<'_> {
                 let is_one =
                     |images: &[Vec<f64>]| images.iter().any(|image| apart(there, image) <= SAME);
                 if by_travel {
-                    /// The travel is that of the stages of the steps.
-                    const ROUGH: f64 = 2e-2;
                     let [one, other] = [&solved, orbit].map(|orbit| orbit.unknowns[n]);
                     let same_period = matches!(self.kind, Kind::Free)
                         || (one - other).abs() <= SAME * other.abs();
-                    if same_period && apart(&solved.kept, &orbit.kept) <= ROUGH {
+                    if !same_period {
+                        continue;
+                    }
+                    if self.passes(&solved, &shifted[0], &sizes) {
                         return Some(Found { branch, mirrored: false });
+                    }
+                    if self.passes(&solved, &mirrored[0], &sizes) {
+                        return Some(Found { branch, mirrored: true });
                     }
                     continue;
                 }

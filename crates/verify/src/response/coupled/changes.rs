@@ -138,7 +138,12 @@ pub(super) fn changes_between(
         let beside = |part: f64| {
             BESIDE.iter().find_map(|aside| orbits.between(from, to, (part + aside).clamp(0.0, 1.0)))
         };
-        let Some(orbit) = part.and_then(beside) else { continue };
+        let Some(mut orbit) = part.and_then(beside) else { continue };
+        if kind == BranchPoint {
+            // On the crossing the equations have two independent tangents: that of this branch is
+            // along the way from one orbit to the other.
+            orbit.tangent = &to.unknowns - &from.unknowns;
+        }
         // A branch that begins at a crossing turns back there without a fold of its own.
         let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);
         match crossing {

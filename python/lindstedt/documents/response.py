@@ -35,6 +35,8 @@ class ResponsePoint(Document):
             coordinate.
         state: The positions of all coordinates at t = 0, then their rates. Left out for one
             coordinate.
+        energy: The energy of a free motion without damping over that of rest. Left out where it
+            is not known.
     """
 
     parameter: float
@@ -50,6 +52,7 @@ class ResponsePoint(Document):
     phases: dict[str, float] | None
     peaks: dict[str, float] | None
     state: tuple[float, ...] | None
+    energy: float | None
 
 
 ResponsePoint.FIELDS = (
@@ -66,8 +69,9 @@ ResponsePoint.FIELDS = (
     ("phases", "phases", dict),
     ("peaks", "peaks", dict),
     ("state", "state", tuple),
+    ("energy", "energy", None),
 )
-ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'peaks', 'phases', 'state'])
+ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'energy', 'peaks', 'phases', 'state'])
 
 
 #: The side on which motions come off at a bifurcation, and so whether they are stable beside it.

@@ -190,7 +190,7 @@ impl<'a> CoupledProblem<'a> {
             undamped,
         };
         problem.has_frequency()?;
-        problem.energy = energy.zip(problem.rest());
+        problem.energy = energy.and_then(|energy| Some((energy, problem.rest()?)));
         Ok(problem)
     }
 

@@ -342,9 +342,10 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::NotFollowed { parameter, .. } => Some(format!(
             "the steps are parts of the range: try a shorter one, or one that does not begin at zero, --vary {parameter}=FROM:TO"
         )),
-        ResponseError::FreeParameter(_) => Some(
-            "--vary omega=FROM:TO gives the nonlinear normal modes by their frequency, or add damping or a drive".to_owned(),
-        ),
+        ResponseError::FreeParameter(name) => Some(match name.name() {
+            "omega" => "give this parameter another name than omega, and a value: --vary omega=FROM:TO then gives the nonlinear normal modes by their frequency",
+            _ => "--vary omega=FROM:TO gives the nonlinear normal modes by their frequency, or add damping or a drive",
+        }.to_owned()),
         ResponseError::CoupledJump(_) => Some(
             "write k*max(x - d, 0) for a stop, and (2/pi)*atan(100*x') for friction".to_owned(),
         ),

@@ -103,7 +103,7 @@ impl ResponseDiagram {
     ///
     /// let question = ResponseRequest::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
     /// let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
-    /// let solution = solve(&question.oscillator, &options)?;
+    /// let solution = solve(question.equations.oscillator().ok_or("several coordinates")?, &options)?;
     /// let response = respond(&question)?.with_slow_equations(solution);
     /// let slow = response.slow.ok_or("slow equations")?;
     /// assert!(slow.error.is_some_and(|error| error < 0.3) && slow.points > 20);

@@ -98,7 +98,7 @@ pub fn csv(response: &ResponseDiagram) -> String {
 
 /// The columns and the rows that coupled equations have beside those of one coordinate.
 struct Coupled {
-    /// What the comment says of them.
+    /// The words of the comment on them.
     meaning: String,
     /// The names of the columns, each after a comma.
     columns: String,
@@ -429,7 +429,7 @@ pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    // What is drawn in each panel, below its title and the words at its axes.
+    // Each panel has a title, the words at its axes and its curves.
     let mut drawn: Vec<Drawing> = heights
         .iter()
         .map(|height| Drawing {
@@ -476,7 +476,7 @@ pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     figure(&panels, &caption)
 }
 
-/// What is drawn in a panel.
+/// The content of a panel.
 struct Drawing<'a> {
     title: &'static str,
     labels: [String; 2],

@@ -26,7 +26,7 @@ fn printed(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// What is printed, without the ends of its lines.
+/// The printed text, without the ends of its lines.
 fn words(arguments: &[&str]) -> String {
     printed(arguments).split_whitespace().collect::<Vec<_>>().join(" ")
 }

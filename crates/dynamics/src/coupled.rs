@@ -146,7 +146,7 @@ impl CoupledEquations {
         Self::new(equations.left.iter().map(|left| (left.clone(), Expr::zero())).collect())
     }
 
-    /// The same equations with their energy in the states.
+    /// Returns these equations with their energy, a function of the states.
     #[must_use]
     pub fn with_energy(self, energy: Expr) -> Self {
         Self { energy: Some(energy), ..self }

@@ -154,7 +154,8 @@ class EquilibriumChange(Document):
     """A place where a branch of equilibria changes.
 
     Attributes:
-        kind: What happens: a fold, a branch point, or a Hopf point, where cycles are born.
+        kind: The kind of the change: a fold, a branch point, or a Hopf point, where cycles are
+            born.
         parameter: The value of the parameter that varies.
         value: The quantity that is listed.
         criticality: Whether the cycles that come off at a Hopf point are stable, where that is
@@ -222,7 +223,7 @@ class BifurcationCurve(Document):
     """A curve of bifurcations in two parameters.
 
     Attributes:
-        kind: What happens on it: fold, period doubling or Neimark-Sacker.
+        kind: The kind of its bifurcations: fold, period doubling or Neimark-Sacker.
         points: Its points in order.
     """
 
@@ -417,7 +418,7 @@ class ElsewherePoint(Document):
             not.
         start: Position and velocity at t = 0 or a whole number of periods later, from where it
             goes on as it has settled.
-        state: Of coupled equations all states there: coordinates, then velocities. Left out for
+        state: All states there, of coupled equations: coordinates, then velocities. Left out for
             one coordinate.
         amplitude: The amplitude of the first harmonic of a period of the motion from there.
         peak: Half of the way from the lowest to the highest point of this period.

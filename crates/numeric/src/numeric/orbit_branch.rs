@@ -145,7 +145,7 @@ pub struct OrbitBranchLimits {
 /// ```
 pub struct OrbitEquations<'a, Path, Kept> {
     /// The motion over a period from a state with the parameter; `None` if it cannot be followed.
-    /// Where the period depends on the parameter, time is counted in the phase of the drive.
+    /// Time is counted in the phase of the drive if the period depends on the parameter.
     pub map: &'a PeriodMap<'a, Path>,
     /// Whether the derivatives of the map change no faster than the map, so that those a last small
     /// step beside an orbit are its own; otherwise they are computed once more on the orbit.

@@ -163,7 +163,7 @@ pub fn between(
 }
 
 /// Bisects the sign change of a function between 0 and 1, to 1e-9.
-fn bisect_sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
+pub(super) fn bisect_sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
     let before = value(0.0);
     let is_before = |part: f64| match value(part) {
         // Here the branch cannot be distinguished from the other one, which is close enough.

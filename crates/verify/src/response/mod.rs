@@ -196,7 +196,7 @@ pub struct Equilibrium {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EquilibriumChange {
-    /// What happens: a fold, a branch point, or a Hopf point, where cycles are born.
+    /// The kind of the change: a fold, a branch point, or a Hopf point, where cycles are born.
     #[cfg_attr(feature = "schema", schemars(with = "String", extend("enum" = BifurcationKind::ALL.map(BifurcationKind::name))))]
     pub kind: BifurcationKind,
     /// The value of the parameter that varies.
@@ -278,7 +278,7 @@ pub enum Criticality {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BifurcationCurve {
-    /// What happens on it: fold, period doubling or Neimark-Sacker.
+    /// The kind of its bifurcations: fold, period doubling or Neimark-Sacker.
     #[cfg_attr(feature = "schema", schemars(with = "String", extend("enum" = BifurcationKind::ALL.map(BifurcationKind::name))))]
     pub kind: BifurcationKind,
     /// Its points in order.
@@ -356,7 +356,7 @@ pub struct Elsewhere {
     /// Position and velocity at t = 0 or a whole number of periods later, from where it goes on as it
     /// has settled.
     pub start: [f64; 2],
-    /// Of coupled equations all states there: coordinates, then velocities. Left out for one
+    /// All states there, of coupled equations: coordinates, then velocities. Left out for one
     /// coordinate.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub state: Vec<f64>,

@@ -14,8 +14,8 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 
 use super::problem::{CoupledProblem, Kind, Orbit, Orbits, monodromy};
-use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
-use crate::response::bifurcation::BifurcationKind;
+use crate::numeric::ode::root::find_root;
+use crate::response::bifurcation::{BifurcationKind, bisect_sign_change};
 
 /// Distance from the unit circle within which a multiplier of an undamped motion lies on it.
 pub(super) const ON_CIRCLE: f64 = 1e-4;
@@ -129,7 +129,7 @@ pub(super) fn changes_between(
             orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
         };
         let part = match kind {
-            BranchPoint => Some(sign_change(value)),
+            BranchPoint => Some(bisect_sign_change(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
         // On a crossing the equations are singular and Newton's method may not converge; an orbit
@@ -152,19 +152,6 @@ pub(super) fn changes_between(
         }
     }
     found
-}
-
-/// Bisects the sign change of a function between 0 and 1.
-fn sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
-    let before = value(0.0);
-    let is_before = |part: f64| match value(part) {
-        there if there.is_nan() => Err(part),
-        there => Ok(there * before > 0.0),
-    };
-    match try_bisect(is_before, 0.0, 1.0, BisectionStop::Halvings(30)) {
-        Ok([low, high]) => 0.5 * (low + high),
-        Err(part) => part,
-    }
 }
 
 /// The solution of linear equations; with small singular values left out where they have many.

@@ -21,7 +21,7 @@ use crate::symbol::Symbol;
 pub(super) enum Energy {
     /// A function of the states.
     Known(CompiledFunction),
-    /// By the mass matrix and the work of the forces.
+    /// The mass matrix, with which the energy follows from the work of the forces.
     ByWork(DMatrix<f64>),
 }
 

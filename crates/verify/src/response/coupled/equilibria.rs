@@ -18,7 +18,7 @@ use super::problem::{CoupledProblem, SMALLEST};
 use super::starts::spread;
 use crate::numeric::ode::root::find_root;
 use crate::numeric::orbit_branch::{OrbitBranchLimits, OrbitEquations, OrbitPoint, PeriodImage};
-use crate::response::bifurcation::BifurcationKind;
+use crate::response::bifurcation::{BifurcationKind, bisect_sign_change};
 use crate::response::{
     Equilibrium, EquilibriumBranch, EquilibriumChange, LONGEST_STEP, MOST_POINTS,
 };
@@ -270,16 +270,12 @@ pub(super) fn null_vector(matrix: DMatrix<f64>) -> Option<DVector<f64>> {
 
 /// The crossing of branches between two equilibria.
 fn crossing(equations: &OrbitEquations<(), ()>, from: &Rest, to: &Rest) -> Option<Rest> {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        match equations.between(from, to, middle) {
-            Some(rest) if rest.orientation == from.orientation => low = middle,
-            Some(_) => high = middle,
-            None => break,
-        }
-    }
-    let middle = 0.5 * (low + high);
+    let orientation = |part: f64| match part {
+        0.0 => from.orientation,
+        1.0 => to.orientation,
+        part => equations.between(from, to, part).map_or(f64::NAN, |rest| rest.orientation),
+    };
+    let middle = bisect_sign_change(orientation);
     [0.0, 1e-6, -1e-6, 1e-3, -1e-3]
         .into_iter()
         .find_map(|aside| equations.between(from, to, (middle + aside).clamp(0.0, 1.0)))

@@ -49,7 +49,7 @@ impl Anchor {
 /// The equations of orbits.
 pub(super) type Orbits<'a> = OrbitEquations<'a, Travel, Travel>;
 
-/// What the motions of a system are.
+/// The kind of motions that a system has.
 #[derive(Clone, Debug)]
 pub(super) enum Kind {
     /// Motions with the period of a drive, or of some.

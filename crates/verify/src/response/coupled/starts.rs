@@ -52,7 +52,7 @@ pub(super) fn spread(index: usize, dimension: usize) -> f64 {
 pub(super) struct Settled {
     /// The state at the end of it.
     pub(super) state: Vec<f64>,
-    /// After how many periods of the motion it repeats itself; `None` if it does not.
+    /// The number of periods of the motion after which it repeats itself; `None` if it does not.
     pub(super) periods: Option<usize>,
     /// The largest distance, in the sizes of the states, of its end from the beginnings of periods
     /// before.

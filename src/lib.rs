@@ -26,6 +26,7 @@
 //! | [`method`] | derives a law, a motion, slow equations, by one method each | [`solve`], [`Options`] |
 //! | [`oscillator`] | the equation that a method is given | [`Oscillator`] |
 //! | [`solution`] | what a method returns: law, motion, notes, the derivation line by line | [`Solution`] |
+//! | [`modes`] | derives the nonlinear normal modes of coupled equations | [`modes::derive`](modes::derive()) |
 //! | [`verify`] | judges a formula by the true motion, compares methods | [`judge`], [`verify::comparison::compare`] |
 //! | [`certificate`] | proves how far a formula is from the true motion | [`certificate::certify`] |
 //! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
@@ -70,6 +71,8 @@ pub use lindstedt_dynamics::{coupled, mechanics, system};
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]
 pub use lindstedt_impact::{impact, optimize};
+#[doc(inline)]
+pub use lindstedt_modes::modes;
 #[doc(inline)]
 pub use lindstedt_numeric::{genetic, numeric};
 #[doc(inline)]

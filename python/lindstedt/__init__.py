@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from .errors import UsageError as UsageError
     from .oscillator import Oscillator as Oscillator
     from .law import Law as Law
+    from .modes import Modes as Modes
+    from .modes import modes as modes
     from .studies import Study as Study
     from .studies import collect as collect
     from .studies import missing_shards as missing_shards
@@ -59,6 +61,7 @@ if TYPE_CHECKING:
 PLACES = {
     "catalog": "catalogue",
     "Law": "law",
+    **dict.fromkeys(("Modes", "modes"), "modes"),
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",
     **dict.fromkeys(("Study", "collect", "missing_shards"), "studies"),

@@ -31,6 +31,7 @@ OWN = {
     "Friction": ("tabulated", "Friction"),
     "Materials": ("tabulated", "Materials"),
     "Impact": ("impacts", "Impact"),
+    "Modes": ("modes", "Modes"),
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),

@@ -21,7 +21,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::files::width;
-use super::problem::{expression, problem, value_name};
+use super::problem::{coupled_equations, expression, problem, value_name};
 use super::progress::with_progress;
 use super::session::{self, Session};
 use super::{
@@ -38,11 +38,11 @@ pub struct EquationArguments {
     /// amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging, pade,
     /// hermite-pade, multiple-scales or exact
     #[arg(long)]
-    method: Option<String>,
+    pub(super) method: Option<String>,
     /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees
     /// L,M of pade, P,Q,R of hermite-pade
     #[arg(long, value_parser = order, allow_hyphen_values = true)]
-    order: Option<Order>,
+    pub(super) order: Option<Order>,
     /// What the amplitude measures
     #[arg(long, value_parser = convention())]
     amplitude: Option<AmplitudeConvention>,
@@ -76,7 +76,7 @@ pub struct EquationArguments {
     jobs: Option<u16>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
     #[arg(long, value_name = "NAME=VALUE,...")]
-    at: Vec<String>,
+    pub(super) at: Vec<String>,
 }
 
 /// Derive the frequency law and the motion of an oscillator, to an order
@@ -88,8 +88,32 @@ pub struct DeriveArguments {
     /// program as a comment
     #[arg(long)]
     steps: bool,
+    /// Which normal mode of coupled equations, 1 for the slowest; without it all of them
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
+    pub(super) mode: Option<u32>,
     #[command(flatten)]
     pub common: Common,
+}
+
+impl EquationArguments {
+    /// Refuses options that the modes of coupled equations do not have.
+    fn check_of_modes(&self) -> Result<(), Failure> {
+        let given = [
+            ("--small", self.small.is_some()),
+            ("--about", self.about.is_some()),
+            ("--taylor", self.taylor.is_some()),
+            ("--hbar", self.hbar.is_some()),
+            ("--cycle", self.cycle.is_some()),
+            ("--resonance", self.resonance.is_some()),
+            ("--omega-only", self.omega_only),
+        ];
+        match given.iter().find(|(_, given)| *given) {
+            Some((option, _)) => Err(Failure::Usage(format!(
+                "{option}: it is of one coordinate; the modes of coupled equations take --mode, --order, --amplitude and --at"
+            ))),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The names of the conventions, and the convention of each.
@@ -144,6 +168,22 @@ pub(super) struct Solved {
     pub letters: ResultSymbols,
 }
 
+/// The convention of the amplitude: that of the option, else that of the file.
+pub(super) fn amplitude(
+    arguments: &EquationArguments,
+    of_file: Option<&str>,
+) -> Result<Option<AmplitudeConvention>, Failure> {
+    match (arguments.amplitude, of_file) {
+        (Some(convention), _) => Ok(Some(convention)),
+        (None, None) => Ok(None),
+        (None, Some(name)) => AmplitudeConvention::from_name(name).map(Some).ok_or_else(|| {
+            Failure::Usage(format!(
+                "unknown amplitude `{name}`\n  help: choose initial or first-harmonic"
+            ))
+        }),
+    }
+}
+
 /// The answer to a question, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
 pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
@@ -191,7 +231,7 @@ pub(super) fn check_values(solution: &Solution, values: &Values) -> Result<(), F
 }
 
 /// Why there is no verdict, with what to do about it.
-fn unjudged(error: &VerificationError) -> Failure {
+pub(super) fn unjudged(error: &VerificationError) -> Failure {
     match error {
         VerificationError::Unknown { name, known } => {
             let near = nearest(name.written(), known.iter().map(|known| known.written()));
@@ -242,6 +282,22 @@ impl Work for DeriveArguments {
 }
 
 fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
+    let problem = problem(&arguments.question.problem)?;
+    if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
+        arguments.question.check_of_modes()?;
+        if arguments.steps {
+            return Err(Failure::Usage(
+                "--steps: the derivation of modes is not printed order by order; docs/normal-modes.md has its equations".to_owned(),
+            ));
+        }
+        return super::modes::run(arguments, equations, &problem);
+    }
+    if arguments.mode.is_some() {
+        return Err(Failure::Usage(
+            "--mode: one coordinate has one mode; the modes of coupled equations are numbered"
+                .to_owned(),
+        ));
+    }
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
@@ -522,18 +578,7 @@ fn options(
             }
         },
     };
-    let amplitude = match (arguments.amplitude, formula.amplitude) {
-        (Some(convention), _) => Some(convention),
-        (None, None) => None,
-        (None, Some(name)) => match AmplitudeConvention::from_name(name) {
-            Some(convention) => Some(convention),
-            None => {
-                return usage(format!(
-                    "unknown amplitude `{name}`\n  help: choose initial or first-harmonic"
-                ));
-            }
-        },
-    };
+    let amplitude = amplitude(arguments, formula.amplitude)?;
     let chosen = method.unwrap_or_else(|| method::default_method(oscillator));
     let without = |option: &str, owners: &str| {
         usage(format!(

@@ -21,6 +21,7 @@ mod friction;
 mod impact;
 mod lagrange;
 mod materials;
+mod modes;
 mod optimize;
 mod primary;
 mod problem;

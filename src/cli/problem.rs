@@ -6,8 +6,9 @@ use std::path::Path;
 use crate::Symbol;
 use crate::catalog;
 use crate::catalog::nearest;
+use crate::coupled::{CoupledEquations, CoupledError};
 use crate::expr::{Expr, ParseError, equation_in_grammar, expression_in_grammar, parse_expression};
-use crate::problem::{Problem, ProblemError};
+use crate::problem::{Problem, ProblemError, ReadingCommand};
 
 use super::files::is_standard;
 use super::{Failure, read, session};
@@ -35,6 +36,31 @@ pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
         read
     });
     Ok(Problem { equation, ..problem })
+}
+
+/// The equations of a problem of several coordinates: separated by `;`, a list of a file, or those of
+/// a mechanism, then with their energy; `None` for one equation.
+///
+/// # Errors
+/// A key that the command would ignore; equations that do not belong together.
+pub(super) fn coupled_equations(
+    problem: &Problem,
+    reader: ReadingCommand,
+) -> Result<Option<CoupledEquations>, Failure> {
+    let coupled = |error: CoupledError| Failure::refused(&error, error.help());
+    let of_file = |error: ProblemError| Failure::refused(&error, error.help());
+    if let Some(equations) = problem.coupled_equations(reader).map_err(of_file)? {
+        let equations = CoupledEquations::of_mechanism(&equations).map_err(coupled)?;
+        let mechanism = problem.mechanism().map_err(of_file)?.mechanism;
+        return Ok(Some(equations.with_energy(&mechanism.kinetic + &mechanism.potential)));
+    }
+    match &problem.equation {
+        Some(text) if text.contains(';') => {
+            problem.check_keys(reader).map_err(of_file)?;
+            CoupledEquations::parse(text).map(Some).map_err(coupled)
+        }
+        _ => Ok(None),
+    }
 }
 
 /// Reads an expression of the command line, which may have the notations of print.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::coupled::{CoupledEquations, CoupledError};
+use crate::coupled::CoupledEquations;
 use crate::export::{self, json};
 use crate::expr::Expr;
 use crate::problem::{Order, Problem, ReadingCommand};
@@ -15,7 +15,7 @@ use clap::Args;
 
 use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
-use super::problem::{expression, problem};
+use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
 use super::session;
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
@@ -164,21 +164,13 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
 
 /// The equations of a problem.
 fn equations(problem: &Problem) -> Result<Equations, Failure> {
-    let coupled = |error: CoupledError| Failure::refused(&error, error.help());
-    let several = problem
-        .coupled_equations(ReadingCommand::Response)
-        .map_err(|error| Failure::refused(&error, error.help()))?;
-    if let Some(equations) = several {
-        let equations = CoupledEquations::of_mechanism(&equations).map_err(coupled)?;
-        let mechanism =
-            problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
-        let energy = &mechanism.mechanism.kinetic + &mechanism.mechanism.potential;
-        return Ok(Equations::Coupled(equations.with_energy(energy)));
+    if let Some(equations) = coupled_equations(problem, ReadingCommand::Response)? {
+        return Ok(Equations::Coupled(equations));
     }
     let formula = formula(problem, ReadingCommand::Response)?;
     Equations::parse(formula.equation).map_err(|error| match error {
         EquationsError::One(error) => Failure::with_advice(&error, error.help()),
-        EquationsError::Coupled(error) => coupled(error),
+        EquationsError::Coupled(error) => Failure::refused(&error, error.help()),
     })
 }
 

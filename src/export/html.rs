@@ -282,6 +282,7 @@ impl Body<'_> {
             | Block::Law { .. }
             | Block::Equality { .. }
             | Block::Line(_)
+            | Block::Harmonics { .. }
             | Block::CycleAmplitude { .. }
             | Block::Definition(_)
             | Block::Value { .. }

@@ -250,6 +250,15 @@ fn unbroken(block: &Block) -> Setting {
             equation_of(symbol(*name), sum(amplitude))
         }
         Block::Motion(solution) => Setting::Equations(motion(solution)),
+        Block::Harmonics { coordinate, series, amplitude, rounded, phase } => {
+            let law = |coefficient: &Polynomial| {
+                sum(&Sum::new(coefficient, *rounded, |term| term.exponent(*amplitude)))
+            };
+            let waves = terms::waves(series, law, &NOTATION, *phase);
+            let waves = if waves.is_empty() { vec!["0".to_owned()] } else { waves };
+            let first = format!("{}(t) &= ", symbol(*coordinate));
+            Setting::Equations(terms::lines(&waves, &first, "&\\quad "))
+        }
         Block::Definition(definition) => {
             equation_of(symbol(definition.symbol), constant(&definition.meaning))
         }
@@ -292,6 +301,11 @@ fn unbroken(block: &Block) -> Setting {
 
 impl LatexPage {
     fn add(&mut self, block: &Block) {
+        // Each of several answers has equations of its own.
+        let is_next = matches!(block, Block::Title { .. });
+        if is_next && !(self.laws.is_empty() && self.rows.is_empty()) {
+            self.flush();
+        }
         // Rows are broken where all of them are known, because they are aligned.
         match (unbroken(block), block) {
             (Setting::Table(table), _) => {

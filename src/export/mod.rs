@@ -18,6 +18,7 @@ pub mod html;
 pub mod json;
 pub mod latex;
 pub mod materials;
+pub mod modes;
 pub mod optimization;
 pub mod primary;
 pub mod response;

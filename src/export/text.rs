@@ -11,10 +11,11 @@ mod table;
 pub use super::steps::text as steps;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
+use crate::exact::Polynomial;
 pub use crate::report::percent;
 use crate::report::{self, Block, Document, size_in_percent};
 use crate::series::terms;
-use crate::solution::{Method, Solution, constant_in_words};
+use crate::solution::{Method, Solution, Sum, constant_in_words};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::Comparison;
@@ -114,6 +115,15 @@ impl TextLayout {
                 format!("  limit cycle of amplitude {symbol} = {amplitude}\n")
             }
             Block::Motion(solution) => motion(solution),
+            Block::Harmonics { coordinate, series, amplitude, rounded, phase } => {
+                let law = |coefficient: &Polynomial| {
+                    Sum::new(coefficient, *rounded, |term| term.exponent(*amplitude)).to_string()
+                };
+                let waves = terms::waves(series, law, &NOTATION, *phase);
+                let waves = if waves.is_empty() { vec!["0".to_owned()] } else { waves };
+                let first = format!("  {coordinate}(t) = ");
+                terms::lines(&waves, &first, "         ").join("\n") + "\n"
+            }
             Block::Definition(definition) => {
                 format!("  {} = {}\n", definition.symbol, definition.meaning_in_words())
             }

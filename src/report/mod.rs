@@ -17,6 +17,7 @@ mod impact_certificate;
 mod impact_comparison;
 mod materials;
 mod mechanism;
+mod modes;
 mod optimization;
 mod primary;
 mod response;
@@ -39,6 +40,7 @@ pub use impact_certificate::{ImpactCertificateReport, impact_certificate};
 pub use impact_comparison::impact_comparison;
 pub use materials::{material_sentences, materials};
 pub use mechanism::{mechanism, paper_equations};
+pub use modes::{ModesReport, modes};
 pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]
@@ -54,12 +56,14 @@ use std::borrow::Cow;
 
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
+use crate::exact::Polynomials;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
 use crate::impact::{
     FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PathSegment, PhaseReading,
     Rule,
 };
+use crate::series::FourierSeries;
 use crate::solution::law::DisplayedLaw;
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
@@ -125,6 +129,19 @@ pub enum Block<'a> {
     },
     /// The motion of an answer; it is zero if only quadrature gives it.
     Motion(&'a Solution),
+    /// The motion of one of several coordinates.
+    Harmonics {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// Its harmonics.
+        series: &'a FourierSeries<Polynomials>,
+        /// The symbol by whose powers coefficients are ordered.
+        amplitude: Symbol,
+        /// Whether coefficients are rounded.
+        rounded: bool,
+        /// The name of the phase, `omega*t`.
+        phase: Symbol,
+    },
     /// A symbol and its definition.
     Definition(&'a Definition),
     /// A symbol and its number.

@@ -33,6 +33,7 @@ mod multiple_scales;
 mod names;
 mod narrow;
 mod near_rest;
+mod normal_modes;
 mod primary;
 mod printed_integrals;
 mod pulses;

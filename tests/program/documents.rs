@@ -11,9 +11,9 @@ use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
     ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument,
-    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
-    StabilityDocument, StudyDocument, SweepDocument,
+    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
+    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -93,6 +93,7 @@ fn reads_back(document: &Value) {
     let kind = DocumentKind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
     let written = match kind.expect("a known kind") {
         DocumentKind::Solution => again::<SolutionDocument>(document),
+        DocumentKind::Modes => again::<ModesDocument>(document),
         DocumentKind::Comparison => again::<ComparisonDocument>(document),
         DocumentKind::Impact => again::<ImpactDocument>(document),
         DocumentKind::ImpactComparison => again::<ImpactComparisonDocument>(document),
@@ -148,6 +149,9 @@ fn documents() -> Vec<(String, Value)> {
     add(&["response", two, "--vary", "Omega=0.5:0.7", "--of", "x - y"]);
     let cycles = "v' = v - v^3/3 - w + I; w' = (v + 0.7 - 0.8*w)/5";
     add(&["response", cycles, "--vary", "I=0:0.6"]);
+    for file in files("examples/modes", ".toml") {
+        add(&["derive", &file.to_string_lossy()]);
+    }
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
     }
@@ -232,6 +236,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
 fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
+        Some("lindstedt/modes/1") => "/modes/0",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",
         Some("lindstedt/impact-comparison/1") => "/methods/0/speed",

@@ -123,6 +123,38 @@ impl Definition {
     }
 }
 
+/// The values of definitions, each of which may use those before it; one that `value_of` knows
+/// already is not computed again.
+///
+/// # Errors
+/// The first symbol without a value.
+pub fn defined_values(
+    definitions: &[Definition],
+    value_of: &dyn Fn(Symbol) -> Option<f64>,
+) -> Result<Vec<(Symbol, f64)>, Symbol> {
+    let mut values: Vec<(Symbol, f64)> = Vec::new();
+    for definition in definitions {
+        if let Some(value) = value_of(definition.symbol) {
+            values.push((definition.symbol, value));
+            continue;
+        }
+        let known: Result<_, Symbol> = definition
+            .meaning
+            .symbols()
+            .into_iter()
+            .map(|symbol| {
+                let defined =
+                    values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+                let value = defined.or_else(|| value_of(symbol)).ok_or(symbol)?;
+                Ok((symbol, value))
+            })
+            .collect();
+        let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
+        values.push((definition.symbol, value));
+    }
+    Ok(values)
+}
+
 /// A constant; a fraction of many digits, which is a rounded number, as a decimal, and a root of
 /// rounded numbers with decimals under it.
 pub fn constant_in_words(value: &Expr) -> String {
@@ -277,28 +309,7 @@ impl Solution {
         &self,
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Result<Vec<(Symbol, f64)>, Symbol> {
-        let mut values: Vec<(Symbol, f64)> = Vec::new();
-        // A definition may use those before it.
-        for definition in &self.definitions {
-            if let Some(value) = value_of(definition.symbol) {
-                values.push((definition.symbol, value));
-                continue;
-            }
-            let known: Result<_, Symbol> = definition
-                .meaning
-                .symbols()
-                .into_iter()
-                .map(|symbol| {
-                    let defined =
-                        values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
-                    let value = defined.or_else(|| value_of(symbol)).ok_or(symbol)?;
-                    Ok((symbol, value))
-                })
-                .collect();
-            let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
-            values.push((definition.symbol, value));
-        }
-        Ok(values)
+        defined_values(&self.definitions, value_of)
     }
 
     /// The motion from rest at `x = A` as a function of time, where it is known as that.

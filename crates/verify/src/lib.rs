@@ -14,6 +14,8 @@ pub use lindstedt_dynamics::{coupled, mechanics, system};
 #[doc(no_inline)]
 pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]
+pub use lindstedt_modes::modes;
+#[doc(no_inline)]
 pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::{conservative, equilibrium, method, oscillator, solution};

@@ -11,9 +11,9 @@ use super::{
     AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
     ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PointDocument,
-    PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument,
-    StabilityDocument, StudyDocument, SweepDocument,
+    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
+    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -23,6 +23,7 @@ impl DocumentKind {
         let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
         let mut schema = match self {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
+            Self::Modes => generator.into_root_schema_for::<ModesDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),

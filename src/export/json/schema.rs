@@ -7,6 +7,8 @@ use super::{JsonError, unexpected};
 pub enum DocumentKind {
     /// `derive`.
     Solution,
+    /// `derive` of coupled equations.
+    Modes,
     /// `compare`.
     Comparison,
     /// `impact`.
@@ -55,8 +57,9 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Solution,
+        Self::Modes,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
@@ -85,6 +88,7 @@ impl DocumentKind {
     const fn entry(self) -> [&'static str; 2] {
         match self {
             Self::Solution => ["lindstedt/solution/1", include_str!("schemas/solution.json")],
+            Self::Modes => ["lindstedt/modes/1", include_str!("schemas/modes.json")],
             Self::Comparison => ["lindstedt/comparison/1", include_str!("schemas/comparison.json")],
             Self::Impact => ["lindstedt/impact/1", include_str!("schemas/impact.json")],
             Self::ImpactComparison => {

@@ -74,7 +74,7 @@ pub use parse::{
 pub use print::Fraction;
 pub use print::Inside;
 pub use rounding::{LostDigits, Rounded};
-pub use typed::{Quotation, Typed};
+pub use typed::{Quotation, Typed, excerpt_of};
 
 pub use crate::symbol::letters::{InForce, ResultSymbols};
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};

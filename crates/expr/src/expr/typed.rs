@@ -160,25 +160,38 @@ impl Typed {
         let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
         let span = match number.and_then(|number| self.terms.get(number)) {
             Some(term) => term.span.clone(),
-            None => self.span_of(quotation)?,
+            None => span_of(&self.text, quotation)?,
         };
         Some(excerpt(&self.text, &span))
     }
 
-    /// Returns the range of a text that is not part of a longer name; `None` if it does not occur.
-    fn span_of(&self, quotation: &str) -> Option<Range<usize>> {
-        let in_name = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '\'';
-        let spans = self.text.match_indices(quotation);
-        let mut spans = spans.map(|(start, found)| start..start + found.len());
-        spans.find(|span| {
-            let before = self.text[..span.start].chars().next_back();
-            let after = self.text[span.end..].chars().next();
-            !quotation.is_empty() && !before.is_some_and(in_name) && !after.is_some_and(in_name)
-        })
-    }
-
     /// Whether a text occurs literally in the equation.
     pub fn contains(&self, quotation: &str) -> bool {
-        self.span_of(quotation).is_some()
+        span_of(&self.text, quotation).is_some()
     }
+}
+
+/// Returns the line of a text in which a quotation stands literally, not as a part of a longer name,
+/// and a line with carets under it; `None` if it does not occur.
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// let [line, carets] = lindstedt::expr::excerpt_of("x'' + x' + x = 0", "x'").ok_or("no x'")?;
+/// assert_eq!((line.as_str(), carets.as_str()), ("x'' + x' + x = 0", "      ^^"));
+/// # Ok::<(), &str>(())
+/// ```
+pub fn excerpt_of(text: &str, quotation: &str) -> Option<[String; 2]> {
+    span_of(text, quotation).map(|span| excerpt(text, &span))
+}
+
+/// Returns the range of a quotation that is not part of a longer name; `None` if it does not occur.
+fn span_of(text: &str, quotation: &str) -> Option<Range<usize>> {
+    let in_name = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '\'';
+    let spans = text.match_indices(quotation);
+    let mut spans = spans.map(|(start, found)| start..start + found.len());
+    spans.find(|span| {
+        let before = text[..span.start].chars().next_back();
+        let after = text[span.end..].chars().next();
+        !quotation.is_empty() && !before.is_some_and(in_name) && !after.is_some_and(in_name)
+    })
 }

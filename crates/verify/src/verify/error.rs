@@ -95,6 +95,19 @@ pub enum VerificationError {
     /// No method applies, each for its reason; the message has that of the first.
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
+    /// No true motion of a nonlinear normal mode was found.
+    #[error("no motion of mode {number} was found beyond {} = {}", amplitude.written(), decimal(*reached))]
+    NoMode {
+        /// The number of the mode.
+        number: usize,
+        /// The symbol of the amplitude.
+        amplitude: Symbol,
+        /// The amplitude up to which the motions were followed.
+        reached: f64,
+    },
+    /// The numbers of an equation cannot be followed.
+    #[error("{0}")]
+    NoSystem(String),
     /// There is no curve of omega against the amplitude, for this reason.
     #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
     NoBackbone(&'static str),

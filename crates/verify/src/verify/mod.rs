@@ -29,6 +29,7 @@ mod free_motion;
 mod in_time;
 mod largest;
 mod motions;
+mod normal_mode;
 mod orbit;
 mod reach;
 mod slope;
@@ -42,6 +43,7 @@ pub use convergence::{Singularity, converges, converges_everywhere, nearest_sing
 pub use driven::JudgedState;
 pub use error::VerificationError;
 pub use motions::{Motions, TimedState, motions, true_motion};
+pub use normal_mode::{JudgedMode, judge_mode};
 pub use transient::Followed;
 pub use validity::{AmplitudeReach, Range};
 pub use values::{checked, needed_values};

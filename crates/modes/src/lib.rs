@@ -1,0 +1,27 @@
+//! Coupled oscillators, `M q'' + K q + f(q, q', q'') = 0`, and the formulas of their free motions.
+//!
+//! In: equations of several coordinates that nothing drives or damps. Out: the nonlinear normal
+//! modes, each with its frequency law, the motion of every coordinate and the modal line; or a
+//! refusal that names the term, or the two modes that resonate.
+//!
+//! Five names to know: [`modes::FreeSystem`], the question; [`modes::derive`] with
+//! [`modes::ModeOptions`]; [`modes::NonlinearMode`], the answer for one mode;
+//! [`modes::ModeError`], the refusal.
+
+#![warn(missing_docs)]
+
+#[doc(no_inline)]
+pub use lindstedt_dynamics::{coupled, mechanics};
+#[doc(no_inline)]
+pub use lindstedt_expr::{decimal, exact, expr, symbol};
+#[doc(no_inline)]
+pub use lindstedt_numeric::interrupt;
+#[doc(no_inline)]
+pub use lindstedt_oscillator::solution;
+#[doc(no_inline)]
+pub use lindstedt_series::series;
+
+pub mod modes;
+
+pub use interrupt::Supervision;
+pub use symbol::Symbol;

@@ -1,0 +1,333 @@
+//! The nonlinear normal modes of a system: frequency laws, motions, modal lines.
+
+use num_traits::Zero;
+
+use super::expansion::{Expansion, Request};
+use super::free_system::ForceTerm;
+use super::inverse::HarmonicInverses;
+use super::linear::{DIGITS, LinearMode, LinearModes};
+use super::modal_line::modal_lines;
+use super::{FreeSystem, ModeError};
+use crate::decimal::rounded_fraction;
+use crate::exact::polynomial::Monomial;
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
+use crate::interrupt::Supervision;
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, Definition, Sum};
+use crate::symbol::Symbol;
+
+/// The order without a choice.
+const USUAL_ORDER: u32 = 4;
+
+/// The highest order.
+const HIGHEST_ORDER: u32 = 200;
+
+/// Number of digits of rounded coefficients.
+const KEPT_DIGITS: usize = 15;
+
+/// The choices of a derivation.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeOptions {
+    /// The mode, 1 for the slowest; all of them without it.
+    pub mode: Option<usize>,
+    /// The highest power of the amplitude in omega^2; 4 without it.
+    pub order: Option<u32>,
+    /// The definition of the amplitude.
+    pub amplitude: AmplitudeConvention,
+    /// Interrupt and progress.
+    pub supervision: Supervision,
+}
+
+impl Default for ModeOptions {
+    fn default() -> Self {
+        Self {
+            mode: None,
+            order: None,
+            amplitude: AmplitudeConvention::FirstHarmonic,
+            supervision: Supervision::default(),
+        }
+    }
+}
+
+/// The nonlinear normal modes of a system.
+#[derive(Clone, Debug)]
+pub struct NormalModes {
+    /// The system.
+    pub system: FreeSystem,
+    /// The modes that were asked for, the slowest first, or the reason why one has no formula.
+    pub modes: Vec<Result<NonlinearMode, ModeError>>,
+    /// The number of all modes.
+    pub count: usize,
+    /// The highest power of the amplitude in omega^2 that was asked for.
+    pub order: u32,
+    /// The definition of the amplitude.
+    pub amplitude: AmplitudeConvention,
+}
+
+/// The linear mode at which a nonlinear one begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearShape {
+    /// The square of its frequency.
+    pub square: Polynomial,
+    /// Its shape v; the first coordinate that moves has 1.
+    pub shape: Vec<Polynomial>,
+    /// `u^T M/(u^T M v)`, where u is the shape under the transposed matrices: the sum of the
+    /// coordinates, each with its factor, of which the amplitude is that of the first harmonic. With
+    /// symmetric matrices u is v.
+    pub modal: Vec<Polynomial>,
+}
+
+/// A nonlinear normal mode in formulas.
+///
+/// Polynomials are in the parameters of the equations, the amplitude symbol and the symbols of
+/// `definitions`.
+#[derive(Clone, Debug)]
+pub struct NonlinearMode {
+    /// Its number, 1 for the slowest.
+    pub number: usize,
+    /// The highest power of the amplitude in omega^2, inclusive.
+    pub order: u32,
+    /// The definition of the amplitude.
+    pub amplitude: AmplitudeConvention,
+    /// The linear mode.
+    pub linear: LinearShape,
+    /// omega^2 in powers of the amplitude.
+    pub frequency_squared: Polynomial,
+    /// The motion of each coordinate, a series of cosines of `theta = omega t`.
+    pub motion: Vec<FourierSeries<Polynomials>>,
+    /// The coordinate in which the modal lines are written: the first that moves in the linear mode.
+    pub along: usize,
+    /// Each coordinate as a function of that one and of the amplitude.
+    pub lines: Vec<Polynomial>,
+    /// Symbols that the formulas introduce; each may use those before it.
+    pub definitions: Vec<Definition>,
+    /// Whether the coefficients are rounded to fifteen digits, because the linear frequency is no
+    /// closed root.
+    pub rounded: bool,
+}
+
+impl NonlinearMode {
+    /// A polynomial with its terms by rising powers of the amplitude.
+    pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
+        let amplitude = self.amplitude.symbol();
+        Sum::new(polynomial, self.rounded, |monomial| monomial.exponent(amplitude))
+    }
+
+    /// The law in one line.
+    pub fn formula(&self) -> String {
+        format!("omega^2 = {}", self.ordered(&self.frequency_squared))
+    }
+}
+
+/// Derives nonlinear normal modes by Lindstedt and Poincare.
+///
+/// # Errors
+/// [`ModeError`] if there are no modes in formulas at all, or no mode of the number that was asked
+/// for; what concerns one mode is in [`NormalModes::modes`].
+///
+/// ```
+/// # use lindstedt_modes as lindstedt;
+/// use lindstedt::modes::{FreeSystem, ModeOptions, derive};
+///
+/// let pair = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0")?;
+/// let modes = derive(&pair, &ModeOptions::default())?.modes;
+/// let laws: Vec<String> = modes.iter().flatten().map(|mode| mode.formula()).collect();
+/// assert_eq!(laws, [
+///     "omega^2 = 1 + 3*a^2/16 - 101*a^4/2048",
+///     "omega^2 = 3 + 3*a^2/16 + 1429*a^4/26624",
+/// ]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes, ModeError> {
+    let order = options.order.unwrap_or(USUAL_ORDER);
+    if order > HIGHEST_ORDER {
+        return Err(ModeError::Order(order, HIGHEST_ORDER));
+    }
+    let mut system = system.clone();
+    let linear = LinearModes::new(&system)?;
+    let count = linear.count();
+    let numbers = match options.mode {
+        None => 1..=count,
+        Some(number) if (1..=count).contains(&number) => number..=number,
+        Some(number) => return Err(ModeError::NoSuchMode { number, count }),
+    };
+    let force = system.force_terms(order + 1)?;
+    let modes = numbers
+        .map(|number| {
+            let mode = linear.mode(number - 1)?;
+            one_mode(&system, &force, &linear, number, &mode, order, options)
+        })
+        .collect();
+    Ok(NormalModes { system, modes, count, order, amplitude: options.amplitude })
+}
+
+fn one_mode(
+    system: &FreeSystem,
+    force: &[Vec<ForceTerm>],
+    linear: &LinearModes,
+    number: usize,
+    mode: &LinearMode,
+    order: u32,
+    options: &ModeOptions,
+) -> Result<NonlinearMode, ModeError> {
+    let known = system.constants.iter().chain(linear.definitions()).cloned();
+    let known: Vec<Definition> = known.collect();
+    let names = known.iter().map(|definition| definition.symbol);
+    let taken = system.names().into_iter().chain(names).collect();
+    let mut inverses = HarmonicInverses::new(linear, number - 1, &mode.square, taken);
+    let basis = linear.basis(number - 1, mode, &system.mass);
+    let rounded = linear.is_rounded(number - 1);
+    let has_letters = force.iter().flatten().any(|term| term.coefficient.as_number().is_none());
+    let is_two = matches!(linear, LinearModes::Two(_));
+    let expansion = match has_letters || is_two {
+        true => {
+            let round = |number: &Rational| rounded_fraction(number, DIGITS);
+            let tidy = |element: &Polynomial| match rounded {
+                true => element.map(round),
+                false => element.clone(),
+            };
+            let element = |polynomial: &Polynomial| polynomial.clone();
+            let request = Request {
+                ring: POLYNOMIALS,
+                element: &element,
+                tidy: &tidy,
+                number,
+                square: &mode.square,
+                basis: &basis,
+                force,
+                order: order as usize,
+                amplitude: options.amplitude,
+                supervision: options.supervision,
+            };
+            request.expand(&mut |harmonic| inverses.of(harmonic))?
+        }
+        false => {
+            let tidy = |element: &Rational| match rounded {
+                true => rounded_fraction(element, DIGITS),
+                false => element.clone(),
+            };
+            let element =
+                |polynomial: &Polynomial| polynomial.as_number().unwrap_or_else(Rational::zero);
+            let request = Request {
+                ring: Rationals,
+                element: &element,
+                tidy: &tidy,
+                number,
+                square: &mode.square,
+                basis: &basis,
+                force,
+                order: order as usize,
+                amplitude: options.amplitude,
+                supervision: options.supervision,
+            };
+            in_polynomials(request.expand(&mut |harmonic| inverses.of(harmonic))?)
+        }
+    };
+    let definitions: Vec<Definition> =
+        known.into_iter().chain(std::mem::take(&mut inverses.definitions)).collect();
+    Ok(in_amplitude(system, expansion, number, mode, definitions, rounded, options))
+}
+
+/// The orders with polynomials as coefficients.
+fn in_polynomials(expansion: Expansion<Rationals>) -> Expansion<Polynomials> {
+    let constant = Polynomial::constant;
+    Expansion {
+        frequency_squared: expansion.frequency_squared.into_iter().map(constant).collect(),
+        motion: expansion
+            .motion
+            .iter()
+            .map(|order| {
+                let series = order.iter();
+                series.map(|series| series.map(POLYNOMIALS, |c, _| constant(c.clone()))).collect()
+            })
+            .collect(),
+    }
+}
+
+/// The sums over the orders, each with its power of the amplitude.
+fn in_amplitude(
+    system: &FreeSystem,
+    expansion: Expansion<Polynomials>,
+    number: usize,
+    mode: &LinearMode,
+    definitions: Vec<Definition>,
+    rounded: bool,
+    options: &ModeOptions,
+) -> NonlinearMode {
+    let amplitude = options.amplitude.symbol();
+    let coordinates = &system.equations.coordinates;
+    let power = |exponent: usize| {
+        Monomial::power_of(amplitude, i32::try_from(exponent).unwrap_or(i32::MAX))
+    };
+    let round = |polynomial: &Polynomial| match rounded {
+        true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
+        false => polynomial.clone(),
+    };
+    let reached = expansion.frequency_squared.len() - 1;
+    let mut frequency_squared = Polynomial::zero();
+    for (exponent, coefficient) in expansion.frequency_squared.iter().enumerate() {
+        frequency_squared.accumulate(&coefficient.times_monomial(&power(exponent)));
+    }
+    let motion = (0..coordinates.len()).map(|coordinate| {
+        let orders = expansion.motion.iter().enumerate();
+        orders.fold(FourierSeries::zero(POLYNOMIALS), |sum, (index, order)| {
+            let scaled = order[coordinate]
+                .map(POLYNOMIALS, |coefficient, _| coefficient.times_monomial(&power(index + 1)));
+            sum.sum(&scaled)
+        })
+    });
+    let along = mode.shape.iter().position(|entry| !entry.is_zero()).unwrap_or(0);
+    let lines = modal_lines(&expansion.motion, along, coordinates[along], amplitude);
+    let rounded_all = |entries: &[Polynomial]| entries.iter().map(round).collect();
+    let mut found = NonlinearMode {
+        number,
+        order: u32::try_from(reached).unwrap_or(u32::MAX),
+        amplitude: options.amplitude,
+        linear: LinearShape {
+            square: round(&mode.square),
+            shape: rounded_all(&mode.shape),
+            modal: rounded_all(&modal_coordinate(&system.mass, mode)),
+        },
+        frequency_squared: round(&frequency_squared),
+        motion: motion
+            .map(|series| series.map(POLYNOMIALS, |coefficient, _| round(coefficient)))
+            .collect(),
+        along,
+        lines: rounded_all(&lines),
+        definitions: vec![],
+        rounded,
+    };
+    found.definitions = used(&found, definitions);
+    found
+}
+
+/// `u^T M/(u^T M v)`.
+fn modal_coordinate(mass: &[Vec<Polynomial>], mode: &LinearMode) -> Vec<Polynomial> {
+    let entry = |column: usize| {
+        let products = mode.left.iter().zip(mass).map(|(left, row)| left.product(&row[column]));
+        let sum = products.fold(Polynomial::zero(), |sum, product| sum + product);
+        sum.product(&mode.inverse_mass)
+    };
+    (0..mass.len()).map(entry).collect()
+}
+
+/// The definitions that occur in a mode, or in others that do.
+fn used(mode: &NonlinearMode, definitions: Vec<Definition>) -> Vec<Definition> {
+    let linear = &mode.linear;
+    let polynomials = std::iter::once(&mode.frequency_squared)
+        .chain(std::iter::once(&linear.square))
+        .chain(&linear.shape)
+        .chain(&linear.modal)
+        .chain(&mode.lines)
+        .chain(mode.motion.iter().flat_map(FourierSeries::numerators));
+    let mut names: Vec<Symbol> = polynomials.flat_map(Polynomial::symbols).collect();
+    let mut kept: Vec<Definition> = Vec::new();
+    for definition in definitions.into_iter().rev() {
+        if names.contains(&definition.symbol) {
+            names.extend(definition.meaning.symbols());
+            kept.push(definition);
+        }
+    }
+    kept.reverse();
+    kept
+}

@@ -1,0 +1,160 @@
+//! The reasons why a system has no nonlinear normal modes in formulas.
+
+use thiserror::Error;
+
+use crate::coupled::CoupledError;
+use crate::expr::{Expr, ExprError};
+use crate::series::TaylorError;
+use crate::symbol::Symbol;
+
+/// The reason why there is no formula of a mode, or of any.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ModeError {
+    /// The text is no system of equations.
+    #[error(transparent)]
+    Equations(#[from] CoupledError),
+    /// A coordinate moves by an equation of first order.
+    #[error(
+        "{0} moves by an equation of first order: a normal mode is a motion of masses and springs"
+    )]
+    FirstOrder(Symbol),
+    /// A term depends on time.
+    #[error("`{0}` depends on time: normal modes are free motions")]
+    Driven(Expr),
+    /// A term is odd in the velocities: the motion backward in time is none.
+    #[error(
+        "`{0}` is odd in the velocities, as damping is: it takes energy or gives it, and a mode is a motion without"
+    )]
+    Damped(Expr),
+    /// Forces of velocities that do no work.
+    #[error("`{0}` is a gyroscopic force: its modes are not in phase")]
+    Gyroscopic(Expr),
+    /// The coordinates are not at rest where all of them are zero.
+    #[error("the equation `{0} = 0` leaves the force {1} where every coordinate is zero")]
+    NotAtRest(Expr, Expr),
+    /// The mass matrix is singular where every coordinate is zero.
+    #[error("the mass matrix is singular where every coordinate is zero")]
+    Massless,
+    /// A force has no Taylor series at rest.
+    #[error(transparent)]
+    Taylor(#[from] TaylorError),
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// The linear modes of more than two coordinates with letters in masses or stiffnesses.
+    #[error(
+        "the linear modes of {coordinates} coordinates have no closed form in {}", listed(.letters)
+    )]
+    Letters {
+        /// The number of coordinates.
+        coordinates: usize,
+        /// The letters of the linear part.
+        letters: Vec<Symbol>,
+    },
+    /// The linear equations have solutions that neither oscillate nor grow in one shape.
+    #[error(
+        "the linear equations have squares of frequencies that are not real, as with follower forces"
+    )]
+    NotReal,
+    /// There is no mode of this number.
+    #[error("there is no mode {number}: there are {count}")]
+    NoSuchMode {
+        /// The number that was asked for.
+        number: usize,
+        /// The number of modes.
+        count: usize,
+    },
+    /// The linear motion grows: rest is unstable.
+    #[error(
+        "mode {number} has omega^2 = {square} at rest: rest is unstable along it, and nothing swings there"
+    )]
+    Unstable {
+        /// The number of the mode.
+        number: usize,
+        /// The square of its linear frequency.
+        square: String,
+    },
+    /// No linear force pulls back.
+    #[error("mode {number} has omega = 0 at rest: no linear force pulls it back")]
+    NoStiffness {
+        /// The number of the mode.
+        number: usize,
+    },
+    /// Another mode has the same linear frequency.
+    #[error(
+        "modes {number} and {other} have one linear frequency, omega^2 = {square}: which of their shapes swing is for the nonlinear forces to decide (internal resonance 1:1)"
+    )]
+    EqualFrequencies {
+        /// The number of the mode.
+        number: usize,
+        /// The number of the other mode.
+        other: usize,
+        /// The square of the frequency.
+        square: String,
+    },
+    /// A multiple of the frequency is that of another mode.
+    #[error(
+        "internal resonance 1:{ratio} of modes {number} and {other}: at order {order} of the amplitude mode {number} drives mode {other} at its own frequency, and the divisor vanishes"
+    )]
+    InternalResonance {
+        /// The number of the mode.
+        number: usize,
+        /// The mode that it drives.
+        other: usize,
+        /// The multiple of the frequency; zero for a force that does not change with time.
+        ratio: usize,
+        /// The power of the amplitude.
+        order: usize,
+    },
+    /// The expansion was interrupted.
+    #[error("the expansion was interrupted")]
+    Interrupted,
+    /// An order that is too high.
+    #[error("order {0} is above the limit of {1}")]
+    Order(u32, u32),
+}
+
+fn listed(letters: &[Symbol]) -> String {
+    let names: Vec<&str> = letters.iter().map(|name| name.written()).collect();
+    names.join(", ")
+}
+
+impl ModeError {
+    /// The term of the equations that is to blame, where one is.
+    pub fn term(&self) -> Option<&Expr> {
+        match self {
+            Self::Driven(term) | Self::Damped(term) | Self::Gyroscopic(term) => Some(term),
+            _ => None,
+        }
+    }
+
+    /// Returns advice on what to do instead; `None` if there is none.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Equations(error) => error.help(),
+            Self::FirstOrder(_) | Self::Damped(_) | Self::Gyroscopic(_) => Some(
+                "`lindstedt response` finds the motions with such terms in numbers; without the term there are modes"
+                    .to_owned(),
+            ),
+            Self::Driven(_) => Some(
+                "`lindstedt response` finds the motions that a drive keeps up; without it there are modes".to_owned(),
+            ),
+            Self::NotAtRest(..) => Some(
+                "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
+            ),
+            Self::Taylor(_) => Some(
+                "`lindstedt response --vary omega=FROM:TO` finds the modes of such forces in numbers".to_owned(),
+            ),
+            Self::Letters { letters, .. } => Some(format!(
+                "give them values: --at {}",
+                letters.iter().map(|name| format!("{}=1", name.written())).collect::<Vec<_>>().join(",")
+            )),
+            Self::NoStiffness { .. } | Self::EqualFrequencies { .. } | Self::InternalResonance { .. } => Some(
+                "`lindstedt response --vary omega=FROM:TO` finds the motions in numbers, the exchange of energy `lindstedt simulate`"
+                    .to_owned(),
+            ),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Fractions in rows: determinants, inverses and null vectors by Gaussian elimination.
+//!
+//! A pivot is the largest entry that is left, so that fractions which stand for rounded numbers of
+//! many digits are treated as well as exact ones; an entry below [`NEGLIGIBLE`] is zero.
+
+use num_traits::{One, Signed, Zero};
+
+use crate::exact::Rational;
+use crate::exact::rational::to_f64;
+
+/// A matrix in rows.
+pub(super) type Matrix = Vec<Vec<Rational>>;
+
+/// Size below which an entry is that of rounding: roots are refined to [`super::linear::DIGITS`]
+/// digits, and entries are of the order of one or exact.
+const NEGLIGIBLE: f64 = 1e-45;
+
+fn size(entry: &Rational) -> f64 {
+    if entry.is_zero() { 0.0 } else { to_f64(&entry.abs()) }
+}
+
+/// `matrix - factor * other`.
+pub(super) fn less(matrix: &Matrix, factor: &Rational, other: &Matrix) -> Matrix {
+    let row = |(row, others): (&Vec<Rational>, &Vec<Rational>)| {
+        row.iter().zip(others).map(|(entry, other)| entry - factor * other).collect()
+    };
+    matrix.iter().zip(other).map(row).collect()
+}
+
+/// The transposed matrix.
+pub(super) fn transposed(matrix: &Matrix) -> Matrix {
+    (0..matrix.len()).map(|j| matrix.iter().map(|row| row[j].clone()).collect()).collect()
+}
+
+/// `matrix * vector`.
+pub(super) fn applied(matrix: &Matrix, vector: &[Rational]) -> Vec<Rational> {
+    matrix.iter().map(|row| dot(row, vector)).collect()
+}
+
+/// The sum of products.
+pub(super) fn dot(left: &[Rational], right: &[Rational]) -> Rational {
+    left.iter().zip(right).fold(Rational::zero(), |sum, (a, b)| sum + a * b)
+}
+
+/// The determinant.
+pub(super) fn determinant(matrix: &Matrix) -> Rational {
+    let mut rows = matrix.clone();
+    let mut product = Rational::one();
+    for pivot in 0..rows.len() {
+        let Some(first) = (pivot..rows.len()).find(|row| !rows[*row][pivot].is_zero()) else {
+            return Rational::zero();
+        };
+        if first != pivot {
+            rows.swap(pivot, first);
+            product = -product;
+        }
+        product *= rows[pivot][pivot].clone();
+        eliminate_below(&mut rows, pivot);
+    }
+    product
+}
+
+fn eliminate_below(rows: &mut Matrix, pivot: usize) {
+    let (above, below) = rows.split_at_mut(pivot + 1);
+    let of_pivot = &above[pivot];
+    for row in below.iter_mut().filter(|row| !row[pivot].is_zero()) {
+        let factor = &row[pivot] / &of_pivot[pivot];
+        for (entry, of_pivot) in row.iter_mut().zip(of_pivot).skip(pivot) {
+            *entry -= &factor * of_pivot;
+        }
+    }
+}
+
+/// The inverse; `None` if a pivot vanishes.
+pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
+    let count = matrix.len();
+    let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
+    let mut rows: Matrix = matrix
+        .iter()
+        .enumerate()
+        .map(|(i, row)| row.iter().cloned().chain((0..count).map(|j| unit(i, j))).collect())
+        .collect();
+    for pivot in 0..count {
+        let largest = (pivot..count)
+            .max_by(|one, other| size(&rows[*one][pivot]).total_cmp(&size(&rows[*other][pivot])))?;
+        if size(&rows[largest][pivot]) < NEGLIGIBLE {
+            return None;
+        }
+        rows.swap(pivot, largest);
+        let scale = rows[pivot][pivot].clone();
+        rows[pivot].iter_mut().for_each(|entry| *entry /= scale.clone());
+        let of_pivot = rows[pivot].clone();
+        for (index, row) in rows.iter_mut().enumerate() {
+            if index == pivot || row[pivot].is_zero() {
+                continue;
+            }
+            let factor = row[pivot].clone();
+            for (entry, of_pivot) in row.iter_mut().zip(&of_pivot) {
+                *entry -= &factor * of_pivot;
+            }
+        }
+    }
+    Some(rows.into_iter().map(|row| row[count..].to_vec()).collect())
+}
+
+/// The vector that a matrix of rank n - 1 makes zero; its first entry that is not zero is one.
+pub(super) fn null_vector(matrix: &Matrix) -> Vec<Rational> {
+    let count = matrix.len();
+    let mut rows = matrix.clone();
+    let mut columns: Vec<usize> = (0..count).collect();
+    // Full pivoting leaves the zero in the last place.
+    for pivot in 0..count.saturating_sub(1) {
+        let places = (pivot..count).flat_map(|row| (pivot..count).map(move |column| (row, column)));
+        let largest = places.max_by(|one, other| {
+            size(&rows[one.0][one.1]).total_cmp(&size(&rows[other.0][other.1]))
+        });
+        let Some((row, column)) = largest else { break };
+        if rows[row][column].is_zero() {
+            break;
+        }
+        rows.swap(pivot, row);
+        rows.iter_mut().for_each(|row| row.swap(pivot, column));
+        columns.swap(pivot, column);
+        eliminate_below(&mut rows, pivot);
+    }
+    let mut found = vec![Rational::zero(); count];
+    found[count - 1] = Rational::one();
+    for row in (0..count.saturating_sub(1)).rev() {
+        let known = dot(&rows[row][row + 1..], &found[row + 1..]);
+        if !rows[row][row].is_zero() {
+            found[row] = -known / &rows[row][row];
+        }
+    }
+    let mut vector = vec![Rational::zero(); count];
+    for (place, entry) in columns.into_iter().zip(found) {
+        vector[place] = if size(&entry) < NEGLIGIBLE { Rational::zero() } else { entry };
+    }
+    if let Some(first) = vector.iter().find(|entry| !entry.is_zero()).cloned() {
+        vector.iter_mut().for_each(|entry| *entry /= first.clone());
+    }
+    vector
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::rational::ratio;
+
+    #[test]
+    fn an_inverse_undoes_and_a_null_vector_vanishes() {
+        let matrix: Matrix = [[2, -1, 0], [-1, 2, -1], [0, -1, 2]]
+            .map(|row| row.map(|entry| ratio(entry, 1)).to_vec())
+            .to_vec();
+        assert_eq!(determinant(&matrix), ratio(4, 1));
+        let vector = [ratio(1, 3), ratio(-2, 1), ratio(5, 7)];
+        let inverse = inverse(&matrix).expect("a regular matrix");
+        assert_eq!(applied(&inverse, &applied(&matrix, &vector)), vector);
+        let unit: Matrix =
+            (0..3).map(|i| (0..3).map(|j| ratio((i == j).into(), 1)).collect()).collect();
+        let singular = less(&matrix, &ratio(2, 1), &unit);
+        assert_eq!(null_vector(&singular), [ratio(1, 1), ratio(0, 1), ratio(-1, 1)]);
+    }
+}

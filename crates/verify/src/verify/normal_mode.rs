@@ -1,0 +1,404 @@
+//! Nonlinear normal modes beside the true motions, by shooting over half a period.
+//!
+//! ```text
+//! q'(0) = 0,  q'(h) = 0:   both ends are turns, so that the motion comes back after T = 2 h = 2 pi/omega
+//! amplitude: of the first harmonic of  s = u^T M q/(u^T M v),   a = (2/h) int_0^h s cos(pi t/h) dt
+//! ```
+//!
+//! The motions are followed by Taylor series of the equations as they were given, and in amplitude
+//! from the linear mode on, by Newton's method for q(0) and h; formulas are not used. The sum of the
+//! integral is as exact as the motion, for s is even about both ends.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Verdict, VerificationError};
+use crate::exact::Doubles;
+use crate::modes::{FreeSystem, NonlinearMode};
+use crate::series::FourierSeries;
+use crate::solution::{AmplitudeConvention, defined_values};
+use crate::symbol::Symbol;
+use crate::system::{PathEnd, Solver, System, SystemOptions};
+use crate::values::Values;
+
+/// Number of points of half a period, beside the end.
+const POINTS: usize = 128;
+
+/// A nonlinear normal mode judged at given values.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct JudgedMode {
+    /// The values.
+    pub at: Values,
+    /// The relative error up to which it passes.
+    pub tolerance: f64,
+    /// omega by the formula; `None` if its square is not positive.
+    pub frequency: Option<f64>,
+    /// omega of the true motion.
+    pub true_frequency: f64,
+    /// `frequency / true_frequency - 1`.
+    pub relative_error: Option<f64>,
+    /// Largest deviation of a coordinate over a period, at the same theta, as a part of the largest
+    /// displacement.
+    pub max_deviation: f64,
+    /// Measured exponent of the error of the frequency, from two amplitudes of which one is half of
+    /// the other, as small as rounding allows; `None` if it hides the error.
+    pub slope: Option<f64>,
+    /// Half a period by the formula and in truth, at equal steps of theta from 0 to pi: the
+    /// coordinates at each.
+    pub paths: [Vec<Vec<f64>>; 2],
+    /// The verdict on the frequency.
+    pub verdict: Verdict,
+}
+
+/// The formula in numbers.
+struct Formula {
+    frequency_squared: f64,
+    motion: Vec<FourierSeries<Doubles>>,
+}
+
+/// A true motion of a mode.
+#[derive(Clone)]
+struct Motion {
+    /// q(0), then h.
+    unknowns: DVector<f64>,
+    /// The coordinates at equal steps of half a period.
+    path: Vec<Vec<f64>>,
+}
+
+impl Motion {
+    fn frequency(&self) -> f64 {
+        PI / self.unknowns[self.unknowns.len() - 1]
+    }
+}
+
+/// Judges a mode at values of the amplitude and of all parameters.
+///
+/// # Errors
+/// [`VerificationError`] for missing or unknown values, and where no true motion was found.
+///
+/// ```
+/// # use lindstedt_verify as lindstedt;
+/// use lindstedt::modes::{FreeSystem, ModeOptions, derive};
+/// use lindstedt::verify::judge_mode;
+///
+/// let pair = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0")?;
+/// let modes = derive(&pair, &ModeOptions::default())?;
+/// let mode = modes.modes[0].as_ref().expect("no resonance");
+/// let judged = judge_mode(&modes.system, mode, &"a = 1/2".parse()?, 0.01)?;
+/// assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-4));
+/// assert!(judged.slope.is_some_and(|slope| (slope - 6.0).abs() < 0.1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn judge_mode(
+    system: &FreeSystem,
+    mode: &NonlinearMode,
+    at: &Values,
+    tolerance: f64,
+) -> Result<JudgedMode, VerificationError> {
+    let amplitude = mode.amplitude.symbol();
+    let numbers = checked(system, amplitude, at)?;
+    let size = numbers[&amplitude];
+    if size == 0.0 {
+        return Err(VerificationError::AtRest);
+    }
+    let formula = formula_at(mode, &numbers)?;
+    let truth = TrueMode::new(system, mode, &numbers)?;
+    let motions = truth.followed_to(size, mode.number, amplitude)?;
+    let Some((_, whole)) = motions.last().cloned() else {
+        return Err(VerificationError::NoMode { number: mode.number, amplitude, reached: 0.0 });
+    };
+    let frequency = Some(formula.frequency_squared.sqrt()).filter(|omega| *omega > 0.0);
+    let error = |frequency: f64, motion: &Motion| frequency / motion.frequency() - 1.0;
+    let relative_error = frequency.map(|frequency| error(frequency, &whole));
+    let mut errors = Vec::new();
+    for (part, motion) in &motions {
+        let mut smaller = numbers.clone();
+        smaller.insert(amplitude, part * size);
+        let frequency = formula_at(mode, &smaller)?.frequency_squared.sqrt();
+        errors.push((*part, error(frequency, motion)));
+    }
+    let by_formula: Vec<Vec<f64>> = (0..=POINTS)
+        .map(|index| {
+            let theta = PI * index as f64 / POINTS as f64;
+            formula.motion.iter().map(|series| series.evaluate(theta)).collect()
+        })
+        .collect();
+    let (mut largest, mut deviation) = (0.0_f64, 0.0_f64);
+    for (formula, truth) in by_formula.iter().zip(&whole.path) {
+        for (formula, truth) in formula.iter().zip(truth) {
+            largest = largest.max(truth.abs());
+            deviation = deviation.max((formula - truth).abs());
+        }
+    }
+    Ok(JudgedMode {
+        at: at.clone(),
+        tolerance,
+        frequency,
+        true_frequency: whole.frequency(),
+        relative_error,
+        max_deviation: deviation / largest,
+        slope: slope(&errors),
+        paths: [by_formula, whole.path],
+        verdict: Verdict::from_passed(relative_error.is_some_and(|error| error.abs() <= tolerance)),
+    })
+}
+
+/// The exponent of an error from its values at parts of an amplitude: from the smallest part at which
+/// rounding does not hide it, and twice that.
+fn slope(errors: &[(f64, f64)]) -> Option<f64> {
+    /// Shooting is exact to some 1e-13.
+    const SMALLEST: f64 = 2e-11;
+    let at =
+        |part: f64| errors.iter().find(|(known, _)| *known == part).map(|(_, error)| error.abs());
+    let pairs = errors.iter().filter_map(|(part, error)| Some((error.abs(), at(2.0 * part)?)));
+    let mut seen = pairs.filter(|(small, large)| *small > SMALLEST && large.is_finite());
+    seen.next().map(|(small, large)| (large / small).log2())
+}
+
+/// The values as numbers.
+fn checked(
+    system: &FreeSystem,
+    amplitude: Symbol,
+    at: &Values,
+) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
+    let mut known = system.equations.parameters.clone();
+    known.push(amplitude);
+    let numbers = at.numbers();
+    if let Some(name) = numbers.keys().find(|name| !known.contains(name)) {
+        return Err(VerificationError::Unknown { name: *name, known });
+    }
+    known.retain(|name| !numbers.contains_key(name));
+    match known.is_empty() {
+        true => Ok(numbers),
+        false => Err(VerificationError::Missing(known)),
+    }
+}
+
+/// The values of all symbols of the formulas.
+fn symbol_values(
+    mode: &NonlinearMode,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
+    let pi = Symbol::new("pi");
+    let value_of =
+        |name: Symbol| numbers.get(&name).copied().or_else(|| (name == pi).then_some(PI));
+    let defined = defined_values(&mode.definitions, &value_of)
+        .map_err(|name| VerificationError::Missing(vec![name]))?;
+    Ok(numbers
+        .iter()
+        .map(|(name, value)| (*name, *value))
+        .chain(defined)
+        .chain([(pi, PI)])
+        .collect())
+}
+
+fn formula_at(
+    mode: &NonlinearMode,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Formula, VerificationError> {
+    let values = symbol_values(mode, numbers)?;
+    let value_of = |name: Symbol| values.get(&name).copied();
+    let missing = |name| VerificationError::Missing(vec![name]);
+    let frequency_squared = mode.frequency_squared.evaluate(value_of).map_err(missing)?;
+    let motion = mode.motion.iter().map(|series| {
+        series.map(Doubles, |coefficient, _| coefficient.evaluate(value_of).unwrap_or(f64::NAN))
+    });
+    Ok(Formula { frequency_squared, motion: motion.collect() })
+}
+
+/// The equations with numbers, and the definition of the amplitude.
+struct TrueMode {
+    solver: Solver,
+    /// v.
+    shape: Vec<f64>,
+    /// `u^T M/(u^T M v)`.
+    projection: Vec<f64>,
+    linear_frequency: f64,
+    along: usize,
+    amplitude: AmplitudeConvention,
+}
+
+impl TrueMode {
+    fn new(
+        system: &FreeSystem,
+        mode: &NonlinearMode,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let values = symbol_values(mode, numbers)?;
+        let constants = defined_values(&system.constants, &|name| values.get(&name).copied())
+            .map_err(|name| VerificationError::Missing(vec![name]))?;
+        let value_of = |name: Symbol| {
+            let constant = constants.iter().find(|(known, _)| *known == name);
+            values.get(&name).copied().or_else(|| constant.map(|(_, value)| *value))
+        };
+        let number = |polynomial: &crate::exact::Polynomial| {
+            polynomial.evaluate(value_of).map_err(|name| VerificationError::Missing(vec![name]))
+        };
+        let all = |entries: &[crate::exact::Polynomial]| -> Result<Vec<f64>, VerificationError> {
+            entries.iter().map(number).collect()
+        };
+        let (shape, projection) = (all(&mode.linear.shape)?, all(&mode.linear.modal)?);
+        let rates = &system.equations.rates;
+        let solver = System::new(&rates.states, Symbol::new("t"), &rates.right, &values)
+            .map_err(|error| VerificationError::NoSystem(error.to_string()))?
+            .solver(&[], &SystemOptions { step_limit: 20_000, ..SystemOptions::default() });
+        Ok(Self {
+            solver,
+            shape,
+            projection,
+            linear_frequency: number(&mode.linear.square)?.sqrt(),
+            along: mode.along,
+            amplitude: mode.amplitude,
+        })
+    }
+
+    /// The motions at parts of an amplitude up to all of it, followed from the linear mode.
+    fn followed_to(
+        &self,
+        amplitude: f64,
+        number: usize,
+        symbol: Symbol,
+    ) -> Result<Vec<(f64, Motion)>, VerificationError> {
+        /// Steps of the amplitude, and halvings of a step.
+        const STEPS: usize = 8;
+        const HALVINGS: usize = 6;
+        let count = self.shape.len();
+        let linear = |amplitude: f64| {
+            let start = self.shape.iter().map(|entry| entry * amplitude);
+            DVector::from_iterator(count + 1, start.chain([PI / self.linear_frequency]))
+        };
+        let mut known: Vec<(f64, Motion)> = Vec::new();
+        let mut step = 1.0 / STEPS as f64;
+        let mut reached = 0.0_f64;
+        let mut halvings = 0;
+        while reached < 1.0 {
+            let next = (reached + step).min(1.0);
+            let guess = match known.as_slice() {
+                [.., (before, first), (last, second)] => {
+                    let part = (next - last) / (last - before);
+                    &second.unknowns + (&second.unknowns - &first.unknowns) * part
+                }
+                [(last, motion)] => {
+                    let mut guess = linear(next * amplitude);
+                    let moved = (motion.unknowns[count] - guess[count]) * (next / last).powi(2);
+                    guess[count] += moved;
+                    guess
+                }
+                [] => linear(next * amplitude),
+            };
+            match self.motion_near(guess, next * amplitude) {
+                Some(motion) => {
+                    known.push((next, motion));
+                    reached = next;
+                }
+                None => {
+                    halvings += 1;
+                    step *= 0.5;
+                    if halvings > HALVINGS {
+                        return Err(VerificationError::NoMode {
+                            number,
+                            amplitude: symbol,
+                            reached: reached * amplitude,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(known)
+    }
+
+    /// The motion that Newton's method finds from a guess; `None` if it does not converge.
+    fn motion_near(&self, guess: DVector<f64>, amplitude: f64) -> Option<Motion> {
+        const ITERATIONS: usize = 12;
+        const SMALL: f64 = 1e-12;
+        let count = self.shape.len();
+        let mut unknowns = guess;
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let (rest, path) = self.residual(&unknowns, amplitude)?;
+            let mut slopes = DMatrix::zeros(count + 1, count + 1);
+            for column in 0..=count {
+                let scale = if column < count { amplitude.abs() } else { unknowns[count] };
+                let change = 1e-6 * scale;
+                let [after, before] = [1.0, -1.0].map(|sign| {
+                    let mut moved = unknowns.clone();
+                    moved[column] += sign * change;
+                    self.residual(&moved, amplitude).map(|(residual, _)| residual)
+                });
+                slopes.set_column(column, &((after? - before?) / (2.0 * change)));
+            }
+            let step = slopes.lu().solve(&rest)?;
+            let relative = (0..count)
+                .map(|index| (step[index] / amplitude).abs())
+                .chain([(step[count] / unknowns[count]).abs()])
+                .fold(0.0, f64::max);
+            if !relative.is_finite() {
+                return None;
+            }
+            // Converged, or as far as rounding lets it.
+            if relative < SMALL || relative < 1e-9 && relative >= 0.5 * last {
+                return Some(Motion { unknowns, path });
+            }
+            // A step of this size leads to another motion.
+            if relative > 0.5 {
+                return None;
+            }
+            unknowns -= step;
+            last = relative;
+        }
+        None
+    }
+
+    /// The velocities at the end of half a period, each over the size of velocities, and the error of
+    /// the amplitude over it; and the coordinates on the way.
+    fn residual(
+        &self,
+        unknowns: &DVector<f64>,
+        amplitude: f64,
+    ) -> Option<(DVector<f64>, Vec<Vec<f64>>)> {
+        let count = self.shape.len();
+        let half = unknowns[count];
+        if !(half > 0.0 && half.is_finite()) {
+            return None;
+        }
+        let start: Vec<f64> =
+            unknowns.iter().take(count).copied().chain(std::iter::repeat_n(0.0, count)).collect();
+        let path = self.solver.solve([0.0, half], &start).ok()?;
+        if path.reason() != PathEnd::Reached {
+            return None;
+        }
+        let times: Vec<f64> =
+            (0..=POINTS).map(|index| half * index as f64 / POINTS as f64).collect();
+        let mut columns = vec![Vec::new(); 2 * count];
+        path.sample(&times, &mut Vec::new(), &mut columns);
+        let end = path.states_at(half)?;
+        let places: Vec<Vec<f64>> = (0..=POINTS)
+            .map(|index| {
+                let place = columns.iter().take(count).map(|column| column.get(index).copied());
+                place.collect::<Option<Vec<f64>>>()
+            })
+            .collect::<Option<_>>()?;
+        let measured = match self.amplitude {
+            AmplitudeConvention::Initial => unknowns[self.along],
+            AmplitudeConvention::FirstHarmonic => {
+                let waves = places.iter().enumerate().map(|(index, place)| {
+                    let weight = if index == 0 || index == POINTS { 0.5 } else { 1.0 };
+                    let modal: f64 =
+                        self.projection.iter().zip(place).map(|(entry, q)| entry * q).sum();
+                    weight * modal * (PI * index as f64 / POINTS as f64).cos()
+                });
+                2.0 * waves.sum::<f64>() / POINTS as f64
+            }
+        };
+        let speed = amplitude * TAU / half;
+        let mut rest = DVector::zeros(count + 1);
+        for index in 0..count {
+            rest[index] = end[count + index] / speed;
+        }
+        rest[count] = measured / amplitude - 1.0;
+        Some((rest, places))
+    }
+}

@@ -1,0 +1,188 @@
+//! `lindstedt derive` of coupled equations: nonlinear normal modes.
+
+use crate::coupled::CoupledEquations;
+use crate::export::{json, modes as drawing};
+use crate::expr::{Expr, excerpt_of};
+use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
+use crate::problem::{Order, Problem, ReadingCommand};
+use crate::report::{self, ModesReport};
+use crate::solution::{AmplitudeConvention, Method};
+use crate::values::Values;
+use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
+
+use super::answer::{Answer, no_such};
+use super::derive::{DeriveArguments, amplitude, exact_values, unjudged};
+use super::progress::with_progress;
+use super::{Failure, Format, Outcome, files, json_text, session, tolerance};
+
+/// Derives the modes of coupled equations, and judges them where values are given.
+///
+/// # Errors
+/// Options that are those of one coordinate; equations that have no modes in formulas.
+pub(super) fn run(
+    arguments: &DeriveArguments,
+    equations: CoupledEquations,
+    problem: &Problem,
+) -> Result<Outcome, Failure> {
+    let question = &arguments.question;
+    for (key, given) in [("small", problem.small.is_some()), ("about", problem.about.is_some())] {
+        if given {
+            return Err(Failure::because(format!(
+                "`{key}` is of one coordinate: modes are expanded in their amplitude about the place of rest"
+            )));
+        }
+    }
+    let method = question.method.as_deref().or(problem.method.as_deref());
+    if let Some(name) = method.filter(|name| *name != Method::LindstedtPoincare.name()) {
+        return Err(Failure::Usage(format!(
+            "--method {name}: the modes of coupled equations are derived by {}",
+            Method::LindstedtPoincare.name()
+        )));
+    }
+    let order = match question.order.or(problem.order) {
+        None => None,
+        Some(Order::Power(order)) => Some(order),
+        Some(Order::Degrees(_)) => {
+            return Err(Failure::Usage(
+                "--order: the order of modes is the highest power of the amplitude in omega^2"
+                    .to_owned(),
+            ));
+        }
+    };
+    let text = problem.equation.as_deref();
+    let refused = |error: ModeError| refused(&error, text);
+    let mechanism = problem
+        .coupled_equations(ReadingCommand::Derive)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let system = match mechanism {
+        Some(mechanism) => FreeSystem::of_mechanism(&mechanism),
+        None => FreeSystem::new(equations),
+    };
+    let system = system.map_err(refused)?;
+    let amplitude = amplitude(question, problem.amplitude.as_deref())?;
+    let options = ModeOptions {
+        mode: arguments.mode.map(|mode| mode as usize),
+        order,
+        amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
+        supervision: session::supervision(),
+    };
+    let letters = system.letters;
+    let _letters = letters.in_force();
+    let values = exact_values(&question.at, problem.values_of_motion())?;
+    let values = values.map(|values| meant(&values, &system)).transpose()?;
+    let (modes, values) = with_progress("of the calculation", || {
+        with_numbers(&system, &options, values).map_err(refused)
+    })?;
+    if let Some(error) = no_formula(&modes) {
+        return Err(refused(error));
+    }
+    let tolerance = tolerance(&arguments.common);
+    let asked =
+        values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
+    let judged = match asked {
+        true => judged(&modes, &values.unwrap_or_default(), tolerance)?,
+        false => vec![],
+    };
+    let report = ModesReport { modes: &modes, judged: &judged, tolerance };
+    let answer = Answer {
+        document: &report::modes(&report),
+        width: files::width(arguments.common.output.as_deref()),
+        picture: Some(&|| Ok(drawing::picture(&report)?)),
+        other: &|format| {
+            match format {
+            Format::Json => json_text(&json::modes(&report)),
+            Format::Code(_) => Err(Failure::Usage(
+                "there is no program of the modes of coupled equations: --format json has their polynomials"
+                    .to_owned(),
+            )),
+            format => no_such(format),
+        }
+        },
+    };
+    let verdicts = judged.iter().flatten().map(|judged| judged.verdict == Verdict::Pass);
+    let reached = modes.modes.iter().flatten().map(|mode| mode.order).min();
+    let stopped = reached.filter(|reached| *reached < modes.order);
+    Ok(Outcome {
+        verdict: (!judged.is_empty())
+            .then(|| Verdict::from_passed(verdicts.into_iter().all(|passes| passes))),
+        note: stopped.map(|reached| {
+            format!(
+                "warning: stopped early, what there is is kept: order {reached} of {}",
+                modes.order
+            )
+        }),
+        partial: stopped.is_some(),
+        ..answer.outcome(&arguments.common)?
+    })
+}
+
+/// The modes; where letters leave no closed form and values are given, those of the equations with
+/// the numbers in them, and the values that are left.
+fn with_numbers(
+    system: &FreeSystem,
+    options: &ModeOptions,
+    values: Option<Values>,
+) -> Result<(NormalModes, Option<Values>), ModeError> {
+    match (derive(system, options), values) {
+        (Err(ModeError::Letters { .. }), Some(values)) => {
+            let (known, rest) = values.split(&system.equations.parameters);
+            let with_values = system.with_values(&known)?;
+            Ok((derive(&with_values, options)?, Some(rest)))
+        }
+        (found, values) => Ok((found?, values)),
+    }
+}
+
+/// The reason why the first mode has no formula, if none has one.
+fn no_formula(modes: &NormalModes) -> Option<ModeError> {
+    let mut reasons = modes.modes.iter().map(|mode| mode.as_ref().err().cloned());
+    let first = reasons.next().flatten()?;
+    reasons.all(|reason| reason.is_some()).then_some(first)
+}
+
+/// The values under the names that they are meant for.
+fn meant(values: &Values, system: &FreeSystem) -> Result<Values, Failure> {
+    let mut meant = Values::default();
+    for (name, value) in values.iter() {
+        meant
+            .insert(system.resolve(name), value.clone())
+            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+    }
+    Ok(meant)
+}
+
+/// The verdict on each mode that has a formula; `None` for the others. Missing values are refused, a
+/// mode whose true motion was not found is said.
+fn judged(
+    modes: &NormalModes,
+    at: &Values,
+    tolerance: f64,
+) -> Result<Vec<Result<JudgedMode, String>>, Failure> {
+    let mut all = Vec::new();
+    for mode in modes.modes.iter().flatten() {
+        match judge_mode(&modes.system, mode, at, tolerance) {
+            Ok(judged) => all.push(Ok(judged)),
+            Err(error @ VerificationError::NoMode { .. }) => all.push(Err(error.to_string())),
+            Err(error) => return Err(unjudged(&error)),
+        }
+    }
+    Ok(all)
+}
+
+/// A refusal, with the term that it names shown in the equations.
+fn refused(error: &ModeError, text: Option<&str>) -> Failure {
+    let term = error.term();
+    let shown = term.zip(text).and_then(|(term, text)| located(term, text));
+    let shown = shown.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
+    Failure::refused(&format!("{error}{shown}"), error.help())
+        .of_kind(error)
+        .naming(term.map(ToString::to_string).as_deref())
+}
+
+/// The place of a term in the equations as they were typed, or of the first derivative in it.
+fn located(term: &Expr, text: &str) -> Option<[String; 2]> {
+    let derivatives = term.symbols().into_iter().filter(|name| name.primes() > 0);
+    let mut names =
+        std::iter::once(term.to_string()).chain(derivatives.map(|name| name.to_string()));
+    names.find_map(|name| excerpt_of(text, &name))
+}

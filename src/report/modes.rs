@@ -1,0 +1,205 @@
+//! Nonlinear normal modes of coupled equations: frequency laws, motions, modal lines, verdicts.
+
+use std::borrow::Cow;
+
+use num_traits::Zero;
+
+use super::{Block, Document, percent, size_in_percent};
+use crate::decimal::{decimal, significant};
+use crate::derivation::DerivationLine;
+use crate::exact::Polynomial;
+use crate::expr::Expr;
+use crate::modes::{NonlinearMode, NormalModes};
+use crate::solution::Sum;
+use crate::symbol::letters::FREQUENCY;
+use crate::symbol::{Symbol, phase_beside};
+use crate::verify::JudgedMode;
+
+/// Nonlinear normal modes to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct ModesReport<'a> {
+    /// The modes.
+    pub modes: &'a NormalModes,
+    /// The verdict on each mode that has a formula, or the reason why there is none; empty without
+    /// values.
+    pub judged: &'a [Result<JudgedMode, String>],
+    /// The largest error of a passing mode.
+    pub tolerance: f64,
+}
+
+impl<'a> ModesReport<'a> {
+    /// The modes that have a formula, each with what it was judged to be.
+    pub(crate) fn judged_modes(
+        &self,
+    ) -> impl Iterator<Item = (&'a NonlinearMode, Option<&'a Result<JudgedMode, String>>)> {
+        let judged = self.judged.iter().map(Some).chain(std::iter::repeat(None));
+        self.modes.modes.iter().flatten().zip(judged)
+    }
+
+    /// The name of the phase of a motion.
+    pub(crate) fn phase(&self) -> Symbol {
+        let equations = &self.modes.system.equations;
+        let names = equations.coordinates.iter().chain(&equations.parameters);
+        phase_beside(&names.copied().collect::<Vec<_>>())
+    }
+}
+
+/// The document of nonlinear normal modes.
+///
+/// ```
+/// use lindstedt::modes::{FreeSystem, ModeOptions, derive};
+/// use lindstedt::report::{ModesReport, modes};
+///
+/// let pair = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0")?;
+/// let found = derive(&pair, &ModeOptions::default())?;
+/// let report = ModesReport { modes: &found, judged: &[], tolerance: 0.01 };
+/// let text = lindstedt::export::text::document(&modes(&report), 100);
+/// assert!(text.contains("omega^2 = 1 + 3*a^2/16 - 101*a^4/2048"), "{text}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn modes<'a>(report: &ModesReport<'a>) -> Document<'a> {
+    let modes = report.modes;
+    let equations = modes.system.equations.equations.iter();
+    let mut question: Vec<Block> =
+        equations.map(|(left, right)| equation(left.clone(), right.clone())).collect();
+    let places = modes.system.equations.coordinates.iter().zip(&modes.system.rest);
+    let moved = places.filter(|(_, place)| !place.is_zero());
+    question.extend(moved.map(|(name, place)| {
+        Block::Note(format!("{name} is counted from its place of rest, {place}"))
+    }));
+    let amplitude = modes.amplitude.symbol();
+    let title = Block::Heading(format!(
+        "Nonlinear normal modes by Lindstedt-Poincare to order {} in {amplitude}; {} = {FREQUENCY}*t",
+        modes.order,
+        report.phase()
+    ));
+    let mut sections = vec![question, vec![title]];
+    let mut judged = report.judged.iter();
+    for mode in &modes.modes {
+        sections.push(match mode {
+            Ok(mode) => one_mode(report, mode, judged.next()),
+            Err(error) => {
+                let help = error.help().map(|help| Block::Remark(format!("try: {help}")));
+                std::iter::once(Block::Note(error.to_string())).chain(help).collect()
+            }
+        });
+    }
+    sections.push(validity(modes));
+    Document { sections }
+}
+
+fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
+}
+
+/// A polynomial of a mode in one line.
+fn in_line(mode: &NonlinearMode, polynomial: &Polynomial) -> String {
+    mode.ordered(polynomial).to_string()
+}
+
+fn one_mode<'a>(
+    report: &ModesReport<'a>,
+    mode: &'a NonlinearMode,
+    judged: Option<&'a Result<JudgedMode, String>>,
+) -> Vec<Block<'a>> {
+    let coordinates = &report.modes.system.equations.coordinates;
+    let names: Vec<String> = coordinates.iter().map(ToString::to_string).collect();
+    let shape: Vec<String> = mode.linear.shape.iter().map(|entry| in_line(mode, entry)).collect();
+    let mut blocks = vec![
+        Block::Title {
+            words: format!("Mode {}", mode.number),
+            amplitude: amplitude_in_words(mode, coordinates),
+        },
+        Block::Note(format!(
+            "at small amplitudes {FREQUENCY}^2 = {}, {} = {}",
+            in_line(mode, &mode.linear.square),
+            names.join(" : "),
+            shape.join(" : ")
+        )),
+    ];
+    let law = |left: Expr, right: Sum| Block::Law { left, right };
+    let omega = Expr::from(FREQUENCY);
+    blocks.push(law(&omega * &omega, mode.ordered(&mode.frequency_squared)));
+    for (coordinate, series) in coordinates.iter().zip(&mode.motion) {
+        blocks.push(Block::Harmonics {
+            coordinate: *coordinate,
+            series,
+            amplitude: mode.amplitude.symbol(),
+            rounded: mode.rounded,
+            phase: report.phase(),
+        });
+    }
+    let others = coordinates.iter().zip(&mode.lines).enumerate();
+    let others = others.filter(|(index, _)| *index != mode.along);
+    blocks.extend(others.map(|(_, (name, line))| law(Expr::from(*name), mode.ordered(line))));
+    blocks.extend(mode.definitions.iter().map(Block::Definition));
+    blocks.extend(judged.map(|judged| match judged {
+        Ok(judged) => Block::Facts(facts(judged)),
+        Err(reason) => Block::Note(reason.clone()),
+    }));
+    blocks
+}
+
+/// The definition of the amplitude of a mode.
+fn amplitude_in_words(mode: &NonlinearMode, coordinates: &[Symbol]) -> String {
+    use crate::solution::AmplitudeConvention::{FirstHarmonic, Initial};
+    let symbol = mode.amplitude.symbol();
+    match mode.amplitude {
+        Initial => {
+            let name = coordinates[mode.along];
+            format!("{symbol} = {name}(0), and every velocity is zero at t = 0")
+        }
+        FirstHarmonic => {
+            let terms = mode.linear.modal.iter().zip(coordinates);
+            let sum: Expr = terms
+                .filter(|(factor, _)| !factor.is_zero())
+                .map(|(factor, name)| Expr::from(&rounded(mode, factor)) * Expr::from(*name))
+                .sum();
+            format!("{symbol} = amplitude of the first harmonic of {sum}")
+        }
+    }
+}
+
+/// A polynomial as it is printed.
+fn rounded(mode: &NonlinearMode, polynomial: &Polynomial) -> Polynomial {
+    match mode.rounded {
+        true => polynomial.map(|number| crate::decimal::rounded_fraction(number, 6)),
+        false => polynomial.clone(),
+    }
+}
+
+fn facts(judged: &JudgedMode) -> Vec<(&'static str, String)> {
+    let within = significant(100.0 * judged.tolerance, 3);
+    let number = |value: Option<f64>| value.map_or("not real".to_owned(), decimal);
+    let mut facts =
+        vec![("omega", number(judged.frequency)), ("true omega", decimal(judged.true_frequency))];
+    facts.extend(judged.relative_error.map(|error| ("relative error", percent(error))));
+    facts.push((
+        "largest deviation",
+        format!(
+            "{} of the largest displacement over a period",
+            size_in_percent(judged.max_deviation)
+        ),
+    ));
+    facts.extend(judged.slope.map(|slope| ("slope of the error", format!("{slope:.2}"))));
+    facts.push(("verdict", format!("{} (|relative error| <= {within} %)", judged.verdict.name())));
+    facts
+}
+
+fn validity(modes: &NormalModes) -> Vec<Block<'static>> {
+    let amplitude = modes.amplitude.symbol();
+    let mut notes = vec![
+        Block::Heading("Validity".to_owned()),
+        Block::Note(format!(
+            "truncated after {amplitude}^{}; an expansion for small {amplitude}",
+            modes.order
+        )),
+    ];
+    let rounded = modes.modes.iter().flatten().any(|mode| mode.rounded);
+    if rounded {
+        notes.push(Block::Note(
+            "numbers with a point are rounded: the linear frequency is no fraction".to_owned(),
+        ));
+    }
+    notes
+}

@@ -2,7 +2,7 @@
 
 use num_traits::Zero;
 
-use super::expansion::{Expansion, Request};
+use super::expansion::{Expansion, OverRing, Question};
 use super::free_system::ForceTerm;
 use super::inverse::HarmonicInverses;
 use super::linear::{DIGITS, LinearMode, LinearModes};
@@ -177,51 +177,38 @@ fn one_mode(
     let mut inverses = HarmonicInverses::new(linear, number - 1, &mode.square, taken);
     let basis = linear.basis(number - 1, mode, &system.mass);
     let rounded = linear.is_rounded(number - 1);
+    let question = Question {
+        number,
+        square: &mode.square,
+        basis: &basis,
+        force,
+        order: order as usize,
+        amplitude: options.amplitude,
+        supervision: options.supervision,
+    };
+    let round = |number: &Rational| match rounded {
+        true => rounded_fraction(number, DIGITS),
+        false => number.clone(),
+    };
     let has_letters = force.iter().flatten().any(|term| term.coefficient.as_number().is_none());
-    let is_two = matches!(linear, LinearModes::Two(_));
-    let expansion = match has_letters || is_two {
-        true => {
-            let round = |number: &Rational| rounded_fraction(number, DIGITS);
-            let tidy = |element: &Polynomial| match rounded {
-                true => element.map(round),
-                false => element.clone(),
-            };
-            let element = |polynomial: &Polynomial| polynomial.clone();
-            let request = Request {
-                ring: POLYNOMIALS,
-                element: &element,
-                tidy: &tidy,
-                number,
-                square: &mode.square,
-                basis: &basis,
-                force,
-                order: order as usize,
-                amplitude: options.amplitude,
-                supervision: options.supervision,
-            };
-            request.expand(&mut |harmonic| inverses.of(harmonic))?
+    let mut inverse_of = |harmonic| inverses.of(harmonic);
+    let expansion = match has_letters || matches!(linear, LinearModes::Two(_)) {
+        true => OverRing {
+            question: &question,
+            ring: POLYNOMIALS,
+            element: &Polynomial::clone,
+            tidy: &|element| element.map(round),
         }
-        false => {
-            let tidy = |element: &Rational| match rounded {
-                true => rounded_fraction(element, DIGITS),
-                false => element.clone(),
-            };
-            let element =
-                |polynomial: &Polynomial| polynomial.as_number().unwrap_or_else(Rational::zero);
-            let request = Request {
+        .expand(&mut inverse_of)?,
+        false => in_polynomials(
+            OverRing {
+                question: &question,
                 ring: Rationals,
-                element: &element,
-                tidy: &tidy,
-                number,
-                square: &mode.square,
-                basis: &basis,
-                force,
-                order: order as usize,
-                amplitude: options.amplitude,
-                supervision: options.supervision,
-            };
-            in_polynomials(request.expand(&mut |harmonic| inverses.of(harmonic))?)
-        }
+                element: &|number| number.as_number().unwrap_or_else(Rational::zero),
+                tidy: &round,
+            }
+            .expand(&mut inverse_of)?,
+        ),
     };
     let definitions: Vec<Definition> =
         known.into_iter().chain(std::mem::take(&mut inverses.definitions)).collect();

@@ -44,12 +44,7 @@ pub(super) struct Expansion<R: Ring> {
 }
 
 /// The question of an expansion.
-pub(super) struct Request<'a, R: Ring> {
-    pub(super) ring: R,
-    /// A coefficient in the ring.
-    pub(super) element: &'a dyn Fn(&Polynomial) -> R::Element,
-    /// What is done to each new coefficient: nothing, or rounding.
-    pub(super) tidy: &'a dyn Fn(&R::Element) -> R::Element,
+pub(super) struct Question<'a> {
     /// The number of the mode, for refusals.
     pub(super) number: usize,
     /// lambda.
@@ -62,6 +57,16 @@ pub(super) struct Request<'a, R: Ring> {
     pub(super) supervision: Supervision,
 }
 
+/// An expansion over a ring.
+pub(super) struct OverRing<'a, R: Ring> {
+    pub(super) question: &'a Question<'a>,
+    pub(super) ring: R,
+    /// A coefficient in the ring.
+    pub(super) element: &'a dyn Fn(&Polynomial) -> R::Element,
+    /// What is done to each new coefficient: nothing, or rounding.
+    pub(super) tidy: &'a dyn Fn(&R::Element) -> R::Element,
+}
+
 /// A term of f with its factors: a product of powers of the motion, and its power of omega^2.
 struct Factors<R: Ring> {
     coefficient: FourierSeries<R>,
@@ -69,7 +74,7 @@ struct Factors<R: Ring> {
     product: SeriesNode,
 }
 
-impl<R: Ring> Request<'_, R> {
+impl<R: Ring> OverRing<'_, R> {
     /// Computes the orders, those that are reached if it is interrupted.
     ///
     /// # Errors
@@ -79,14 +84,14 @@ impl<R: Ring> Request<'_, R> {
         inverse_of: &mut dyn FnMut(usize) -> Option<HarmonicInverse>,
     ) -> Result<Expansion<R>, ModeError> {
         let ring = &self.ring;
-        let count = self.force.len();
+        let count = self.question.force.len();
         let vector = |entries: &[Polynomial]| -> Vec<R::Element> {
             entries.iter().map(self.element).collect()
         };
         let rows = |rows: &[Vec<Polynomial>]| -> Vec<Vec<R::Element>> {
             rows.iter().map(|row| vector(row)).collect()
         };
-        let basis = self.basis;
+        let basis = self.question.basis;
         let (shape, left) = (vector(&basis.shape), vector(&basis.left));
         let [coordinates, projection, mass] =
             [&basis.coordinates, &basis.projection, &basis.mass].map(|of| rows(of));
@@ -103,14 +108,14 @@ impl<R: Ring> Request<'_, R> {
             })
             .collect();
         let mut found = Expansion {
-            frequency_squared: vec![(self.element)(self.square)],
+            frequency_squared: vec![(self.element)(self.question.square)],
             motion: vec![self.applied(&coordinates, &first)],
         };
         let mut unknowns = vec![first];
         let mut inverses: Vec<Option<HarmonicInverse>> = Vec::new();
-        self.supervision.progress.begin(self.order);
-        for order in 2..=self.order + 1 {
-            if order > 2 && self.supervision.interrupt.is_requested() {
+        self.question.supervision.progress.begin(self.question.order);
+        for order in 2..=self.question.order + 1 {
+            if order > 2 && self.question.supervision.interrupt.is_requested() {
                 break;
             }
             // The last order of all series is that of q_(n-1) and W_(n-2).
@@ -160,7 +165,7 @@ impl<R: Ring> Request<'_, R> {
                     cosines[harmonic] = (self.tidy)(&self.dot(&vector(row), &force));
                 }
             }
-            if self.amplitude == AmplitudeConvention::Initial {
+            if self.question.amplitude == AmplitudeConvention::Initial {
                 self.move_start(&mut cosines, &shape, &coordinates);
             }
             let next: Vec<FourierSeries<R>> = cosines
@@ -169,7 +174,7 @@ impl<R: Ring> Request<'_, R> {
                 .collect();
             found.motion.push(self.applied(&coordinates, &next));
             unknowns.push(next);
-            self.supervision.progress.advance();
+            self.question.supervision.progress.advance();
         }
         Ok(found)
     }
@@ -196,14 +201,18 @@ impl<R: Ring> Request<'_, R> {
             let product =
                 nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
             let degree = term.degree();
-            if let Some(needed) = (self.order + 1).checked_sub(degree) {
+            if let Some(needed) = (self.question.order + 1).checked_sub(degree) {
                 convolutions.require(product, needed);
             }
             let coefficient = (self.element)(&term.coefficient);
             let coefficient = FourierSeries::constant(self.ring.clone(), coefficient);
             Some(Factors { coefficient, degree, product })
         };
-        self.force.iter().map(|terms| terms.iter().filter_map(&mut factor).collect()).collect()
+        self.question
+            .force
+            .iter()
+            .map(|terms| terms.iter().filter_map(&mut factor).collect())
+            .collect()
     }
 
     /// `r_n`, of each unknown, without what `W_(n-1)` adds.
@@ -271,7 +280,7 @@ impl<R: Ring> Request<'_, R> {
         match self.ring.is_certainly_zero(&(self.tidy)(&self.dot(&left, force))) {
             true => Ok(()),
             false => Err(ModeError::InternalResonance {
-                number: self.number,
+                number: self.question.number,
                 other: other + 1,
                 ratio: harmonic,
                 order,

@@ -133,6 +133,16 @@ fn one_mode<'a>(
     let others = others.filter(|(index, _)| *index != mode.along);
     blocks.extend(others.map(|(_, (name, line))| law(Expr::from(*name), mode.ordered(line))));
     blocks.extend(mode.definitions.iter().map(Block::Definition));
+    blocks.extend(mode.near.iter().map(|near| {
+        let times = if near.ratio == 1 { String::new() } else { format!("{}*", near.ratio) };
+        Block::Note(format!(
+            "near internal resonance: the frequency of mode {} is within {} % of {times}{FREQUENCY}; a divisor is small, and the formula is good for \
+             small {} alone",
+            near.other,
+            significant(50.0 * near.distance.abs(), 2),
+            mode.amplitude.symbol()
+        ))
+    }));
     blocks.extend(judged.map(|judged| match judged {
         Ok(judged) => Block::Facts(facts(judged)),
         Err(reason) => Block::Note(reason.clone()),

@@ -369,6 +369,17 @@ fn resonance_is_refused_where_it_is_one() {
     assert_eq!(divisor.map(|own| own.meaning.to_string()), Some("-8 + 2*k".to_owned()));
 }
 
+/// `omega_2 = 3.1 omega_1`: the third harmonic has a small divisor, and it is said.
+#[test]
+fn near_resonance_is_said() {
+    let found = modes_of("x'' + x + x^3 + x*y/9 = 0; y'' + 961*y/100 + x^3 = 0", &to_order(4));
+    let near = &formulas(&found)[0].near;
+    assert_eq!(near.iter().map(|near| (near.other, near.ratio)).collect::<Vec<_>>(), [(2, 3)]);
+    assert!((near[0].distance - (9.61 / 9.0 - 1.0)).abs() < 1e-12, "{near:?}");
+    let far = modes_of(PAIR, &to_order(4));
+    assert!(formulas(&far).iter().all(|mode| mode.near.is_empty()));
+}
+
 #[test]
 fn what_has_no_modes_says_why() {
     for (equations, words) in [

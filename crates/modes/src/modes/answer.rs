@@ -5,7 +5,7 @@ use num_traits::Zero;
 use super::expansion::{Expansion, OverRing, Question};
 use super::free_system::ForceTerm;
 use super::inverse::HarmonicInverses;
-use super::linear::{DIGITS, LinearMode, LinearModes};
+use super::linear::{DIGITS, LinearMode, LinearModes, NearResonance};
 use super::modal_line::modal_lines;
 use super::{FreeSystem, ModeError};
 use crate::decimal::rounded_fraction;
@@ -99,6 +99,9 @@ pub struct NonlinearMode {
     pub along: usize,
     /// Each coordinate as a function of that one and of the amplitude.
     pub lines: Vec<Polynomial>,
+    /// The other modes whose frequency is near a multiple that occurs in the motion, where the roots are
+    /// numbers.
+    pub near: Vec<NearResonance>,
     /// Symbols that the formulas introduce; each may use those before it.
     pub definitions: Vec<Definition>,
     /// Whether the coefficients are rounded to fifteen digits, because the linear frequency is no
@@ -212,7 +215,14 @@ fn one_mode(
     };
     let definitions: Vec<Definition> =
         known.into_iter().chain(std::mem::take(&mut inverses.definitions)).collect();
-    Ok(in_amplitude(system, expansion, number, mode, definitions, rounded, options))
+    let mut found = in_amplitude(system, expansion, number, mode, definitions, rounded, options);
+    let occurs = |near: &NearResonance| {
+        let mut harmonics = found.motion.iter().map(|series| series.cosine(near.ratio));
+        harmonics.any(|harmonic| !harmonic.is_zero())
+    };
+    let near = linear.near_resonances(number - 1, order as usize + 1);
+    found.near = near.into_iter().filter(occurs).collect();
+    Ok(found)
 }
 
 /// The orders with polynomials as coefficients.
@@ -281,6 +291,7 @@ fn in_amplitude(
             .collect(),
         along,
         lines: rounded_all(&lines),
+        near: vec![],
         definitions: vec![],
         rounded,
     };

@@ -15,7 +15,7 @@ use super::expansion::Basis;
 use super::matrix::{self, Matrix};
 use super::{FreeSystem, ModeError};
 use crate::decimal::{rounded_fraction, significant, significant_fraction};
-use crate::exact::rational::{from_f64, ratio};
+use crate::exact::rational::{from_f64, ratio, to_f64};
 use crate::exact::real_roots::{derivative, positive_roots, remainder};
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
@@ -36,6 +36,17 @@ pub(super) struct LinearMode {
     pub(super) left: Vec<Polynomial>,
     /// `1/(u^T M v)`.
     pub(super) inverse_mass: Polynomial,
+}
+
+/// A frequency that is near a multiple of that of a mode: the divisor is small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearResonance {
+    /// The number of the mode whose frequency it is.
+    pub other: usize,
+    /// The multiple.
+    pub ratio: usize,
+    /// The square of that frequency over the square of the multiple, minus one.
+    pub distance: f64,
 }
 
 /// The linear modes of a system.
@@ -125,6 +136,24 @@ impl LinearModes {
             Self::Numbers(modes) => modes.roots.len(),
             Self::Two(modes) => modes.modes.len(),
         }
+    }
+
+    /// The frequencies of other modes that are near a multiple of that of this mode.
+    pub(super) fn near_resonances(&self, index: usize, highest: usize) -> Vec<NearResonance> {
+        /// Largest relative distance of the squares of two frequencies that are near each other.
+        const NEAR: f64 = 0.1;
+        let Self::Numbers(modes) = self else { return vec![] };
+        let own = to_f64(&modes.roots[index].value);
+        let mut found = Vec::new();
+        for (other, root) in modes.roots.iter().enumerate().filter(|(other, _)| *other != index) {
+            for ratio in (2..=highest).chain([1]) {
+                let distance = to_f64(&root.value) / (own * (ratio * ratio) as f64) - 1.0;
+                if distance != 0.0 && distance.abs() < NEAR {
+                    found.push(NearResonance { other: other + 1, ratio, distance });
+                }
+            }
+        }
+        found
     }
 
     /// Whether the mode of this index has rounded numbers.

@@ -29,3 +29,4 @@ mod modal_line;
 pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;
 pub use free_system::FreeSystem;
+pub use linear::NearResonance;

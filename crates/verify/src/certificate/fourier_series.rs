@@ -349,13 +349,16 @@ impl FourierSeries {
     /// Sine and cosine; `None` if the norm is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
-        let square = argument.squared();
+        let minus_square = argument.squared().negated();
         let terms = self.terms();
-        let (mut sine, mut cosine) = (Self::integer(1), Self::integer(1));
-        for k in (1..=terms / 2).rev() {
-            let one = Self::integer(1);
-            sine = one.difference(&square.product(&sine).divided(2 * k * (2 * k + 1)));
-            cosine = one.difference(&square.product(&cosine).divided(2 * k * (2 * k - 1)));
+        // Both series have the powers of the square: the terms of that of the cosine, each divided
+        // by an odd number, are those of the sine over the argument.
+        let mut term = Self::integer(1);
+        let (mut sine, mut cosine) = (term.clone(), term.clone());
+        for k in 1..=terms / 2 {
+            term = term.product(&minus_square).divided(2 * k * (2 * k - 1));
+            cosine = cosine.sum(&term);
+            sine = sine.sum(&term.divided(2 * k + 1));
         }
         let mut sine = argument.product(&sine).widened(remainder(terms + 3));
         let mut cosine = cosine.widened(remainder(terms + 2));

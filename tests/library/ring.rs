@@ -170,7 +170,6 @@ fn parts<R: Ring>(expansion: &SecularExpansion<R>) -> Vec<(String, FourierSeries
         ("omega^2", &expansion.frequency_squared),
         ("motion", &expansion.displacement),
         ("right side", &right_sides),
-        ("removed", &expansion.removed),
     ];
     let mut parts = Vec::new();
     for (name, series) in lists {

@@ -234,6 +234,12 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     }
     let mut mantissa =
         (value.abs() * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
+    // Each zero at the end needs a factor 2. If too many digits are left even without as many zeros,
+    // they need not be counted. A binary digit is more than 0.301 decimal ones.
+    let halvings = mantissa.halvings().unwrap_or(0) as u64;
+    if 301 * mantissa.bits().saturating_sub(1) / 1000 >= DIGITS as u64 + halvings {
+        return None;
+    }
     while decimals <= 0 && has_factor(&mantissa, &ten) && !mantissa.is_zero() {
         mantissa /= &ten;
         decimals -= 1;
@@ -309,6 +315,29 @@ mod tests {
             Rational::from_integer((-250_000_000_000_000_000_000_i128).into())
         );
         assert_eq!(rounded(0.0), Rational::from_integer(0.into()));
+    }
+
+    #[test]
+    fn long_fractions_of_few_digits() {
+        let ten = Rational::from_integer(10.into());
+        let text = |number: i64, power: i32| {
+            let value = Rational::from_integer(number.into()) * Pow::pow(ten.clone(), power);
+            decimal_of_long_fraction(&value)
+        };
+        assert_eq!(text(1, 30).as_deref(), Some("1e30"));
+        assert_eq!(text(-7, -300).as_deref(), Some("-7e-300"));
+        // All digits that are kept, with as many factors 2 as there are zeros, and with more.
+        for number in [12_345_678_901_234_567_i64, 9_007_199_254_740_992] {
+            let digits = number.to_string();
+            let expected = format!("{}.{}e", &digits[..1], &digits[1..]);
+            for power in [40, 500] {
+                let found = text(number, power).unwrap_or_default();
+                assert_eq!(found, format!("{expected}{}", power as usize + digits.len() - 1));
+            }
+        }
+        assert_eq!(text(123_456_789_012_345_678, 500), None);
+        let two = Rational::from_integer(2.into());
+        assert_eq!(decimal_of_long_fraction(&Pow::pow(two, 3000)), None);
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl Balls {
     }
 
     /// Rounds `units * 2^-places` down; `radius` is added to the rounding error.
-    fn shifted(self, units: &Integer, places: usize, radius: Bound) -> Ball {
+    pub(super) fn shifted(self, units: &Integer, places: usize, radius: Bound) -> Ball {
         let exact = units.halvings().is_none_or(|halvings| halvings >= places);
         Ball {
             middle: units.clone() >> places,
@@ -150,7 +150,8 @@ impl Balls {
             true => Bound::ZERO,
             false => self.size(&ball.middle),
         };
-        radius_of_product([left, right], [size(left, right), size(right, left)])
+        let sizes = [size(left, right), size(right, left)];
+        radius_of_product([left.radius, right.radius], sizes)
     }
 
     /// `left * right`.
@@ -238,14 +239,14 @@ impl Balls {
     }
 }
 
-/// The radius of a product of two balls of one unit, before its middle is rounded, from bounds of the
-/// [sizes of their middles](Balls::size_of_middle): for many products of the same balls.
-pub fn radius_of_product([left, right]: [&Ball; 2], [left_size, right_size]: [Bound; 2]) -> Bound {
-    let own = |ball: &Ball, other: Bound| match ball.radius == Bound::ZERO {
+/// The radius of a product of two balls, before its middle is rounded, from their radii and bounds of
+/// the [sizes of their middles](Balls::size_of_middle).
+pub(super) fn radius_of_product([left, right]: [Bound; 2], sizes: [Bound; 2]) -> Bound {
+    let own = |radius: Bound, size: Bound| match radius == Bound::ZERO {
         true => Bound::ZERO,
-        false => ball.radius * other,
+        false => radius * size,
     };
-    own(left, right_size) + own(right, left_size) + left.radius * right.radius
+    own(left, sizes[1]) + own(right, sizes[0]) + left * right
 }
 
 #[cfg(test)]

@@ -66,6 +66,11 @@ impl Integer {
 
     /// The absolute value in words, the lowest first.
     pub(crate) fn to_words(&self) -> Vec<u64> {
+        if let Ok(short) = i128::try_from(&self.0) {
+            let size = short.unsigned_abs();
+            let count = (u128::BITS - size.leading_zeros()).div_ceil(u64::BITS) as usize;
+            return [size as u64, (size >> u64::BITS) as u64][..count].to_vec();
+        }
         let (_, magnitude) = self.0.clone().into_parts();
         let bytes = magnitude.to_le_bytes();
         let word =

@@ -11,6 +11,7 @@
 //! rounding leaves possible; upper bounds of absolute values are `Bound`s, rounded up.
 
 pub mod ball;
+pub mod ball_products;
 pub mod big_float;
 pub mod bound;
 mod dense_product;

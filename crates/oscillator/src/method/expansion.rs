@@ -267,14 +267,16 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
         })
     };
     let step = |n: usize| {
-        let driven = |series: &'a [FourierSeries<R>]| {
-            n.checked_sub(1)
-                .map_or_else(|| FourierSeries::zero(POLYNOMIALS), |index| exact(&series[index], n))
+        let correction = match n {
+            0 => Polynomial::zero(),
+            _ => constant(&expansion.frequency_squared[n], n),
         };
+        let mut resonance = correction.clone();
+        resonance.negate();
         Step {
             order: n as u32,
-            resonance: driven(&expansion.removed).constant_term(),
-            correction: driven(&expansion.frequency_squared[1..]).constant_term(),
+            resonance,
+            correction,
             conditions: conditions(n, scheme),
             displacement: displacement[n].clone(),
             amplitude: amplitude(n),

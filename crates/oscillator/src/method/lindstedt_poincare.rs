@@ -318,11 +318,10 @@ fn expanded(
         let is_parameter = delta == perturbation.small;
         // The bookkeeping parameter is one if it is not a parameter of the answer.
         let one = Polynomial::constant(One::one());
-        let unmarked =
-            |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
-                (false, Some(unmarked)) => reduced(cycle, unmarked),
-                _ => reduced(cycle, polynomial.clone()),
-            };
+        let unmarked = |polynomial: &Polynomial| {
+            let unmarked = if is_parameter { None } else { polynomial.substitute(delta, &one) };
+            reduced(cycle, unmarked.unwrap_or_else(|| polynomial.clone()))
+        };
         series.change_coefficients(&unmarked);
         if let Some(start) = series.steps.first_mut() {
             let marked = is_parameter.then_some(delta);

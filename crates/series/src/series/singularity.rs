@@ -337,12 +337,11 @@ impl Field for Floats {
     }
 }
 
-/// The polynomials of an approximant: one that vanishes at a singularity, and one for its exponent.
+/// An approximant by its polynomials.
 struct Approximant {
-    /// The polynomial D or P.
-    zero: Vec<BigFloat>,
-    /// The polynomial Q of a differential approximant; empty for a quadratic one.
-    beside: Vec<BigFloat>,
+    kind: ApproximantKind,
+    /// The factors of one, of the series, and of its square or its derivative.
+    factors: [Vec<BigFloat>; 3],
 }
 
 /// Returns the approximants to the orders that lie `below` the highest, each with that difference.
@@ -372,25 +371,9 @@ fn approximants(
     while work.order() < length {
         work.advance();
         if below.contains(&(length - work.order())) {
-            let [p, q, r] = &work.best().factors[..] else {
-                continue;
-            };
-            let approximant = match kind {
-                ApproximantKind::Quadratic => {
-                    let all = usize::MAX;
-                    let mut zero = product(q, q, all);
-                    let four = BigFloat::of_f64(4.0, bits);
-                    for (place, value) in product(p, r, all).iter().enumerate() {
-                        zero.resize(zero.len().max(place + 1), BigFloat::zero(bits));
-                        zero[place] = &zero[place] - &(&four * value);
-                    }
-                    Approximant { zero, beside: vec![] }
-                }
-                ApproximantKind::Differential | ApproximantKind::OfInverseRoot => {
-                    Approximant { zero: r.clone(), beside: q.clone() }
-                }
-            };
-            found.push((length - work.order(), approximant));
+            let factors = work.best().factors.clone().try_into();
+            let approximant = factors.ok().map(|factors| Approximant { kind, factors });
+            found.extend(approximant.map(|own| (length - work.order(), own)));
         }
     }
     found
@@ -552,7 +535,7 @@ fn followed(
         let Some(approximant) = at(below) else {
             continue;
         };
-        for candidate in candidates_of(&approximant.zero, growth) {
+        for candidate in candidates_of(&approximant.polynomial(), growth) {
             if candidates.iter().all(|other| (other - candidate).norm() > MOVES * candidate.norm())
             {
                 candidates.push(candidate);
@@ -572,18 +555,56 @@ const FAST: f64 = 4.0;
 const MOVES: f64 = 0.05;
 
 impl Approximant {
+    /// Returns the polynomial that vanishes at a singularity, D or P.
+    fn polynomial(&self) -> Vec<BigFloat> {
+        let [of_one, of_series, last] = &self.factors;
+        if self.kind != ApproximantKind::Quadratic {
+            return last.clone();
+        }
+        let mut polynomial = product(of_series, of_series, usize::MAX);
+        for (place, value) in product(of_one, last, usize::MAX).iter().enumerate() {
+            polynomial.resize(polynomial.len().max(place + 1), BigFloat::zero(value.bits()));
+            polynomial[place] = &polynomial[place] - &value.shifted(2);
+        }
+        polynomial
+    }
+
+    /// Returns the first Taylor coefficients of that polynomial about a place; those of D follow
+    /// from those of its factors with fewer products than its own coefficients.
+    fn derivatives<const COUNT: usize>(&self, place: &Complex) -> [Complex; COUNT] {
+        let [of_one, of_series, last] = &self.factors;
+        if self.kind != ApproximantKind::Quadratic {
+            return derivatives(last, place);
+        }
+        let [p, q, r]: [[Complex; COUNT]; 3] =
+            [of_one, of_series, last].map(|factor| derivatives(factor, place));
+        std::array::from_fn(|k| {
+            let zero = Complex::from_complex64(Complex64::default(), place.re.bits());
+            (0..=k).fold(zero, |sum, i| {
+                let product = &p[i] * &r[k - i];
+                let four = Complex { re: product.re.shifted(2), im: product.im.shifted(2) };
+                &sum + &(&(&q[i] * &q[k - i]) - &four)
+            })
+        })
+    }
+
     /// Returns the zero to which Newton's iteration leads from a place near it; `None` if the
     /// iteration moves away, or if another zero is close, which is typical of a point that is not a
     /// branch point.
     fn zero_near(&self, start: &Complex) -> Option<Zero> {
         const ITERATIONS: usize = 60;
         const APART: f64 = 1e-3;
+        /// Largest number of binary digits that a step of the iteration tells to be right.
+        const DIGITS: usize = 900;
         let bits = start.re.bits();
         let size = start.to_f64().norm();
+        // The error after a step is some square of it: with a third of the digits it is beyond what
+        // any two approximants agree in.
+        let enough = 2.0_f64.powi(-(DIGITS.min(bits / 3) as i32)) * size;
         let mut place = start.clone();
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let [value, slope, _] = derivatives(&self.zero, &place);
+            let [value, slope] = self.derivatives(&place);
             if value.squared_size().is_zero() {
                 last = 0.0;
                 break;
@@ -596,17 +617,17 @@ impl Approximant {
             }
             place = &place - &step;
             last = length;
-            if place.distance(start) > MOVES * size || length == 0.0 {
+            if place.distance(start) > MOVES * size || length <= enough {
                 break;
             }
         }
-        let [_, slope, bend] = derivatives(&self.zero, &place);
+        let [_, slope, bend] = self.derivatives(&place);
         let settled = place.distance(start) <= MOVES * size && last < 1e-9 * size;
         let apart = 2.0 * slope.divided_by(&bend).to_f64().norm() > APART * size
             || bend.squared_size().is_zero();
         (settled && apart).then(|| Zero {
-            exponent: (!self.beside.is_empty()).then(|| {
-                let [value, ..] = derivatives(&self.beside, &place);
+            exponent: (self.kind != ApproximantKind::Quadratic).then(|| {
+                let [value] = derivatives(&self.factors[1], &place);
                 -value.divided_by(&slope).to_f64()
             }),
             place: if start.im.is_zero() {
@@ -618,13 +639,15 @@ impl Approximant {
     }
 }
 
-/// Returns the value, the slope and half of the second derivative of a polynomial.
-fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
+/// Returns the first Taylor coefficients of a polynomial about a place: the value, the slope, half of
+/// the second derivative.
+fn derivatives<const COUNT: usize>(polynomial: &[BigFloat], place: &Complex) -> [Complex; COUNT] {
     let zero = Complex::from_complex64(Complex64::default(), place.re.bits());
-    let mut found = [zero.clone(), zero.clone(), zero];
+    let mut found = std::array::from_fn(|_| zero.clone());
     for coefficient in polynomial.iter().rev() {
-        found[2] = &(&found[2] * place) + &found[1];
-        found[1] = &(&found[1] * place) + &found[0];
+        for order in (1..COUNT).rev() {
+            found[order] = &(&found[order] * place) + &found[order - 1];
+        }
         found[0] = &found[0] * place;
         found[0].re = &found[0].re + coefficient;
     }

@@ -6,9 +6,8 @@
 
 use crate::exact::Integer;
 use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball_products::{BallFactor, BallProductSums};
 use crate::exact::bound::Bound;
-
-use super::fourier_series::WORKING;
 
 /// The precision in which the product of inverse and derivative is computed: only its distance from
 /// the identity counts.
@@ -17,10 +16,10 @@ pub(super) const SHORT: Balls = Balls { bits: 80 };
 /// The approximate inverse on a number and the harmonics of the block, which has the weight sigma
 /// in the norm and the first row.
 pub(super) struct Inverse {
-    /// Its entries in full, row by row.
-    pub(super) entries: Vec<Vec<Ball>>,
-    /// The entries rounded to the precision of [`SHORT`].
-    pub(super) short: Vec<Vec<Ball>>,
+    /// Its entries, row by row.
+    entries: Vec<Vec<BallFactor>>,
+    /// The number of binary digits that they have after the point.
+    bits: usize,
     /// The weight of the first row.
     pub(super) sigma: Bound,
 }
@@ -28,12 +27,27 @@ pub(super) struct Inverse {
 impl Inverse {
     /// Takes entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
     pub(super) fn from_entries(entries: &[Vec<Integer>], bits: usize, sigma: i32) -> Self {
-        let rows = |balls: Balls| {
-            let row =
-                |row: &Vec<Integer>| row.iter().map(|entry| balls.dyadic(entry, bits)).collect();
-            entries.iter().map(row).collect()
-        };
-        Self { entries: rows(WORKING), short: rows(SHORT), sigma: Bound::power_of_two(sigma) }
+        let balls = Balls { bits };
+        let entry = |entry| BallFactor::new(balls, &balls.dyadic(entry, bits));
+        let entries = entries.iter().map(|row| row.iter().map(entry).collect()).collect();
+        Self { entries, bits, sigma: Bound::power_of_two(sigma) }
+    }
+
+    /// The image of a vector, each of its sums rounded once.
+    pub(super) fn image(&self, vector: &[Ball], balls: Balls) -> Vec<Ball> {
+        let occurring = vector.iter().enumerate().filter(|(_, number)| !number.is_zero());
+        let vector: Vec<(usize, BallFactor)> =
+            occurring.map(|(column, number)| (column, BallFactor::new(balls, number))).collect();
+        let factors = self.entries.iter().flatten().chain(vector.iter().map(|(_, number)| number));
+        let mut sums = BallProductSums::new(self.entries.len(), factors);
+        for (row, entries) in self.entries.iter().enumerate() {
+            for (column, number) in &vector {
+                if let Some(entry) = entries.get(*column) {
+                    sums.add(entry, number, [(row, false)]);
+                }
+            }
+        }
+        sums.rounded(balls, self.bits)
     }
 
     /// The norm of a vector on the number and the harmonics of the block.
@@ -44,14 +58,14 @@ impl Inverse {
 
     /// The norm of a column.
     pub(super) fn norm_of_column(&self, column: usize) -> Bound {
-        let column: Vec<Ball> = self.entries.iter().map(|row| row[column].clone()).collect();
-        self.norm(&column, WORKING)
+        let rows = self.entries.iter().enumerate();
+        rows.map(|(row, entries)| self.weight(row) * entries[column].magnitude()).sum()
     }
 
     /// Norm of `A c - e_place` for a column `c` of the derivative, A this inverse and `e_place` the
     /// unit vector (zero for `None`): how far A maps the column away from the unit column.
     pub(super) fn distance_from_unit(&self, column: &[Ball], place: Option<usize>) -> Bound {
-        let mut image = image(&self.short, column, SHORT);
+        let mut image = self.image(column, SHORT);
         if let Some(place) = place {
             image[place] = SHORT.difference(&image[place], &SHORT.integer(1));
         }
@@ -61,17 +75,4 @@ impl Inverse {
     fn weight(&self, row: usize) -> Bound {
         if row == 0 { self.sigma } else { Bound::exactly(1.0) }
     }
-}
-
-/// A matrix times a vector, each sum rounded once.
-pub(super) fn image(matrix: &[Vec<Ball>], vector: &[Ball], balls: Balls) -> Vec<Ball> {
-    let row = |row: &Vec<Ball>| {
-        let (mut units, mut radius) = (Integer::default(), Bound::ZERO);
-        for (entry, number) in row.iter().zip(vector).filter(|(_, number)| !number.is_zero()) {
-            units += &entry.middle * &number.middle;
-            radius += balls.radius_of_product(entry, number);
-        }
-        balls.rounded(&units, radius)
-    };
-    matrix.iter().map(row).collect()
 }

@@ -20,7 +20,8 @@ use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use super::law;
 use super::radii_polynomial::{NotProved, Proof};
 use super::{Certificate, Certified, CheckError, HIGHEST_HARMONIC};
-use crate::exact::ball::{Ball, Balls, radius_of_product};
+use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball_products::{BallFactor, BallProductSums};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
@@ -344,29 +345,25 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
         (false, false) => points + 1,
         (false, true) => points / 2 + 1,
     };
-    // The coefficients and the waves that occur, with their sizes, of which each is asked for again
-    // and again.
-    let sized = |ball: Ball| {
-        let size = BALLS.size_of_middle(&ball);
-        (ball, size)
-    };
+    let factor = |ball: &Ball| BallFactor::new(BALLS, ball);
     let short = parts.map(|balls| {
         let occurring = balls.iter().enumerate().filter(|(_, ball)| !ball.is_zero());
-        let short = occurring.map(|(k, ball)| (k, sized(BALLS.converted(ball, WORKING))));
-        short.collect::<Vec<(usize, (Ball, Bound))>>()
+        let short = occurring.map(|(k, ball)| (k, factor(&BALLS.converted(ball, WORKING))));
+        short.collect::<Vec<(usize, BallFactor)>>()
     });
-    let table: Vec<[(Ball, Bound); 2]> = table.into_iter().map(|waves| waves.map(sized)).collect();
-    let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
+    let table: Vec<[BallFactor; 2]> =
+        table.iter().map(|waves| waves.each_ref().map(factor)).collect();
+    let coefficients = short.iter().flatten().map(|(_, coefficient)| coefficient);
+    let mut values = BallProductSums::new(all, coefficients.chain(table.iter().flatten()));
     for j in 0..all {
-        let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
         for (wave, coefficients) in short.iter().enumerate() {
-            for (k, (coefficient, size)) in coefficients {
-                let (value, size_of_value) = &table[j * k % (2 * points)][wave];
-                units += &coefficient.middle * &value.middle;
-                radius += radius_of_product([coefficient, value], [*size, *size_of_value]);
+            for (k, coefficient) in coefficients {
+                values.add(coefficient, &table[j * k % (2 * points)][wave], [(j, false)]);
             }
         }
-        let value = BALLS.rounded(&units, radius);
+    }
+    let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
+    for value in values.rounded(BALLS, BALLS.bits) {
         lower = lower.max(BALLS.distance_from_zero(&value));
         upper = upper.max(BALLS.magnitude(&value));
     }

@@ -16,10 +16,10 @@
 //! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence
 //! spaces of varying regularity, SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
 
-use num_traits::{Signed as _, Zero};
+use num_traits::Signed as _;
 
-use crate::exact::Integer;
-use crate::exact::ball::{Ball, Balls, radius_of_product};
+use crate::exact::ball::{Ball, Balls};
+use crate::exact::ball_products::{BallFactor, BallProductSums};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::numeric::harmonics::Transform;
@@ -283,38 +283,36 @@ impl FourierSeries {
     /// `self * other`.
     pub(super) fn product(&self, other: &Self) -> Self {
         let length = (self.length() + other.length()).saturating_sub(1);
-        let mut cosines = vec![(Integer::zero(), Bound::ZERO); length];
-        let mut sines = vec![];
+        let all = [&self.cosines, &self.sines, &other.cosines, &other.sines];
+        let all = all.map(|balls| factors(balls));
+        let no_products = |count: usize| {
+            BallProductSums::new(count, all.iter().flatten().map(|(_, factor)| factor))
+        };
+        let [own_cosines, own_sines, other_cosines, other_sines] = &all;
+        let is_even = self.sines.is_empty() && other.sines.is_empty();
+        let mut cosines = no_products(length);
+        let mut sines = no_products(if is_even { 0 } else { length });
         let apart = |i: usize, j: usize| (i.abs_diff(j), i < j);
-        add_products(&mut cosines, &self.cosines, &other.cosines, |i, j| {
+        add_products(&mut cosines, own_cosines, other_cosines, |i, j| {
             [(i + j, false), (i.abs_diff(j), false)]
         });
-        if !self.sines.is_empty() || !other.sines.is_empty() {
-            add_products(&mut cosines, &self.sines, &other.sines, |i, j| {
-                [(i + j, true), (i.abs_diff(j), false)]
-            });
-            sines.resize(length, (Integer::zero(), Bound::ZERO));
-            add_products(&mut sines, &self.sines, &other.cosines, |i, j| {
-                [(i + j, false), apart(i, j)]
-            });
-            add_products(&mut sines, &other.sines, &self.cosines, |i, j| {
-                [(i + j, false), apart(i, j)]
-            });
-            // sin 0 is zero, whatever its coefficient.
-            sines[..length.min(1)].fill((Integer::zero(), Bound::ZERO));
-        }
-        let halved = |(units, radius): (Integer, Bound)| {
-            let whole = WORKING.rounded(&units, radius);
-            WORKING.divided(&whole, 2)
+        add_products(&mut cosines, own_sines, other_sines, |i, j| {
+            [(i + j, true), (i.abs_diff(j), false)]
+        });
+        add_products(&mut sines, own_sines, other_cosines, |i, j| [(i + j, false), apart(i, j)]);
+        add_products(&mut sines, other_sines, own_cosines, |i, j| [(i + j, false), apart(i, j)]);
+        let halved = |doubled: BallProductSums| -> Vec<Ball> {
+            let doubled = doubled.rounded(WORKING, WORKING.bits).into_iter();
+            doubled.map(|ball| WORKING.divided(&ball, 2)).collect()
         };
-        let tails = self.tail * other.norm() + other.tail * self.finite_norm();
-        Self {
-            cosines: cosines.into_iter().map(halved).collect(),
-            sines: sines.into_iter().map(halved).collect(),
-            tail: tails,
-            negligible: self.negligible.min(other.negligible),
+        let (cosines, mut sines) = (halved(cosines), halved(sines));
+        // sin 0 is zero, whatever its coefficient.
+        if let Some(constant) = sines.first_mut() {
+            *constant = Ball::zero();
         }
-        .trimmed()
+        let tails = self.tail * other.norm() + other.tail * self.finite_norm();
+        Self { cosines, sines, tail: tails, negligible: self.negligible.min(other.negligible) }
+            .trimmed()
     }
 
     fn squared(&self) -> Self {
@@ -351,13 +349,16 @@ impl FourierSeries {
     /// Sine and cosine; `None` if the norm is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
-        let square = argument.squared();
+        let minus_square = argument.squared().negated();
         let terms = self.terms();
-        let (mut sine, mut cosine) = (Self::integer(1), Self::integer(1));
-        for k in (1..=terms / 2).rev() {
-            let one = Self::integer(1);
-            sine = one.difference(&square.product(&sine).divided(2 * k * (2 * k + 1)));
-            cosine = one.difference(&square.product(&cosine).divided(2 * k * (2 * k - 1)));
+        // Both series have the powers of the square: the terms of that of the cosine, each divided
+        // by an odd number, are those of the sine over the argument.
+        let mut term = Self::integer(1);
+        let (mut sine, mut cosine) = (term.clone(), term.clone());
+        for k in 1..=terms / 2 {
+            term = term.product(&minus_square).divided(2 * k * (2 * k - 1));
+            cosine = cosine.sum(&term);
+            sine = sine.sum(&term.divided(2 * k + 1));
         }
         let mut sine = argument.product(&sine).widened(remainder(terms + 3));
         let mut cosine = cosine.widened(remainder(terms + 2));
@@ -531,31 +532,23 @@ impl FourierSeries {
     }
 }
 
-/// Adds twice the product of a sum of cosines or sines with another, unrounded, and its radii: that
-/// of the harmonics i and j is that of two others, each of which may be negative.
+/// The balls that are not zero as factors, by harmonic.
+fn factors(balls: &[Ball]) -> Vec<(usize, BallFactor)> {
+    let occurring = balls.iter().enumerate().filter(|(_, ball)| !ball.is_zero());
+    occurring.map(|(k, ball)| (k, BallFactor::new(WORKING, ball))).collect()
+}
+
+/// Adds twice the product of a sum of cosines or sines with another: that of the harmonics i and j
+/// is that of two others, each of which may be negative.
 fn add_products(
-    doubled: &mut [(Integer, Bound)],
-    left: &[Ball],
-    right: &[Ball],
+    doubled: &mut BallProductSums,
+    left: &[(usize, BallFactor)],
+    right: &[(usize, BallFactor)],
     waves: impl Fn(usize, usize) -> [(usize, bool); 2],
 ) {
-    // The size of a ball is asked for in each of its products, and found once.
-    let sized = |balls: &[Ball]| -> Vec<(usize, Ball, Bound)> {
-        let occurring = balls.iter().enumerate().filter(|(_, ball)| !ball.is_zero());
-        occurring.map(|(k, ball)| (k, ball.clone(), WORKING.size_of_middle(ball))).collect()
-    };
-    let right = sized(right);
-    for (i, left, left_size) in sized(left) {
-        for (j, right, right_size) in &right {
-            let product = &left.middle * &right.middle;
-            let radius = radius_of_product([&left, right], [left_size, *right_size]);
-            for (harmonic, negative) in waves(i, *j) {
-                match negative {
-                    true => doubled[harmonic].0 -= &product,
-                    false => doubled[harmonic].0 += &product,
-                }
-                doubled[harmonic].1 += radius;
-            }
+    for (i, left) in left {
+        for (j, right) in right {
+            doubled.add(left, right, waves(*i, *j));
         }
     }
 }

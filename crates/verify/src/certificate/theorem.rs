@@ -21,7 +21,7 @@
 //! Rigorous numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of N^3
 //! products of short integers.
 
-use super::approximate_inverse::{Inverse, SHORT, image};
+use super::approximate_inverse::{Inverse, SHORT};
 use super::force::along;
 use super::fourier_series::{FourierSeries, WORKING};
 use super::radii_polynomial::{Correction, NotProved, Proof, radius};
@@ -279,7 +279,7 @@ impl<'a> BoundData<'a> {
         }
         let mut vector = vec![start];
         vector.extend(self.block.iter().map(|&k| equation(k)));
-        Correction { block: image(&self.inverse.entries, &vector, WORKING), beyond }
+        Correction { block: self.inverse.image(&vector, WORKING), beyond }
     }
 
     /// The norm of `mu` and harmonics.

@@ -96,8 +96,6 @@ pub struct SecularExpansion<R: Ring> {
     pub frequency: Vec<FourierSeries<R>>,
     /// `y_n(tau)`.
     pub displacement: Vec<FourierSeries<R>>,
-    /// The resonant part of `-r_n`, which the frequency had to remove, from order one on.
-    pub removed: Vec<FourierSeries<R>>,
     /// The condition that fixed the amplitude of each `y_n` of a limit cycle, from order one on;
     /// empty if the amplitude is free.
     pub amplitudes: Vec<SecularSine<R>>,
@@ -358,7 +356,6 @@ impl<R: Ring> SecularExpansion<R> {
     /// Empties every list but those of the frequency.
     pub fn forget_motion(&mut self) {
         self.displacement.clear();
-        self.removed.clear();
         self.amplitudes.clear();
     }
 }
@@ -367,20 +364,19 @@ impl SecularExpansion<Integers> {
     /// Returns the expansion with order n moved to order `step * n`, up to `highest`.
     fn spread(self, step: usize, highest: usize) -> Self {
         let zero = || FourierSeries::zero(Integers);
-        let from = |first: usize, series: Vec<FourierSeries<Integers>>| {
+        let spread = |series: Vec<FourierSeries<Integers>>| {
             let mut spread: Vec<_> =
-                if series.is_empty() { vec![] } else { vec![zero(); highest + 1 - first] };
+                if series.is_empty() { vec![] } else { vec![zero(); highest + 1] };
             for (order, own) in series.into_iter().enumerate() {
-                spread[(order + first) * step - first] = own;
+                spread[order * step] = own;
             }
             spread
         };
         // If the amplitude is determined, the first order is damping, and nothing is spread.
         Self {
-            frequency_squared: from(0, self.frequency_squared),
-            frequency: from(0, self.frequency),
-            displacement: from(0, self.displacement),
-            removed: from(1, self.removed),
+            frequency_squared: spread(self.frequency_squared),
+            frequency: spread(self.frequency),
+            displacement: spread(self.displacement),
             amplitudes: self.amplitudes,
         }
     }
@@ -502,7 +498,6 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             frequency_squared: vec![FourierSeries::integer(ring.clone(), 1)],
             frequency: vec![FourierSeries::integer(ring.clone(), 1)],
             displacement: vec![start.clone()],
-            removed: vec![],
             amplitudes: vec![],
         };
         // y_0'' and -y_0 are the same.
@@ -532,9 +527,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         if !resonance.sine.may_be_zero() && self.inverse_slope.is_none() {
             return Err(SecularError::Growth { order });
         }
-        let frequency_squared = resonance.cosine.times(-1);
-        self.result.removed.push(resonance.cosine);
-        self.result.frequency_squared.push(frequency_squared);
+        self.result.frequency_squared.push(resonance.cosine.times(-1));
         self.push_frequency(order)?;
         let displacement = divided(order, self.normalised(particular))?;
         self.push_displacement(order, displacement);

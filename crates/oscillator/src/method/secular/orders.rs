@@ -13,9 +13,7 @@ use crate::series::waves::Wave;
 
 /// One order of the result.
 pub(super) struct ExpansionOrder {
-    /// The common denominator of all coefficients of the motion, in lowest terms.
-    pub denominator: Integer,
-    pub displacement: Vec<Integer>,
+    pub displacement: FourierSeries<Integers>,
     /// The coefficient of `cos tau`, used for limit cycles only.
     pub first_harmonic: Rational,
     pub frequency_squared: Rational,
@@ -24,79 +22,78 @@ pub(super) struct ExpansionOrder {
 
 impl ExpansionOrder {
     /// Converts an order from numbers of fixed width.
-    pub fn of_short(plan: &Plan, order: &fixed_width::FixedWidthOrder) -> Self {
+    pub fn of_short(plan: &Plan, order: usize, own: &fixed_width::FixedWidthOrder) -> Self {
         let constant = |own: ShortFraction| {
             Rational::new_raw(own.numerator().into(), own.denominator().into())
         };
-        let motion = &order.displacement;
+        let motion = &own.displacement;
         let first = match (motion.wave, plan.scheme.amplitude) {
             (Wave::Cosine, AmplitudeKind::Determined) => motion.coefficient(plan.resonant()),
             _ => None,
         };
+        let numerators = motion.numerators().iter().copied().map(Integer::from);
         Self {
-            denominator: motion.denominator().into(),
-            displacement: motion.numerators().iter().copied().map(Integer::from).collect(),
+            displacement: motion_of_order(plan, order, motion.denominator().into(), numerators),
             first_harmonic: first.map_or_else(Rational::zero, constant),
-            frequency_squared: constant(order.frequency_squared),
-            frequency: constant(order.frequency),
+            frequency_squared: constant(own.frequency_squared),
+            frequency: constant(own.frequency),
         }
     }
 }
 
+/// The motion of an order from the numerators of its harmonics over a denominator, in lowest terms.
+pub(super) fn motion_of_order(
+    plan: &Plan,
+    order: usize,
+    denominator: Integer,
+    numerators: impl IntoIterator<Item = Integer, IntoIter: ExactSizeIterator>,
+) -> FourierSeries<Integers> {
+    let numerators = numerators.into_iter();
+    let mut coefficients = Vec::with_capacity(plan.harmonic(numerators.len()));
+    for (index, numerator) in numerators.enumerate() {
+        coefficients.resize(plan.harmonic(index), Integer::zero());
+        coefficients.push(numerator);
+    }
+    let (cosine, sine) = match plan.wave(order) {
+        Wave::Cosine => (coefficients, vec![]),
+        Wave::Sine => (vec![], coefficients),
+    };
+    FourierSeries::in_lowest_terms(Integers, denominator, cosine, sine)
+}
+
 /// The orders as series; `slope` is that of the secular sine in the amplitude.
 pub(super) fn expansion(
-    plan: &Plan,
     orders: Vec<ExpansionOrder>,
     slope: Option<&Rational>,
     extent: ExpansionScope,
 ) -> SecularExpansion<Integers> {
-    let constant = |value: &Rational| match value.is_zero() {
+    let constant = |value: Rational| match value.is_zero() {
         true => FourierSeries::zero(Integers),
-        false => FourierSeries::in_lowest_terms(
-            Integers,
-            value.denom().clone(),
-            vec![value.numer().clone()],
-            vec![],
-        ),
-    };
-    let series = |order: usize, denominator: Integer, numerators: Vec<Integer>| {
-        let mut coefficients = Vec::with_capacity(plan.harmonic(numerators.len()));
-        for (index, numerator) in numerators.into_iter().enumerate() {
-            coefficients.resize(plan.harmonic(index), Integer::zero());
-            coefficients.push(numerator);
+        false => {
+            let (numerator, denominator) = value.into_raw();
+            FourierSeries::in_lowest_terms(Integers, denominator, vec![numerator], vec![])
         }
-        let (cosine, sine) = match plan.wave(order) {
-            Wave::Cosine => (coefficients, vec![]),
-            Wave::Sine => (vec![], coefficients),
-        };
-        FourierSeries::in_lowest_terms(Integers, denominator, cosine, sine)
     };
-    let frequency_squared: Vec<_> =
-        orders.iter().map(|order| constant(&order.frequency_squared)).collect();
-    let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
-    let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
-    let removed = squares.map(|square| constant(&-square)).collect();
-    // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
-    let amplitudes = slope.map_or_else(Vec::new, |slope| {
-        let secular_sine = |own: &ExpansionOrder| SecularSine {
-            sine: constant(&-(&own.first_harmonic * slope)),
-            slope: constant(slope),
-            amplitude: constant(&own.first_harmonic),
-        };
-        orders.iter().skip(1).map(secular_sine).collect()
-    });
     let mut expansion = SecularExpansion {
-        frequency_squared,
-        frequency,
-        displacement: vec![],
-        removed: vec![],
-        amplitudes,
+        frequency_squared: Vec::with_capacity(orders.len()),
+        frequency: Vec::with_capacity(orders.len()),
+        displacement: Vec::with_capacity(orders.len()),
+        amplitudes: vec![],
     };
-    if extent == ExpansionScope::Motion {
-        expansion.removed = removed;
-        let orders = orders.into_iter().enumerate();
-        expansion.displacement =
-            orders.map(|(order, own)| series(order, own.denominator, own.displacement)).collect();
+    for (order, own) in orders.into_iter().enumerate() {
+        // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
+        if let Some(slope) = slope.filter(|_| order > 0) {
+            expansion.amplitudes.push(SecularSine {
+                sine: constant(-(&own.first_harmonic * slope)),
+                slope: constant(slope.clone()),
+                amplitude: constant(own.first_harmonic),
+            });
+        }
+        expansion.frequency_squared.push(constant(own.frequency_squared));
+        expansion.frequency.push(constant(own.frequency));
+        if extent == ExpansionScope::Motion {
+            expansion.displacement.push(own.displacement);
+        }
     }
     expansion
 }

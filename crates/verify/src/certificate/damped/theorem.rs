@@ -61,7 +61,7 @@
 
 use num_traits::Signed as _;
 
-use super::super::approximate_inverse::{Inverse, SHORT, image};
+use super::super::approximate_inverse::{Inverse, SHORT};
 use super::super::force::{NoValue, along, along_all, is_even, is_odd};
 use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::radii_polynomial::{Correction, NotProved, Proof, radius};
@@ -464,10 +464,7 @@ impl<'a> DampedBoundData<'a> {
                 WORKING.sum(&inertia, &self.equations.bent(wave))
             })
             .collect();
-        Correction {
-            block: image(&self.inverse.entries, &vector, WORKING),
-            beyond: beyond.collect(),
-        }
+        Correction { block: self.inverse.image(&vector, WORKING), beyond: beyond.collect() }
     }
 
     /// Y0.
@@ -764,7 +761,7 @@ mod tests {
     ) -> f64 {
         let block = &system.equations.block;
         let vector: Vec<Ball> = block.iter().map(|wave| series.coefficient(*wave)).collect();
-        let mut image = image(&system.inverse.entries, &vector, WORKING);
+        let mut image = system.inverse.image(&vector, WORKING);
         let place = |direction: Option<BasisFunction>| match direction {
             None => Some(0),
             Some(direction) => place_of(system, direction),

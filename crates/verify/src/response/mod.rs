@@ -15,6 +15,7 @@
 //! - [`balance`]: its equations for Fourier coefficients.
 //! - [`continuation`]: the branches.
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
+//!   `multiple_shooting`: a true motion whose disturbances grow too much for a single shot.
 //! - `series`: the motion and the map of a period by Taylor series; `shooting`: branches by that map
 //!   where the force has corners; `free_swing`: the free motion there.
 //! - [`jump`]: motions across dry friction, sticking included; `sticking`: their branches.
@@ -49,6 +50,7 @@ pub mod hopf;
 mod judgement;
 pub mod jump;
 mod melnikov;
+mod multiple_shooting;
 mod narrow;
 mod one_harmonic;
 mod prepared;

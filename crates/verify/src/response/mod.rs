@@ -30,7 +30,7 @@
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
 //!
-//! Branches start where a simulation settles, from rest and from a ring of starts at several values
+//! Branches start where a simulation settles, from rest and from starts all around at several values
 //! of the parameter, where a balance or shooting comes to a motion from a guess, at more values, and
 //! where others cross. So closed and disconnected branches are found as well. Limit cycles are found
 //! by the return map of their turning points, forward and backward in time.

@@ -92,9 +92,9 @@ impl PreparedRequest<'_> {
         /// Largest difference of the true motion, relative to its size; beyond this it is another
         /// motion.
         const OTHER: f64 = 0.3;
-        /// The largest multiplier of a motion that is known from its start: the last digit of that
-        /// times the multiplier is the error at the end of the period.
-        const ONE_SHOT: f64 = 1e8;
+        /// The largest multiplier of a motion that one shot tells: the last digit of its start times
+        /// this is the error at the end of the period, and times this once more that of det M.
+        const ONE_SHOT: f64 = 1e4;
         let is_beside = |truth: &TrueMotion| {
             let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
             (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size

@@ -83,8 +83,7 @@ pub(super) fn motion_in_parts(
             for row in 0..2 {
                 start[row] -= shorter * step[2 * i + row] * sizes[row];
                 let apart = (start[row] - guess[i][row]).abs();
-                // A step without a value is none.
-                if !(apart <= FAR * sizes[row]) {
+                if apart.is_nan() || apart > FAR * sizes[row] {
                     return None;
                 }
             }

@@ -20,7 +20,7 @@ use lindstedt::response::{Branch, ResponseRequest, respond};
 use crate::random::Random;
 
 /// Seeds at which a stable motion was once missing.
-const FOUND: [u64; 3] = [2000059, 3000006, 3000054];
+const FOUND: [u64; 5] = [2000059, 2000184, 3000006, 3000054, 5100064];
 
 /// The restoring force and the drive of an equation `x'' + c x' + f = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]

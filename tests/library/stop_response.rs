@@ -333,3 +333,24 @@ fn a_motion_between_two_stiff_stops_is_followed_past_the_touch_of_both() {
         |branch: &Branch| branch.ends == [BranchEnd::Range; 2] && branch.points.iter().all(is_odd);
     assert!(found.branches.iter().any(through));
 }
+
+/// A branch that could not be followed past the touch of a very stiff stop is met again from beyond,
+/// and is one: the two have been listed side by side, and a simulation from the last point of the first,
+/// at the touch, went elsewhere.
+#[test]
+fn a_branch_that_is_lost_at_a_touch_and_met_from_beyond_is_listed_once() {
+    let equation = "x'' + 0.1*x' + x + 1e6*max(x - 1, 0) = cos(Omega*t)";
+    let found = response(equation, [0.3, 2.5], "");
+    assert_eq!((found.branches.len(), found.unjudged), (1, 0));
+    assert!(found.verdict == Verdict::Pass, "{:?}", found.error);
+    // From one end of the range to the other, through all folds.
+    let points = &found.branches[0].points;
+    let [low, high] = [0, points.len() - 1].map(|index| points[index].parameter);
+    assert_eq!([low.min(high), low.max(high)], [0.3, 2.5]);
+    // det M = exp(-c T), whatever the motion touches.
+    for point in points {
+        let [one, other] = point.multipliers.expect("multipliers");
+        let exact = (-0.1 * std::f64::consts::TAU / point.parameter).exp();
+        assert!(((one * other).re / exact - 1.0).abs() < 1e-6, "{point:?}");
+    }
+}

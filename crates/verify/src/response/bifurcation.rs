@@ -148,9 +148,12 @@ pub fn between(
             let from_is_last = (from.0.parameter - to.0.parameter) * before > 0.0;
             is_corner.then(|| if from_is_last { from.0.clone() } else { to.0.clone() })
         };
-        let Some(node) = part.and_then(beside).or_else(at_corner) else {
+        let Some(mut node) = part.and_then(beside).or_else(at_corner) else {
             continue;
         };
+        // On a crossing the equations have two independent tangents: that of this branch is along the
+        // way from one point to the other.
+        node.tangent = from.0.way_to(to.0);
         // A branch that begins at a crossing turns back there without a fold of its own, but the
         // turn is easier to locate.
         let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);

@@ -122,6 +122,33 @@ impl PreparedRequest<'_> {
         }
     }
 
+    /// Removes the branches from this index on that were lost on the way and lie on another one, which
+    /// was followed from beyond that place.
+    pub(super) fn remove_lost_parts(
+        &self,
+        balance: &DrivenBalance,
+        paths: &mut Vec<BranchPath>,
+        begin: usize,
+    ) {
+        let is_part = |part: &BranchPath| {
+            let count = part.nodes.len();
+            let is_on = |whole: &BranchPath| {
+                whole.nodes.len() > count
+                    && (0..4).all(|quarter| {
+                        let node = &part.nodes[quarter * count / 4];
+                        let known = self.known_motion(balance, std::slice::from_ref(whole), node);
+                        known == Some(KnownMotion::Itself)
+                    })
+            };
+            part.ends.contains(&BranchEnd::Lost) && paths.iter().any(is_on)
+        };
+        let stays: Vec<bool> = { paths.iter().enumerate() }
+            .map(|(index, path)| index < begin || !is_part(path))
+            .collect();
+        let mut stays = stays.into_iter();
+        paths.retain(|_| stays.next().unwrap_or(true));
+    }
+
     /// A branch that begins at a crossing with another one returns from there as its own image:
     /// that half is removed. Shooting may also come to the other branch by a sharp crossing before
     /// that one, where two stops are touched at once.

@@ -54,6 +54,17 @@ impl BranchNode {
         )
     }
 
+    /// The way to another point of the branch, in the unknowns of the tangent.
+    pub(super) fn way_to(&self, other: &Self) -> DVector<f64> {
+        let unknowns = |node: &Self| match node.truth {
+            Some(TrueMotion { start: [x, v], .. }) if node.tangent.len() == 3 => {
+                DVector::from_vec(vec![x, v, node.parameter])
+            }
+            _ => stacked(&node.coefficients, node.parameter),
+        };
+        unknowns(other) - unknowns(self)
+    }
+
     /// dp along the branch: its sign changes at a fold.
     pub fn parameter_slope(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]

@@ -56,11 +56,13 @@ pub struct Driven {
     pub smooth: bool,
 }
 
-/// A motion to be followed: position and velocity at phase zero, the parameter and the duration.
+/// A motion to be followed: position and velocity at a time, the parameter and the duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedStart {
     /// Position and velocity.
     pub start: [f64; 2],
+    /// The time at the start.
+    pub begin: f64,
     /// The parameter.
     pub parameter: f64,
     /// The duration.
@@ -481,7 +483,8 @@ impl Driven {
         let prepared = |motion: &TimedStart| {
             let numbers = [(self.parameter, motion.parameter)].into();
             let solver = solver.as_ref()?.with_numbers(&numbers)?;
-            Some((solver, [0.0, motion.duration], begin(&motion.start)))
+            let times = [motion.begin, motion.begin + motion.duration];
+            Some((solver, times, begin(&motion.start)))
         };
         let prepared: Vec<_> = motions.iter().map(prepared).collect();
         let runs = prepared.iter().flatten();

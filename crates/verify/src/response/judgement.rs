@@ -6,6 +6,7 @@ use nalgebra::Matrix2;
 use super::balance::DrivenBalance;
 use super::continuation::BranchNode;
 use super::cycle::{self, Guess, true_cycle};
+use super::multiple_shooting::motion_in_parts;
 use super::stability::{
     Floquet, MotionGuess, SAMPLES, Settled, SettlingStart, SimulationBudget, TrueMotion,
     checked_orbit, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motions,
@@ -91,22 +92,31 @@ impl PreparedRequest<'_> {
         /// Largest difference of the true motion, relative to its size; beyond this it is another
         /// motion.
         const OTHER: f64 = 0.3;
-        let truth = truth.filter(|truth| {
+        /// The largest multiplier of a motion that one shot tells: the last digit of its start times
+        /// this is the error at the end of the period, and times this once more that of det M.
+        const ONE_SHOT: f64 = 1e4;
+        let is_beside = |truth: &TrueMotion| {
             let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
             (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size
-        });
-        let floquet = truth.map(|truth| truth.floquet);
-        let along = || {
-            // Across a jump only the true motion has multipliers.
-            if self.driven.jumps() > 0 {
-                return None;
-            }
-            let frequency = self.driven.frequency_at(node.parameter);
-            multipliers_along(&self.driven, node.parameter, frequency, |phase| {
-                balance.phase_point_at(&node.coefficients, node.parameter, phase)
-            })
         };
-        (floquet.or_else(along), truth)
+        let truth = truth.filter(is_beside);
+        // Across a jump only the true motion has multipliers.
+        if self.driven.jumps() > 0 || truth.is_some_and(|truth| truth.floquet.largest() <= ONE_SHOT)
+        {
+            return (truth.map(|truth| truth.floquet), truth);
+        }
+        let parameter = node.parameter;
+        let motion = |phase: f64| balance.phase_point_at(&node.coefficients, parameter, phase);
+        let along = || {
+            let frequency = self.driven.frequency_at(parameter);
+            multipliers_along(&self.driven, parameter, frequency, motion)
+        };
+        let floquet = truth.map(|truth| truth.floquet).or_else(along);
+        let in_parts = floquet.and_then(|floquet| {
+            motion_in_parts(&self.driven, (parameter, size), floquet.largest(), motion)
+        });
+        let truth = in_parts.filter(is_beside).or(truth);
+        (truth.map(|truth| truth.floquet).or(floquet), truth)
     }
 
     /// The multipliers and the true motion of a point without drive; the true motion may have

@@ -135,8 +135,14 @@ impl VariationalMotion {
 
 /// Positions at equal steps of a path from time zero, its end left out.
 pub(super) fn positions_on(path: &Path, count: usize) -> Vec<f64> {
+    positions_from(path, 0.0, count)
+}
+
+/// Positions at equal steps of a path that begins at this time, its end left out.
+pub(super) fn positions_from(path: &Path, begin: f64, count: usize) -> Vec<f64> {
+    let part = |index: usize| index as f64 / count as f64;
     let times: Vec<f64> =
-        (0..count).map(|index| index as f64 / count as f64 * path.end()).collect();
+        (0..count).map(|index| begin + part(index) * (path.end() - begin)).collect();
     let mut columns = [Vec::with_capacity(count)];
     path.sample(&times, &mut Vec::with_capacity(count), &mut columns);
     let [positions] = columns;
@@ -160,7 +166,7 @@ pub fn follow(
     /// Largest number of legs of a period, beyond which the motion is given up.
     const MOST: usize = 400;
     if let StopCondition::Time(duration) = until {
-        let motion = TimedStart { start, parameter, duration };
+        let motion = TimedStart { start, begin: 0.0, parameter, duration };
         if let Some(path) = driven.varied_by_series(&[motion]).pop().flatten() {
             return VariationalMotion::from_series(path);
         }

@@ -15,6 +15,7 @@
 //! - [`balance`]: its equations for Fourier coefficients.
 //! - [`continuation`]: the branches.
 //! - [`stability`]: the true motion by shooting, its multipliers; simulations that settle.
+//!   `multiple_shooting`: a true motion whose disturbances grow too much for a single shot.
 //! - `series`: the motion and the map of a period by Taylor series; `shooting`: branches by that map
 //!   where the force has corners; `free_swing`: the free motion there.
 //! - [`jump`]: motions across dry friction, sticking included; `sticking`: their branches.
@@ -29,7 +30,7 @@
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
 //!
-//! Branches start where a simulation settles, from rest and from a ring of starts at several values
+//! Branches start where a simulation settles, from rest and from starts all around at several values
 //! of the parameter, where a balance or shooting comes to a motion from a guess, at more values, and
 //! where others cross. So closed and disconnected branches are found as well. Limit cycles are found
 //! by the return map of their turning points, forward and backward in time.
@@ -49,6 +50,7 @@ pub mod hopf;
 mod judgement;
 pub mod jump;
 mod melnikov;
+mod multiple_shooting;
 mod narrow;
 mod one_harmonic;
 mod prepared;

@@ -17,9 +17,11 @@ use crate::system::LANES;
 /// Number of values of the parameter at which simulations begin.
 const VALUES: u32 = 5;
 
-/// Radii of the rings of starts, relative to the largest motion, and the number of starts on each.
-const RINGS: [f64; 2] = [0.5, 1.3];
-const TURNS: u32 = 4;
+/// Radii of the starts about the origin, relative to the largest motion, and the number of values of
+/// the parameter for each of those above at which simulations begin there: a branch apart from
+/// others may be short, but simulations from many places come to its stable motions.
+const RADII: [f64; 2] = [0.5, 1.3];
+const FINER: u32 = 5;
 
 /// An initial motion of a branch.
 #[derive(Clone, Debug)]
@@ -57,7 +59,7 @@ impl Seed {
 }
 
 impl PreparedRequest<'_> {
-    /// Initial motions: from simulations that settle, from rest and from a ring of starts as large as
+    /// Initial motions: from simulations that settle, from rest and from starts all around as large as
     /// the motions of the first branches, and from guesses of every size; and the simulations that did
     /// not become periodic.
     pub(super) fn seeds(&self, harmonics: usize) -> Result<InitialMotions, ResponseError> {
@@ -66,8 +68,8 @@ impl PreparedRequest<'_> {
         }
         let balance = DrivenBalance::new(&self.driven, harmonics);
         let values = self.values_of_search();
-        let rings = if self.driven.undamped { 0 } else { TURNS as usize * RINGS.len() };
-        self.question.progress.begin(values.len() * (1 + rings));
+        let around = if self.driven.undamped { vec![] } else { self.finer_values() };
+        self.question.progress.begin(values.len() + around.len() * RADII.len());
         let mut found = Search {
             motions: InitialMotions::default(),
             budget: self.budget(),
@@ -88,8 +90,8 @@ impl PreparedRequest<'_> {
             found.size = extents.fold(found.size, f64::max);
         }
         if !self.driven.undamped {
-            found.stable = self.stable_on(&balance, &branches, &values);
-            self.search_from_rings(&values, &mut found);
+            found.stable = self.stable_on(&balance, &branches, &around);
+            self.search_around(&around, &mut found);
         }
         found.motions.branches = branches;
         Elsewhere::sort(&mut found.motions.elsewhere);
@@ -135,6 +137,14 @@ impl PreparedRequest<'_> {
             false => f64::from(index) / f64::from(VALUES - 1),
         };
         (0..VALUES).map(|index| low + (high - low) * part(index)).collect()
+    }
+
+    /// The values of the parameter at which simulations begin from all around.
+    fn finer_values(&self) -> Vec<f64> {
+        let [low, high] = self.question.range;
+        let count = FINER * (VALUES - 1);
+        let part = |index: u32| f64::from(index) / f64::from(count);
+        (0..=count).map(|index| low + (high - low) * part(index)).collect()
     }
 
     /// Adds the motions on which simulations from rest settle; returns the motions about the
@@ -195,21 +205,24 @@ impl PreparedRequest<'_> {
         self.add_settled(&without, found);
     }
 
-    /// Adds the motions on which simulations settle from rings in the plane of position and velocity,
-    /// in proportion to the size of the motions that are known.
-    fn search_from_rings(&self, values: &[f64], found: &mut Search) {
+    /// Adds the motions on which simulations settle from places all around in the plane of position
+    /// and velocity, in proportion to the size of the motions that are known.
+    fn search_around(&self, values: &[f64], found: &mut Search) {
+        /// Parts of a turn from one value to the next, which leave no direction out (the golden
+        /// section), and from one radius to the other.
+        const TURNS: [f64; 2] = [0.618_034, 0.5];
         let size = found.size;
-        let ring = |parameter: &f64| {
-            let (parameter, omega) = (*parameter, self.driven.frequency_at(*parameter));
-            let turns = RINGS.iter().flat_map(|radius| (0..TURNS).map(move |turn| (radius, turn)));
-            turns.map(move |(radius, turn)| {
-                let angle = std::f64::consts::TAU * (f64::from(turn) + 0.3) / f64::from(TURNS);
-                let (sine, cosine) = angle.sin_cos();
+        let around = |(index, parameter): (usize, &f64)| {
+            let parameter = *parameter;
+            let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;
+            RADII.iter().enumerate().map(move |(ring, radius)| {
+                let turn = TURNS[0] * index as f64 + TURNS[1] * ring as f64;
+                let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
                 let start = [radius * size * cosine, -radius * size * omega * sine];
                 PlannedSimulation { seed: None, start, parameter }
             })
         };
-        let planned: Vec<PlannedSimulation> = values.iter().flat_map(ring).collect();
+        let planned: Vec<PlannedSimulation> = values.iter().enumerate().flat_map(around).collect();
         for planned in planned.chunks(4 * LANES) {
             if self.question.interrupt.is_requested() {
                 return;

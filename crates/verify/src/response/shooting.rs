@@ -223,6 +223,7 @@ impl PreparedRequest<'_> {
                 self.keep(balance, path, &mut paths);
             }
         }
+        self.remove_lost_parts(balance, &mut paths, known.len());
         for index in known.len()..paths.len() {
             self.mark_mirrored_orbit(balance, &mut paths, index);
         }

@@ -167,6 +167,7 @@ pub fn periodic_motions(driven: &Driven, guesses: &[MotionGuess]) -> Vec<Option<
     while !going.is_empty() {
         let motion = |index: &usize| TimedStart {
             start: searches[*index].start(),
+            begin: 0.0,
             parameter: guesses[*index].parameter,
             duration: searches[*index].period(),
         };
@@ -199,7 +200,7 @@ fn followed_together(driven: &Driven, motions: &[TimedStart]) -> Vec<Option<Vari
     let course = |(path, motion): (Option<Path>, &TimedStart)| match path {
         Some(path) => VariationalMotion::from_series(path),
         None => {
-            let &TimedStart { start, parameter, duration } = motion;
+            let &TimedStart { start, parameter, duration, .. } = motion;
             let omega = driven.frequency_at(parameter);
             let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
             follow(driven, start, parameter, StopCondition::Time(duration), &options)
@@ -515,7 +516,7 @@ impl Settling {
     fn next_period(&self, driven: &Driven) -> TimedStart {
         let duration = std::f64::consts::TAU / driven.frequency_at(self.parameter);
         let start = self.states[self.states.len() - 1];
-        TimedStart { start, parameter: self.parameter, duration }
+        TimedStart { start, begin: 0.0, parameter: self.parameter, duration }
     }
 
     /// Takes a period, given by its series if it has one. Returns whether another one follows; a
@@ -559,7 +560,7 @@ impl Settling {
         budget: &mut SimulationBudget,
     ) -> Option<Period> {
         const BOUND: f64 = 1e8;
-        let TimedStart { start: begin, parameter, duration } = self.next_period(driven);
+        let TimedStart { start: begin, parameter, duration, .. } = self.next_period(driven);
         let omega = driven.frequency_at(parameter);
         let size = begin[0].abs().max(begin[1].abs() / omega);
         let settings = options(size, (1e-3 * closely).clamp(1e-13, 1e-6));

@@ -352,6 +352,15 @@ fn folds_in_two_parameters_are_those_at_each_value() {
     }
 }
 
+/// A drive with which a period holds a hundred swings: the search ends, and says that it did.
+#[test]
+fn a_search_without_an_end_is_bounded() {
+    let text = "x'' + x'/10 + x + x^3 - y/5 = 1000000*cos(Omega*t); y'' + y'/10 + 2*y - x/5 = 0";
+    let found = respond(&question(text, "Omega", [0.5, 2.5], "")).expect(text);
+    assert!(found.exhausted && found.is_full() && !found.branches.is_empty());
+    assert_eq!(found.verdict, lindstedt::verify::Verdict::Fail);
+}
+
 /// A pendulum on a cart by its energies and by its equations.
 #[test]
 fn a_mechanism_has_the_response_of_its_equations() {

@@ -436,6 +436,9 @@ pub struct ResponseDiagram {
     pub curves: Vec<BifurcationCurve>,
     /// The numbers of stable motions over both, where a second one was given.
     pub stable_motions: Option<StableMotions>,
+    /// Whether the search for coupled motions ended because it had taken as much work as it may, so that
+    /// branches may be missing or end early, and bifurcations are not listed.
+    pub exhausted: bool,
     /// Whether the computation was completed without an interrupt.
     pub complete: bool,
 }
@@ -572,9 +575,10 @@ impl ResponseDiagram {
         20 * wrong <= all && !self.elsewhere.iter().any(|place| place.periods == Some(1))
     }
 
-    /// Whether there are as many branches as are followed, so that more of them may be missing.
+    /// Whether there are as many branches as are followed, or the search was exhausted, so that more of
+    /// them may be missing.
     pub fn is_full(&self) -> bool {
-        self.branches.len() >= MOST_BRANCHES
+        self.exhausted || self.branches.len() >= MOST_BRANCHES
     }
 
     /// This response with the largest error of its points and simulations, and the verdict on it.

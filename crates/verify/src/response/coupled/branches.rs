@@ -60,14 +60,16 @@ impl Known {
         let known = |index: usize| self.scale.get(index).copied().unwrap_or(0.0);
         travel.iter().enumerate().map(|(index, travel)| travel.max(known(index))).collect()
     }
-
-    /// Whether as many branches are known as are followed.
-    pub(super) fn is_full(&self) -> bool {
-        self.branches.len() >= MOST_BRANCHES
-    }
 }
 
 impl CoupledProblem<'_> {
+    /// Whether no more branches are followed.
+    pub(super) fn is_done(&self, known: &Known) -> bool {
+        known.branches.len() >= MOST_BRANCHES
+            || self.is_exhausted()
+            || self.question.interrupt.is_requested()
+    }
+
     /// The orbit that Newton's method finds near a start, of a motion of its size; searched for
     /// twice where no size of a motion is known.
     pub(super) fn orbit_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
@@ -91,7 +93,7 @@ impl CoupledProblem<'_> {
 
     /// Follows the branch through a start, unless it is known.
     pub(super) fn follow_from(&self, start: &Start, known: &mut Known) {
-        if known.is_full() || self.question.interrupt.is_requested() {
+        if self.is_done(known) {
             return;
         }
         // Newton's method may come to a motion of another order of magnitude, whose period holds
@@ -127,7 +129,8 @@ impl CoupledProblem<'_> {
             .orbits
             .iter()
             .max_by(|one, other| extent(&one.kept).total_cmp(&extent(&other.kept)));
-        let again = largest.filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale));
+        let again = largest
+            .filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale) && !self.is_exhausted());
         let branch = match again.cloned() {
             Some(orbit) => {
                 let scale = known.scale_with(&orbit.kept);
@@ -332,7 +335,7 @@ impl CoupledProblem<'_> {
         let least = AT_REST * extent(&orbit.kept);
         let refused = |orbit: &Orbit| {
             let extent = extent(&orbit.kept);
-            extent > bound || is_cycle && extent < least
+            extent > bound || is_cycle && extent < least || self.is_exhausted()
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
@@ -342,6 +345,7 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Joined => BranchEnd::Crossing,
             OrbitBranchEnd::Lost => BranchEnd::Lost,
             OrbitBranchEnd::Points => BranchEnd::Points,
+            OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused => match last[side] {
                 Some(point) if extent(&point.kept) < 0.1 * bound => BranchEnd::Rest,
                 _ => BranchEnd::Unbounded,
@@ -358,10 +362,7 @@ impl CoupledProblem<'_> {
             let branch = known.branches[index].clone();
             for pair in branch.orbits.windows(2) {
                 let [from, to] = pair else { continue };
-                if from.orientation == to.orientation
-                    || known.is_full()
-                    || self.question.interrupt.is_requested()
-                {
+                if from.orientation == to.orientation || self.is_done(known) {
                     continue;
                 }
                 let scale = known.scale.clone();
@@ -372,7 +373,7 @@ impl CoupledProblem<'_> {
                     crossings.next().map(|(_, at)| orbits.beside_crossing(&at)).unwrap_or_default()
                 });
                 for orbit in beside {
-                    if known.is_full() || self.is_known(&orbit, known) {
+                    if self.is_done(known) || self.is_known(&orbit, known) {
                         continue;
                     }
                     self.push_branch(orbit, branch.anchor, known);
@@ -384,7 +385,7 @@ impl CoupledProblem<'_> {
 
     /// Adds a branch through an orbit of free motions or cycles, unless it is known.
     pub(super) fn add_branch(&self, orbit: Orbit, anchor: Anchor, known: &mut Known) {
-        if known.is_full() || self.is_known(&orbit, known) {
+        if self.is_done(known) || self.is_known(&orbit, known) {
             return;
         }
         self.push_branch(orbit, anchor, known);

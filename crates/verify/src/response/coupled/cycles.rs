@@ -46,7 +46,7 @@ impl CoupledProblem<'_> {
             let parameter = low + (high - low) * (value as f64 + 0.5) / values as f64;
             tried.values += 1;
             for index in 0..starts {
-                if self.question.interrupt.is_requested() {
+                if self.is_done(&known) {
                     break;
                 }
                 tried.starts += 1;

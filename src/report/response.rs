@@ -557,7 +557,13 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     ));
     let mut blocks =
         vec![Block::Heading("judged against the true motion".to_owned()), Block::Facts(facts)];
-    if response.is_full() {
+    if response.exhausted {
+        blocks.push(Block::Sentence(
+            "The search was ended because each point takes long: branches may be missing or end early, and where they change was not \
+             looked for. A shorter range, or a weaker drive, takes less."
+                .to_owned(),
+        ));
+    } else if response.is_full() {
         blocks.push(Block::Sentence(format!(
             "There are {} branches, as many as are followed: others may be missing. A shorter range has fewer.",
             response.branches.len()

@@ -154,6 +154,52 @@ fn a_pair_near_one_to_three() {
     assert!((a.hypot(b) - 0.040_595).abs() < 2e-6);
 }
 
+/// Two masses with dry friction on the smaller one, as tanh (NLvib, example 05): amplitudes of the driven
+/// motion, and the nonlinear mode as the cycles that a negative damping lam of all masses keeps up, by
+/// shooting in another program.
+#[test]
+fn dry_friction_by_tanh_has_its_response_and_its_mode() {
+    let driven = "x''/50 + 40*(x - y) + 5*tanh(20*x') = 0; y'' + 40*(y - x) + 600*y = 8*cos(w*t)";
+    let found = answer(driven, "w", [24.59, 24.6], "");
+    let [point] = at_end(&found)[..] else { panic!("{:?}", at_end(&found)) };
+    let amplitudes: Vec<f64> = point.coordinates.iter().map(|own| own.amplitude).collect();
+    near(&amplitudes, &[0.254_396_36, 0.180_931_07], 1e-7);
+    assert_eq!(point.stable, Some(true));
+    let free = "x''/50 - lam*x'/50 + 40*(x - y) + 5*tanh(20*x') = 0; y'' - lam*y' + 40*(y - x) + 600*y = 0";
+    let found = answer(free, "lam", [0.024, 5.0], "");
+    let [branch] = &found.branches[..] else { panic!("{:?}", found.branches.len()) };
+    let ends = [branch.points.first(), branch.points.last()].map(|point| point.expect("a point"));
+    let [large, small] = match ends[0].parameter == 0.024 {
+        true => ends,
+        false => [ends[1], ends[0]],
+    };
+    assert!((large.frequency - 24.156_219_304_95).abs() < 1e-8, "{large:?}");
+    assert!((large.coordinates[0].start.abs() - 21.052_317).abs() < 1e-5, "{large:?}");
+    assert_eq!((large.stable, small.stable), (Some(false), Some(true)));
+    // The smallest ones begin where the damping of tanh, 5/(1/20), is that of the rest.
+    assert!((small.parameter - 0.024_997_5).abs() < 1e-5 && small.peak < 1e-3, "{small:?}");
+}
+
+/// The three-wave pump of HarmonicBalance.jl, which drives at twice the frequency a spring with square and cube: the
+/// doublings, and both motions of two drive periods at w = 0.98, by shooting in another program.
+#[test]
+fn a_square_pumps_a_motion_of_two_drive_periods() {
+    let text = "x'' + x'/1000 + x + 2*x^2 + x^3 = cos(2*w*t)/200";
+    let request = question(text, "w", [0.98, 1.01], "");
+    let once = respond(&request).expect(text);
+    near(&places(&once, BifurcationKind::PeriodDoubling), &[0.998_398_294, 1.001_578_305], 1e-7);
+    assert_eq!(criticalities(&once, BifurcationKind::PeriodDoubling), [SUB, SUPER]);
+    let twice = respond(&ResponseRequest { periods: 2, ..request }).expect(text);
+    let points = twice.branches.iter().flat_map(|branch| &branch.points);
+    let motions = points.filter(|point| point.parameter == 0.98 && point.amplitude > 0.01);
+    let mut motions: Vec<&SteadyMotion> = motions.collect();
+    motions.sort_by(|one, other| one.amplitude.total_cmp(&other.amplitude));
+    let amplitudes: Vec<f64> = motions.iter().map(|point| point.amplitude).collect();
+    near(&amplitudes, &[0.118_736_575, 0.128_432_144], 2e-6);
+    let sizes = motions.iter().map(|point| point.multipliers.expect("multipliers")[0].norm());
+    near(&sizes.collect::<Vec<_>>(), &[1.070_594_74, 0.996_799_43], 2e-5);
+}
+
 /// Two coupled parametric oscillators (HarmonicBalance.jl): rest and eight motions at w = 1, of
 /// which four are stable; each pair is one motion, shifted by a period of the drive.
 #[test]
@@ -306,6 +352,15 @@ fn folds_in_two_parameters_are_those_at_each_value() {
     }
 }
 
+/// A drive with which a period holds a hundred swings: the search ends, and says that it did.
+#[test]
+fn a_search_without_an_end_is_bounded() {
+    let text = "x'' + x'/10 + x + x^3 - y/5 = 1000000*cos(Omega*t); y'' + y'/10 + 2*y - x/5 = 0";
+    let found = respond(&question(text, "Omega", [0.5, 2.5], "")).expect(text);
+    assert!(found.exhausted && found.is_full() && !found.branches.is_empty());
+    assert_eq!(found.verdict, lindstedt::verify::Verdict::Fail);
+}
+
 /// A pendulum on a cart by its energies and by its equations.
 #[test]
 fn a_mechanism_has_the_response_of_its_equations() {
@@ -358,54 +413,125 @@ fn what_is_asked_wrongly_says_why() {
     }
 }
 
-/// Every stable motion to which simulations of random pairs come is listed.
+/// The criticalities of bifurcations of a kind, in the order of the parameter.
+fn criticalities(found: &ResponseDiagram, kind: BifurcationKind) -> Vec<Option<Criticality>> {
+    let mut all: Vec<_> = found.bifurcations.iter().filter(|place| place.kind == kind).collect();
+    all.sort_by(|one, other| one.parameter.total_cmp(&other.parameter));
+    all.iter().map(|place| place.criticality).collect()
+}
+
+const SUPER: Option<Criticality> = Some(Criticality::Supercritical);
+const SUB: Option<Criticality> = Some(Criticality::Subcritical);
+
+/// A self-excited oscillator beside a driven one, and beside another that goes round its cycle: y = 0
+/// loses its stability at mu = 0. With the damping -(mu - y^2) small motions of y grow to the amplitude
+/// 2 sqrt(mu); with -(mu + y^2 - y^4) they have it for mu < 0, and are unstable.
 #[test]
-fn simulations_of_random_pairs_come_to_listed_motions() {
-    let number = |seed: usize, index: usize| {
-        let root = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0][index % 7].sqrt();
-        ((seed + 1) as f64 * root * (1.0 + (index / 7) as f64)).fract()
-    };
-    for seed in 0..4 {
-        let own = |index: usize, low: f64, high: f64| {
-            ((low + (high - low) * number(seed, index)) * 1e3).round() / 1e3
+fn a_torus_is_born_stable_or_unstable() {
+    let drive = |w: &str| format!("x'' + x'/5 + x = cos({w}*t) + x*y/10");
+    let cycle = "x'' - (1 - x^2)*x'/10 + x = 0";
+    for (other, square, expected) in [
+        (drive("1.3"), 1, SUPER),
+        (drive("1.3"), -1, SUB),
+        (cycle.to_owned(), 1, SUPER),
+        (cycle.to_owned(), -1, SUB),
+        // The multipliers of y are the third roots of one.
+        (drive("3"), 1, Some(Criticality::StronglyResonant)),
+    ] {
+        let damping = if square == 1 { "mu - y^2" } else { "mu + y^2 - y^4" };
+        let text = format!("{other}; y'' - ({damping})*y' + y = x*y/10");
+        let text = if expected == Some(Criticality::StronglyResonant) {
+            text.replace("= x*y/10", "= 0")
+        } else if other == cycle {
+            text.replace("+ y =", "+ 2*y =")
+        } else {
+            text
         };
-        let (k, c, d) = (own(0, 0.5, 3.0), own(1, 0.05, 0.3), own(2, 0.05, 0.3));
-        let (a, b, g, f) =
-            (own(3, 0.0, 1.5), own(4, -0.3, 1.0), own(5, -0.5, 0.5), own(6, 0.1, 1.0));
-        let text = format!(
-            "x'' + {c}*x' + x + {a}*x^3 - ({g})*y = {f}*cos(w*t); y'' + {d}*y' + {k}*y + ({b})*x^2 + y^3/2 - ({g})*x = 0"
-        );
-        let w = 0.6 + 1.6 * number(seed, 7);
-        let found = respond(&question(&text, "w", [0.5, w], "")).expect(&text);
-        let motions = at_end(&found);
-        let rates = |t: f64, [x, y, v, u]: &[f64; 4]| {
-            let first = f * (w * t).cos() - c * v - x - a * x.powi(3) + g * y;
-            [*v, *u, first, -d * u - k * y - b * x * x - 0.5 * y.powi(3) + g * x]
-        };
-        for start in 0..6 {
-            let place = |index: usize| 6.0 * number(100 * seed + start, index) - 3.0;
-            let mut state = [place(0), place(1), place(2), place(3)];
-            let period = std::f64::consts::TAU / w;
-            let options = IntegrationOptions::with_tolerance(1e-9);
-            let mut last = state;
-            for _ in 0..120 {
-                let in_time = |t: f64, y: &[f64; 4], out: &mut [f64; 4]| *out = rates(t, y);
-                let begin = Point { t: 0.0, y: state };
-                let path = integrate_first_order(in_time, begin, period, &[], &options);
-                (last, state) = (state, path.expect("a path").end().y);
-            }
-            let apart = |other: &[f64; 4]| {
-                let each = state.iter().zip(other).map(|(one, other)| (one - other).abs());
-                each.fold(0.0, f64::max)
-            };
-            if apart(&last) > 1e-5 {
-                continue;
-            }
-            let is_listed = motions.iter().any(|point| {
-                let [x, y] = &point.coordinates[..] else { panic!() };
-                apart(&[x.start, y.start, x.rate, y.rate]) < 1e-2
-            });
-            assert!(is_listed, "{text} w = {w} {state:?} {motions:?}");
-        }
+        let found = respond(&question(&text, "mu", [-0.1, 0.1], "")).expect(&text);
+        near(&places(&found, BifurcationKind::NeimarkSacker), &[0.0], 1e-6);
+        assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [expected], "{text}");
     }
+}
+
+/// Beside the Neimark-Sacker points of two masses with cubic springs, integrated here: the square of
+/// the distance of a torus from the motion that repeats itself grows with that from the point.
+#[test]
+fn a_small_torus_surrounds_a_supercritical_point() {
+    let text = "x'' + .002*x' + .013*(x' - y') + x + .0453*(x - y) + x^3 + .0042*(x - y)^3 = .11*cos(w*t); \
+                .05*y'' + .013*(y' - x') + .0453*(y - x) + .0042*(y - x)^3 = 0";
+    let found = answer(text, "w", [1.1, 1.2], "");
+    assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [SUPER; 2]);
+    let spread = |w: f64| {
+        let at = answer(text, "w", [1.1, w], "");
+        let [point] = at_end(&at)[..] else { panic!("{:?}", at_end(&at)) };
+        let [x, y] = &point.coordinates[..] else { panic!() };
+        let centre = [x.start, y.start, x.rate, y.rate];
+        let mut state = centre.map(|value| value + 0.05);
+        let options = IntegrationOptions::with_tolerance(1e-9);
+        let mut farthest = 0.0_f64;
+        for period in 0..1500 {
+            let rates = |t: f64, [x, y, v, u]: &[f64; 4], out: &mut [f64; 4]| {
+                let between = 0.013 * (v - u) + 0.0453 * (x - y) + 0.0042 * (x - y).powi(3);
+                let first = 0.11 * (w * t).cos() - 0.002 * v - between - x - x.powi(3);
+                *out = [*v, *u, first, between / 0.05];
+            };
+            let begin = Point { t: 0.0, y: state };
+            let duration = std::f64::consts::TAU / w;
+            let path = integrate_first_order(rates, begin, duration, &[], &options);
+            state = path.expect("a path").end().y;
+            let apart = state.iter().zip(&centre).map(|(one, other)| (one - other).abs());
+            if period >= 1400 {
+                farthest = farthest.max(apart.fold(0.0, f64::max));
+            }
+        }
+        farthest
+    };
+    let [near, far] = [1.112_711 + 0.002, 1.112_711 + 0.004].map(spread);
+    assert!(near < 0.4 && (1.3..1.6).contains(&(far / near)), "{near} {far}");
+}
+
+/// Cycles of O. E. Roessler's equations, whose first period doubling leads on to chaos (*Phys. Lett.*
+/// 57A (1976) 397), and pitchforks of a cycle in closed form: z = 0 and z^2 = mu, or -mu nearly.
+#[test]
+fn cycles_branch_off_cycles() {
+    let roessler = "x' = -y - z; y' = x + y/5; z' = 1/5 + z*(x - c)";
+    let found = answer(roessler, "c", [2.0, 3.5], "");
+    near(&places(&found, BifurcationKind::PeriodDoubling), &[2.832_445], 1e-5);
+    assert_eq!(criticalities(&found, BifurcationKind::PeriodDoubling), [SUPER]);
+    // The doubled cycle is found by simulations, and once.
+    assert_eq!(found.branches.len(), 2);
+    for (force, expected) in [("mu*z - z^3", SUPER), ("mu*z + z^3 - z^5", SUB)] {
+        let text = format!("x'' - (1 - x^2)*x'/10 + x = 0; z' = {force}");
+        let found = answer(&text, "mu", [-0.1, 0.1], "");
+        near(&places(&found, BifurcationKind::BranchPoint), &[0.0], 1e-6);
+        assert_eq!(criticalities(&found, BifurcationKind::BranchPoint), [expected]);
+    }
+    let lure = answer("x' = y; y' = z; z' = -a*z - y - x + x^2", "a", [0.6, 1.2], "");
+    assert_eq!(criticalities(&lure, BifurcationKind::PeriodDoubling), [SUPER]);
+}
+
+/// Of one coordinate. Motions that grow out of rest in a parametric resonance have larger frequencies if
+/// the spring hardens, smaller ones if it softens: they stand over the unstable frequencies at one edge,
+/// and beyond them at the other.
+#[test]
+fn bifurcations_of_one_coordinate_are_sub_or_supercritical() {
+    for (cubic, expected) in [("+ x^3", [SUPER, SUB]), ("- x^3/5", [SUB, SUPER])] {
+        let text = format!("x'' + x'/100 + (1 - cos(2*w*t)/10)*x {cubic} = 0");
+        let request = question(&text, "w", [0.9, 1.1], "");
+        let once = respond(&request).expect(&text);
+        assert_eq!(criticalities(&once, BifurcationKind::PeriodDoubling), expected);
+        let twice = respond(&ResponseRequest { periods: 2, ..request }).expect(&text);
+        assert_eq!(criticalities(&twice, BifurcationKind::BranchPoint), expected);
+    }
+    for (damping, expected) in [("mu - x^2", SUPER), ("mu + x^2 - x^4", SUB)] {
+        let text = format!("x'' - ({damping})*x' + x = 0");
+        let found = respond(&question(&text, "mu", [-0.5, 0.5], "")).expect(&text);
+        assert_eq!(criticalities(&found, BifurcationKind::Hopf), [expected]);
+    }
+    // The drift of a driven van der Pol oscillator begins at small motions about the locked one (J.
+    // Guckenheimer and P. Holmes, *Nonlinear Oscillations, Dynamical Systems, and Bifurcations of
+    // Vector Fields*, Springer 1983, section 2.1).
+    let text = "x'' - (1 - x^2)*x'/5 + x = F*cos(6*t/5)";
+    let found = respond(&question(text, "F", [0.1, 2.0], "")).expect(text);
+    assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [SUPER]);
 }

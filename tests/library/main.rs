@@ -40,6 +40,7 @@ mod pulses;
 mod quotations;
 mod random;
 mod random_equations;
+mod random_pairs;
 mod random_responses;
 mod ranges;
 mod response;

@@ -75,7 +75,7 @@ ResponsePoint.OPTIONAL = frozenset(['amplitudes', 'energy', 'peaks', 'phases', '
 
 
 #: The side on which motions come off at a bifurcation, and so whether they are stable beside it.
-Criticality: TypeAlias = Literal["subcritical", "supercritical"]
+Criticality: TypeAlias = Literal["subcritical", "supercritical", "strongly-resonant"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

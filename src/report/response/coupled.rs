@@ -163,6 +163,7 @@ fn criticality_in_words(criticality: Criticality) -> &'static str {
     match criticality {
         Criticality::Subcritical => "subcritical",
         Criticality::Supercritical => "supercritical",
+        Criticality::StronglyResonant => "strongly resonant",
     }
 }
 

@@ -14,6 +14,7 @@
 //!   and under any other force from the return to a turning point.
 //! - [`continuation`]: branches of solutions, step by step.
 //! - [`orbit_branch`]: branches of periodic orbits in a parameter, by shooting.
+//! - [`normal_form`]: the cubic term of a map where a pair of its multipliers passes the unit circle.
 //! - [`periodic`]: true periodic orbits by shooting, and their Floquet multipliers.
 //! - [`return_map`]: true limit cycles, from one turning point to the next.
 //!
@@ -23,6 +24,7 @@
 pub mod balance;
 pub mod continuation;
 pub mod harmonics;
+pub mod normal_form;
 pub mod ode;
 pub mod orbit_branch;
 pub mod period;

@@ -273,6 +273,9 @@ pub enum Criticality {
     Subcritical,
     /// They take over the stability of the motion from which they come.
     Supercritical,
+    /// The multipliers of a Neimark-Sacker point are roots of one, of an order up to four: motions of
+    /// that many periods come near, and the cubic terms alone do not decide.
+    StronglyResonant,
 }
 
 /// A curve of bifurcations in two parameters.
@@ -435,6 +438,9 @@ pub struct ResponseDiagram {
     pub curves: Vec<BifurcationCurve>,
     /// The numbers of stable motions over both, where a second one was given.
     pub stable_motions: Option<StableMotions>,
+    /// Whether the search for coupled motions ended because it had taken as much work as it may, so that
+    /// branches may be missing or end early, and bifurcations are not listed.
+    pub exhausted: bool,
     /// Whether the computation was completed without an interrupt.
     pub complete: bool,
 }
@@ -479,12 +485,21 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
     match &question.equations {
         Equations::Coupled(equations) => coupled::respond(question, equations),
         Equations::One(oscillator) => {
-            let response = respond_one(question, oscillator)?;
+            let mut response = respond_one(question, oscillator)?;
+            response.set_hopf_criticality();
+            if response.bifurcations.is_empty() && question.along.is_none() {
+                return Ok(response);
+            }
+            let equations = CoupledEquations::new(question.equations.sides())
+                .map_err(|error| ResponseError::Rates(error.to_string()));
             match question.along {
-                None => Ok(response),
+                None => Ok(match equations {
+                    Ok(equations) => coupled::with_criticality(response, question, &equations),
+                    Err(_) => response,
+                }),
                 Some(_) => {
-                    let equations = CoupledEquations::new(question.equations.sides())
-                        .map_err(|error| ResponseError::Rates(error.to_string()))?;
+                    let equations = equations?;
+                    let response = coupled::with_criticality(response, question, &equations);
                     coupled::with_curves(response, question, &equations)
                 }
             }
@@ -521,6 +536,30 @@ fn respond_one(
 }
 
 impl ResponseDiagram {
+    /// Sets the criticality of the Hopf points of a single coordinate: in a plane the smallest cycles
+    /// are stable where the equilibrium inside them is not.
+    fn set_hopf_criticality(&mut self) {
+        for change in &mut self.bifurcations {
+            let branch =
+                self.branches.get(change.branch).filter(|branch| !branch.points.is_empty());
+            let Some(branch) = branch.filter(|_| change.kind == BifurcationKind::Hopf) else {
+                continue;
+            };
+            let points = &branch.points;
+            let apart = |point: &SteadyMotion| (point.parameter - change.parameter).abs();
+            let begins_here = apart(&points[0]) < apart(&points[points.len() - 1]);
+            let from_here = |index: usize| match begins_here {
+                true => &points[index],
+                false => &points[points.len() - 1 - index],
+            };
+            let moving = (0..points.len()).map(from_here).find(|point| apart(point) > 0.0);
+            change.criticality = moving.and_then(|point| point.stable).map(|stable| match stable {
+                true => Criticality::Supercritical,
+                false => Criticality::Subcritical,
+            });
+        }
+    }
+
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
@@ -538,9 +577,10 @@ impl ResponseDiagram {
         20 * wrong <= all && !self.elsewhere.iter().any(|place| place.periods == Some(1))
     }
 
-    /// Whether there are as many branches as are followed, so that more of them may be missing.
+    /// Whether there are as many branches as are followed, or the search was exhausted, so that more of
+    /// them may be missing.
     pub fn is_full(&self) -> bool {
-        self.branches.len() >= MOST_BRANCHES
+        self.exhausted || self.branches.len() >= MOST_BRANCHES
     }
 
     /// This response with the largest error of its points and simulations, and the verdict on it.

@@ -258,6 +258,7 @@ impl<'a> PreparedRequest<'a> {
             equilibria: vec![],
             curves: vec![],
             stable_motions: None,
+            exhausted: false,
             complete,
         };
         Ok(response.with_verdict())

@@ -60,14 +60,16 @@ impl Known {
         let known = |index: usize| self.scale.get(index).copied().unwrap_or(0.0);
         travel.iter().enumerate().map(|(index, travel)| travel.max(known(index))).collect()
     }
-
-    /// Whether as many branches are known as are followed.
-    pub(super) fn is_full(&self) -> bool {
-        self.branches.len() >= MOST_BRANCHES
-    }
 }
 
 impl CoupledProblem<'_> {
+    /// Whether no more branches are followed.
+    pub(super) fn is_done(&self, known: &Known) -> bool {
+        known.branches.len() >= MOST_BRANCHES
+            || self.is_exhausted()
+            || self.question.interrupt.is_requested()
+    }
+
     /// The orbit that Newton's method finds near a start, of a motion of its size; searched for
     /// twice where no size of a motion is known.
     pub(super) fn orbit_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
@@ -91,7 +93,7 @@ impl CoupledProblem<'_> {
 
     /// Follows the branch through a start, unless it is known.
     pub(super) fn follow_from(&self, start: &Start, known: &mut Known) {
-        if known.is_full() || self.question.interrupt.is_requested() {
+        if self.is_done(known) {
             return;
         }
         // Newton's method may come to a motion of another order of magnitude, whose period holds
@@ -127,11 +129,13 @@ impl CoupledProblem<'_> {
             .orbits
             .iter()
             .max_by(|one, other| extent(&one.kept).total_cmp(&extent(&other.kept)));
-        let again = largest.filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale));
+        let again = largest
+            .filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale) && !self.is_exhausted());
         let branch = match again.cloned() {
             Some(orbit) => {
                 let scale = known.scale_with(&orbit.kept);
-                follow(orbit, &scale)
+                let longer = follow(orbit, &scale);
+                self.down_to_rest(longer, branch)
             }
             None => branch,
         };
@@ -148,12 +152,71 @@ impl CoupledProblem<'_> {
         }
     }
 
+    /// A branch of large cycles or free motions that ends where they are small, with the smaller ones of
+    /// the same branch as it was followed by shorter steps.
+    fn down_to_rest(&self, mut branch: OrbitBranch, small: OrbitBranch) -> OrbitBranch {
+        let n = self.coordinates;
+        let extent = |orbit: &Orbit| orbit.kept[..n].iter().copied().fold(0.0, f64::max);
+        let at_rest = |ends: &[BranchEnd; 2]| ends.iter().position(|end| *end == BranchEnd::Rest);
+        let (Some(side), Some(begin)) = (at_rest(&branch.ends), at_rest(&small.ends)) else {
+            return branch;
+        };
+        let last = branch.orbits.len() - 1;
+        let least = extent(&branch.orbits[if side == 0 { 0 } else { last }]);
+        // From rest on.
+        let reverse = |orbits: Vec<Orbit>| -> Vec<Orbit> {
+            orbits.into_iter().rev().map(Orbit::reversed).collect()
+        };
+        let growing = if begin == 0 { small.orbits } else { reverse(small.orbits) };
+        let smaller: Vec<Orbit> =
+            growing.into_iter().take_while(|orbit| extent(orbit) < least).collect();
+        match side {
+            0 => branch.orbits = smaller.into_iter().chain(branch.orbits).collect(),
+            _ => branch.orbits.extend(reverse(smaller)),
+        }
+        branch
+    }
+
     /// A branch up to the crossing beyond which its motions are images of those before, shifted by
     /// periods of the drive or mirrored.
-    fn cut_at_image(&self, mut branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
-        if !matches!(self.kind, Kind::Driven(_)) {
-            return branch;
+    fn cut_at_image(&self, branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
+        match self.kind {
+            Kind::Driven(_) => self.cut_at_shifted(branch, scale),
+            Kind::SelfExcited => self.cut_at_same(branch, scale),
+            Kind::Free => branch,
         }
+    }
+
+    /// A branch of cycles up to the turn beyond which it has the same cycles, begun elsewhere, or their
+    /// mirror images.
+    fn cut_at_same(&self, mut branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
+        let turns = |pair: &[Orbit]| pair[0].parameter_slope() * pair[1].parameter_slope() < 0.0;
+        let Some(index) = branch.orbits.windows(2).position(turns) else { return branch };
+        let ends = branch.ends;
+        let mut halves = [branch.orbits[..=index].to_vec(), branch.orbits[index + 1..].to_vec()];
+        let longer = usize::from(halves[1].len() > halves[0].len());
+        let shorter = &halves[1 - longer];
+        let middle = shorter[shorter.len() / 2].clone();
+        let half = OrbitBranch {
+            orbits: std::mem::take(&mut halves[longer]),
+            ends: if longer == 0 {
+                [ends[0], BranchEnd::Crossing]
+            } else {
+                [BranchEnd::Crossing, ends[1]]
+            },
+            ..branch.clone()
+        };
+        let known = Known { branches: vec![half], scale: scale.to_vec() };
+        if let Some(Found { mirrored, .. }) = self.find(&middle, &known) {
+            let [half] = known.branches.try_into().unwrap_or_else(|_| [branch.clone()]);
+            branch = OrbitBranch { mirrored: branch.mirrored || mirrored, ..half };
+        }
+        branch
+    }
+
+    /// A branch of driven motions up to the crossing beyond which its motions are images of those
+    /// before.
+    fn cut_at_shifted(&self, mut branch: OrbitBranch, scale: &[f64]) -> OrbitBranch {
         for index in 1..branch.orbits.len() {
             let [from, to] = [&branch.orbits[index - 1], &branch.orbits[index]];
             if from.parameter_slope() * to.parameter_slope() >= 0.0 {
@@ -248,7 +311,7 @@ impl CoupledProblem<'_> {
     }
 
     /// The branch through an orbit, both ways, in the range of the request.
-    pub(super) fn branch_through(
+    fn branch_through(
         &self,
         orbits: &Orbits,
         orbit: Orbit,
@@ -267,13 +330,12 @@ impl CoupledProblem<'_> {
             interrupt: self.question.interrupt,
         };
         let is_cycle = matches!(self.kind, Kind::SelfExcited | Kind::Free);
-        let largest = extent(&orbit.kept);
         // A branch of cycles or of free motions ends at rest, near a Hopf point or a linear mode.
         const AT_REST: f64 = 0.02;
-        let (least, most) = (AT_REST * largest, bound);
+        let least = AT_REST * extent(&orbit.kept);
         let refused = |orbit: &Orbit| {
             let extent = extent(&orbit.kept);
-            extent > most || is_cycle && extent < least
+            extent > bound || is_cycle && extent < least || self.is_exhausted()
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
@@ -283,8 +345,9 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Joined => BranchEnd::Crossing,
             OrbitBranchEnd::Lost => BranchEnd::Lost,
             OrbitBranchEnd::Points => BranchEnd::Points,
+            OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused => match last[side] {
-                Some(point) if extent(&point.kept) < 0.1 * most => BranchEnd::Rest,
+                Some(point) if extent(&point.kept) < 0.1 * bound => BranchEnd::Rest,
                 _ => BranchEnd::Unbounded,
             },
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
@@ -299,10 +362,7 @@ impl CoupledProblem<'_> {
             let branch = known.branches[index].clone();
             for pair in branch.orbits.windows(2) {
                 let [from, to] = pair else { continue };
-                if from.orientation == to.orientation
-                    || known.is_full()
-                    || self.question.interrupt.is_requested()
-                {
+                if from.orientation == to.orientation || self.is_done(known) {
                     continue;
                 }
                 let scale = known.scale.clone();
@@ -313,7 +373,7 @@ impl CoupledProblem<'_> {
                     crossings.next().map(|(_, at)| orbits.beside_crossing(&at)).unwrap_or_default()
                 });
                 for orbit in beside {
-                    if known.is_full() || self.is_known(&orbit, known) {
+                    if self.is_done(known) || self.is_known(&orbit, known) {
                         continue;
                     }
                     self.push_branch(orbit, branch.anchor, known);
@@ -325,7 +385,7 @@ impl CoupledProblem<'_> {
 
     /// Adds a branch through an orbit of free motions or cycles, unless it is known.
     pub(super) fn add_branch(&self, orbit: Orbit, anchor: Anchor, known: &mut Known) {
-        if known.is_full() || self.is_known(&orbit, known) {
+        if self.is_done(known) || self.is_known(&orbit, known) {
             return;
         }
         self.push_branch(orbit, anchor, known);
@@ -439,9 +499,10 @@ impl CoupledProblem<'_> {
                 let is_one =
                     |images: &[Vec<f64>]| images.iter().any(|image| apart(there, image) <= SAME);
                 if by_travel {
-                    let [one, other] = [&solved, orbit].map(|orbit| orbit.unknowns[n]);
+                    // A cycle may be passed several times in the period.
+                    let turns = orbit.unknowns[n] / solved.unknowns[n];
                     let same_period = matches!(self.kind, Kind::Free)
-                        || (one - other).abs() <= SAME * other.abs();
+                        || turns > 0.5 && (turns - turns.round()).abs() <= SAME * turns;
                     if !same_period {
                         continue;
                     }

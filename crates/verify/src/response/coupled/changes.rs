@@ -103,47 +103,9 @@ pub(super) fn changes_between(
     to: &Orbit,
 ) -> Vec<(BifurcationKind, Orbit)> {
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
-    // The number of multipliers outside the unit circle.
-    let outside = |orbit: &Orbit| {
-        let all = problem.multipliers(orbit).unwrap_or_default();
-        all.iter().filter(|value| value.norm() > 1.0).count()
-    };
     let mut found: Vec<(BifurcationKind, Orbit)> = Vec::new();
     for kind in [BranchPoint, Fold, PeriodDoubling, NeimarkSacker] {
-        if matches!(kind, PeriodDoubling | NeimarkSacker) && problem.undamped {
-            continue;
-        }
-        let [before, after] = [from, to].map(|orbit| test(problem, kind, orbit));
-        if before.is_nan() || after.is_nan() || before * after >= 0.0 {
-            continue;
-        }
-        if kind == NeimarkSacker && outside(from).abs_diff(outside(to)) != 2 {
-            continue;
-        }
-        let value = |part: f64| {
-            let orbit = match part {
-                0.0 => Some(from.clone()),
-                1.0 => Some(to.clone()),
-                part => orbits.between(from, to, part),
-            };
-            orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
-        };
-        let part = match kind {
-            BranchPoint => Some(bisect_sign_change(value)),
-            _ => find_root(value, 0.0, 1.0).ok(),
-        };
-        // On a crossing the equations are singular and Newton's method may not converge; an orbit
-        // beside it is near enough.
-        const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
-        let beside = |part: f64| {
-            BESIDE.iter().find_map(|aside| orbits.between(from, to, (part + aside).clamp(0.0, 1.0)))
-        };
-        let Some(mut orbit) = part.and_then(beside) else { continue };
-        if kind == BranchPoint {
-            // On the crossing the equations have two independent tangents: that of this branch is
-            // along the way from one orbit to the other.
-            orbit.tangent = &to.unknowns - &from.unknowns;
-        }
+        let Some(orbit) = change_between(problem, orbits, kind, [from, to]) else { continue };
         // A branch that begins at a crossing turns back there without a fold of its own.
         let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);
         match crossing {
@@ -152,6 +114,62 @@ pub(super) fn changes_between(
         }
     }
     found
+}
+
+/// The orbit of a bifurcation of this kind between two neighbouring orbits.
+pub(super) fn change_between(
+    problem: &CoupledProblem,
+    orbits: &Orbits,
+    kind: BifurcationKind,
+    [from, to]: [&Orbit; 2],
+) -> Option<Orbit> {
+    use BifurcationKind::{BranchPoint, NeimarkSacker, PeriodDoubling};
+    if matches!(kind, PeriodDoubling | NeimarkSacker) && problem.undamped {
+        return None;
+    }
+    let [before, after] = [from, to].map(|orbit| test(problem, kind, orbit));
+    if before.is_nan() || after.is_nan() || before * after >= 0.0 {
+        return None;
+    }
+    // The number of multipliers outside the unit circle.
+    let outside = |orbit: &Orbit| {
+        let all = problem.multipliers(orbit).unwrap_or_default();
+        all.iter().filter(|value| value.norm() > 1.0).count()
+    };
+    if kind == NeimarkSacker && outside(from).abs_diff(outside(to)) != 2 {
+        return None;
+    }
+    let value = |part: f64| {
+        let orbit = match part {
+            0.0 => Some(from.clone()),
+            1.0 => Some(to.clone()),
+            part => orbits.between(from, to, part),
+        };
+        orbit.map_or(f64::NAN, |orbit| test(problem, kind, &orbit))
+    };
+    let part = match kind {
+        BranchPoint => Some(bisect_sign_change(value)),
+        _ => find_root(value, 0.0, 1.0).ok(),
+    }?;
+    // On a crossing the equations are singular and Newton's method may not converge; an orbit
+    // beside it is near enough.
+    const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
+    let mut orbit =
+        BESIDE.iter().find_map(|aside| orbits.between(from, to, (part + aside).clamp(0.0, 1.0)))?;
+    if kind == BranchPoint {
+        // On the crossing the equations have two independent tangents: that of this branch is
+        // along the way from one orbit to the other.
+        orbit.tangent = &to.unknowns - &from.unknowns;
+        // Where the plane in which a cycle begins touches the cycle, the determinant changes its sign
+        // without a crossing.
+        const AT_ONE: f64 = 0.02;
+        let at_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < AT_ONE;
+        let is_cycle = matches!(problem.kind, Kind::SelfExcited);
+        if is_cycle && !problem.multipliers(&orbit)?.iter().any(at_one) {
+            return None;
+        }
+    }
+    Some(orbit)
 }
 
 /// The solution of linear equations; with small singular values left out where they have many.

@@ -46,7 +46,7 @@ impl CoupledProblem<'_> {
             let parameter = low + (high - low) * (value as f64 + 0.5) / values as f64;
             tried.values += 1;
             for index in 0..starts {
-                if self.question.interrupt.is_requested() {
+                if self.is_done(&known) {
                     break;
                 }
                 tried.starts += 1;
@@ -82,12 +82,43 @@ impl CoupledProblem<'_> {
         let guessed = start.unknowns[n];
         let period = orbit.unknowns[n];
         let moves = travel.iter().any(|travel| *travel > 1e-6 * (1.0 + start.unknowns[0].abs()));
-        (moves && period > 0.2 * guessed && period < 5.0 * guessed).then_some(orbit)
+        if !(moves && period > 0.2 * guessed && period < 5.0 * guessed) {
+            return None;
+        }
+        // A simulation that winds about a cycle comes back after some turns of it.
+        let turns = self.turns(&orbit, scale);
+        if turns == 1 {
+            return Some(orbit);
+        }
+        let mut unknowns = orbit.unknowns.as_slice()[..=n].to_vec();
+        unknowns[n] /= turns as f64;
+        self.orbit_near(&Start { parameter: start.parameter, unknowns }, scale, anchor)
+    }
+
+    /// The number of times that an orbit goes round the same cycle in its period.
+    fn turns(&self, orbit: &Orbit, scale: &[f64]) -> usize {
+        const MOST: usize = 12;
+        /// Distance in the sizes of the states below which a state is that of the beginning.
+        const SAME: f64 = 1e-6;
+        let n = self.states.len();
+        let start = &orbit.unknowns.as_slice()[..n];
+        let sizes = self.state_sizes(&orbit.kept, scale);
+        let closes = |turns: &usize| {
+            let period = orbit.unknowns[n] / *turns as f64;
+            let end = self.in_time.end(start, [0.0, period], orbit.parameter(), &sizes);
+            end.is_some_and(|end| {
+                let apart = end.iter().zip(start).zip(&sizes);
+                { apart }.all(|((one, other), size)| (one - other).abs() <= SAME * size)
+            })
+        };
+        (2..=MOST).rev().find(closes).unwrap_or(1)
     }
 
     /// A cycle of small amplitude beside a Hopf point.
     fn small_cycle(&self, point: &HopfPoint) -> Option<(Orbit, Anchor)> {
-        const PARTS: [f64; 4] = [0.02, 0.1, 0.005, 0.4];
+        const PARTS: [f64; 6] = [0.02, 0.1, 0.005, 0.4, 1e-3, 1e-4];
+        /// Ratio of the size of a cycle to that of the guess beyond which it is another one.
+        const OTHER: f64 = 5.0;
         let n = self.states.len();
         let ordinary = point.state.iter().map(|value| value.abs()).fold(0.0, f64::max).max(1.0);
         // The motion of the linear equations begins where the largest coordinate turns.
@@ -119,7 +150,8 @@ impl CoupledProblem<'_> {
             let orbit = self.with_orbits(&[], anchor, |orbits| {
                 orbits.orbit_along(&guess, &direction, &sizes)
             })?;
-            Some((orbit, anchor))
+            let extent = orbit.kept[..self.coordinates].iter().copied().fold(0.0, f64::max);
+            (size / OTHER..size * OTHER).contains(&extent).then_some((orbit, anchor))
         })
     }
 

@@ -10,7 +10,7 @@
 //! which values each state was on the way. A step costs 21 evaluations of the right sides and of
 //! those derivatives that are not zero, s of them, and 21 s n products for the variations.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -43,6 +43,8 @@ pub(super) struct Flow {
     slopes: Vec<(usize, usize)>,
     /// Row of each derivative by the parameter.
     by_parameter: Vec<usize>,
+    /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
+    evaluations: Cell<u64>,
 }
 
 /// The right sides and their derivatives at a state.
@@ -108,6 +110,7 @@ impl Flow {
             varied: CompiledList::new(&varied, &arguments)?,
             slopes,
             by_parameter,
+            evaluations: Cell::new(0),
         })
     }
 
@@ -141,6 +144,15 @@ impl Flow {
         found
     }
 
+    /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
+    pub(super) fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
+    fn count(&self, columns: usize) {
+        self.evaluations.set(self.evaluations.get() + columns as u64);
+    }
+
     fn options(&self, length: f64) -> IntegrationOptions {
         /// Least number of steps where a corner may lie between them.
         const STEPS_WITH_CORNERS: f64 = 100.0;
@@ -162,6 +174,7 @@ impl Flow {
         let n = self.states;
         let memory = RefCell::new((vec![0.0; n + 2], Vec::new()));
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
+            self.count(1);
             let (arguments, scratch) = &mut *memory.borrow_mut();
             for i in 0..n {
                 arguments[i] = scaled[i] * sizes[i];
@@ -192,6 +205,7 @@ impl Flow {
         let memory = RefCell::new((vec![0.0; n + 2], Vec::new(), vec![0.0; count]));
         let bounds = RefCell::new((start.to_vec(), start.to_vec()));
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
+            self.count(1 + width);
             let (arguments, scratch, values) = &mut *memory.borrow_mut();
             let (low, high) = &mut *bounds.borrow_mut();
             for i in 0..n {

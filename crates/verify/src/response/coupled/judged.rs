@@ -264,6 +264,7 @@ impl CoupledProblem<'_> {
         let transform = Transform::new(SAMPLES);
         let count: usize = known.branches.iter().map(|branch| branch.orbits.len()).sum();
         question.progress.begin(count);
+        let exhausted = self.is_exhausted();
         let mut branches = Vec::new();
         let mut bifurcations: Vec<Bifurcation> = Vec::new();
         let size = known.scale.get(..self.coordinates).unwrap_or_default();
@@ -274,7 +275,12 @@ impl CoupledProblem<'_> {
                 points.push(self.motion(orbit, &transform, &known.scale));
                 question.progress.advance();
             }
-            for (kind, orbit, criticality) in self.changes_along(branch, &known.scale) {
+            // Where the search did not come to its end, each of very many bifurcations takes long.
+            let changes = match exhausted {
+                true => vec![],
+                false => self.changes_along(branch, &known.scale),
+            };
+            for (kind, orbit, criticality) in changes {
                 let motion = self.motion(&orbit, &transform, &known.scale);
                 let bifurcation = Bifurcation {
                     kind,
@@ -320,6 +326,7 @@ impl CoupledProblem<'_> {
             equilibria: vec![],
             curves: vec![],
             stable_motions: None,
+            exhausted,
             complete: !question.interrupt.is_requested(),
         }
         .with_verdict()

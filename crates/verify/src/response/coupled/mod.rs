@@ -80,6 +80,27 @@ pub(super) fn with_curves(
     problem.with_curves(response, equations, &known)
 }
 
+/// The response of a single coordinate with the criticality of its bifurcations, where it is known.
+pub(super) fn with_criticality(
+    mut response: ResponseDiagram,
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+) -> ResponseDiagram {
+    // A force that jumps has no map with variations, and says nothing.
+    let Ok(problem) = CoupledProblem::new(question, equations) else { return response };
+    let scale = problem.scale_of(&response);
+    for index in 0..response.bifurcations.len() {
+        if question.interrupt.is_requested() {
+            break;
+        }
+        let change = response.bifurcations[index];
+        if let Some(found) = problem.criticality_among(&response.branches, &change, &scale) {
+            response.bifurcations[index].criticality = Some(found);
+        }
+    }
+    response
+}
+
 impl CoupledProblem<'_> {
     /// A response with the curves of its bifurcations in two parameters, if a second one is given.
     ///

@@ -194,6 +194,15 @@ impl<'a> CoupledProblem<'a> {
         Ok(problem)
     }
 
+    /// Whether the search has taken as much work as it may: of motions with hundreds of swings in a
+    /// period there are many branches, and each point of them takes long.
+    pub(super) fn is_exhausted(&self) -> bool {
+        /// Largest number of evaluations for each motion and variation: some ten seconds of two coordinates.
+        const MOST_WORK: u64 = 100_000_000;
+        let in_phase = self.in_phase.as_ref().map_or(0, Flow::evaluations);
+        self.in_time.evaluations() + in_phase > MOST_WORK
+    }
+
     /// Checks that the frequency of a motion is positive in all of the range.
     fn has_frequency(&self) -> Result<(), ResponseError> {
         let [low, high] = self.question.range;

@@ -1,7 +1,7 @@
 //! The motions from which branches of a driven system start.
 //!
-//! At several values of the parameter: the motion that Newton's method finds from rest; those to
-//! which simulations settle, from rest and from states of every size; and those near guesses of one
+//! At several values of the parameter: the motions to which simulations settle, from rest and from
+//! states of every size; that which Newton's method finds from rest; and those near guesses of one
 //! harmonic. Then the motions that branch off where branches cross. Simulations afterwards show
 //! what was missed.
 
@@ -134,7 +134,6 @@ impl CoupledProblem<'_> {
     pub(super) fn driven_branches(&self, quick: bool) -> Known {
         let n = self.states.len();
         let mut known = Known::default();
-        let interrupt = self.question.interrupt;
         let Effort { values, starts, .. } = Effort::of(n);
         let starts = if quick { 1 } else { starts };
         if !quick {
@@ -145,14 +144,11 @@ impl CoupledProblem<'_> {
                 self.question.progress.advance();
             }
         };
-        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
-        for parameter in self.values(values) {
-            self.follow_from(&rest(parameter), &mut known);
-            advance();
-        }
+        // Simulations come to motions of the size that the drive keeps up, beside which Newton's method may
+        // come to enormous ones.
         for (place, parameter) in self.values(values).into_iter().enumerate() {
             for index in 0..starts {
-                if interrupt.is_requested() || self.undamped {
+                if self.is_done(&known) || self.undamped {
                     break;
                 }
                 let scale = with_size(&known.scale, n);
@@ -166,7 +162,15 @@ impl CoupledProblem<'_> {
             }
             advance();
         }
+        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
         for parameter in self.values(values) {
+            self.follow_from(&rest(parameter), &mut known);
+            advance();
+        }
+        for parameter in self.values(values) {
+            if self.is_done(&known) {
+                break;
+            }
             for unknowns in self.guesses(parameter, &known.scale) {
                 self.follow_from(&Start { parameter, unknowns }, &mut known);
             }
@@ -196,7 +200,7 @@ impl CoupledProblem<'_> {
         let [values, starts] = Effort::of(self.states.len()).checks;
         for (place, parameter) in self.values(values).into_iter().enumerate() {
             for index in 0..starts {
-                if self.question.interrupt.is_requested() {
+                if self.is_exhausted() || self.question.interrupt.is_requested() {
                     return (simulated, elsewhere);
                 }
                 let scale = known.scale.clone();

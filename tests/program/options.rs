@@ -46,6 +46,34 @@ fn text(path: &Path) -> &str {
 }
 
 #[test]
+fn a_mode_is_chosen_by_its_number() {
+    let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+    let numbers = |more: &[&str]| -> Vec<Value> {
+        let document = json(&[&["derive", pair], more].concat());
+        let modes = document["modes"].as_array().expect("modes").iter();
+        modes.map(|mode| mode["number"].clone()).collect()
+    };
+    assert_eq!(numbers(&[]), [1, 2]);
+    assert_eq!(numbers(&["--mode", "2"]), [2]);
+    let initial = json(&["derive", pair, "--mode", "1", "--amplitude", "initial", "--order", "2"]);
+    assert_eq!(initial["modes"][0]["formula"], "omega^2 = 1 + 3*A^2/16");
+    assert_eq!(initial["modes"][0]["order"], 2);
+    for (more, words) in [
+        (&["--mode", "3"][..], "there is no mode 3: there are 2"),
+        (&["--taylor", "3"], "--taylor: it is of one coordinate"),
+        (&["--method", "averaging"], "are derived by lindstedt-poincare"),
+        (&["--steps"], "is not printed order by order"),
+        (&["--format", "python"], "there is no program of the modes"),
+    ] {
+        let output = run(&[&["derive", pair], more].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && message.contains(words), "{more:?}: {message}");
+    }
+    let one = run(&["derive", "duffing", "--mode", "1"]);
+    assert!(String::from_utf8_lossy(&one.stderr).contains("one coordinate has one mode"));
+}
+
+#[test]
 fn the_result_goes_to_the_file_of_output_alone() {
     let folder = folder("output");
     let path = folder.join("result");

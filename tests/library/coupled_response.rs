@@ -321,6 +321,48 @@ fn nonlinear_normal_modes_by_their_frequency() {
     near(&starts, &[2.015_806_37, 0.992_838_60], 1e-7);
 }
 
+/// A. F. Vakakis and R. H. Rand, *Int. J. Non-Linear Mech.* 27 (1992) 861: two equal oscillators whose coupling
+/// vanishes with the amplitude. With y = c x both equations are x'' + x + (1 + K (1 - c)^3) x^3 = 0 if (1 - c^2) (K (1 - c)^2 + c) =
+/// 0: the modes in phase and out of phase, and for K < 1/4 two localised ones, with which the other
+/// loses its stability.
+#[test]
+fn equal_oscillators_have_their_localised_modes() {
+    let text = "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0";
+    for (coupling, stable) in [(0.2_f64, false), (0.3, true)] {
+        let found = answer(text, "omega", [1.0, 1.2], &format!("K = {coupling}"));
+        let motions = at_end(&found);
+        let mut shapes = vec![1.0, -1.0];
+        let root = 1.0 - 4.0 * coupling;
+        if root > 0.0 {
+            let signs = [-1.0, 1.0];
+            shapes.extend(
+                signs.map(|sign| (2.0 * coupling - 1.0 + sign * root.sqrt()) / (2.0 * coupling)),
+            );
+        }
+        assert_eq!(motions.len(), shapes.len(), "{motions:?}");
+        let starts = |point: &SteadyMotion| [0, 1].map(|i| point.coordinates[i].start);
+        let in_phase = motions.iter().map(|point| starts(point)).find(|[x, y]| x * y > 0.0);
+        let amplitude = in_phase.expect("a mode in phase")[0];
+        for c in shapes {
+            let size = 1.0 + coupling * (1.0 - c).powi(3);
+            let is_mode = |point: &&&SteadyMotion| {
+                let [x, y] = starts(point);
+                (y / x - c).abs() < 1e-6
+                    && (x * x * size / (amplitude * amplitude) - 1.0).abs() < 1e-6
+            };
+            let mode = motions.iter().find(is_mode);
+            let mode = mode.unwrap_or_else(|| panic!("{c}: {motions:?}"));
+            closes(mode, 1.0, |_, [x, y, v, u]| {
+                let between = coupling * (x - y).powi(3);
+                [*v, *u, -x - x.powi(3) - between, -y - y.powi(3) + between]
+            });
+            if c == -1.0 {
+                assert_eq!(mode.stable, Some(stable), "{mode:?}");
+            }
+        }
+    }
+}
+
 /// The folds of Duffing's equation along the amplitude of the drive are those of its responses at
 /// single amplitudes.
 #[test]

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::changes::changes_between;
-use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, Travel};
+use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, SMALLEST, Travel};
 use crate::numeric::orbit_branch::{OrbitBranchEnd, OrbitBranchLimits};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
@@ -47,8 +47,8 @@ impl Known {
     /// Adds a branch.
     fn push(&mut self, branch: OrbitBranch) {
         for orbit in &branch.orbits {
-            self.scale.resize(orbit.kept.len(), 0.0);
-            for (scale, travel) in self.scale.iter_mut().zip(&orbit.kept) {
+            self.scale.resize(orbit.kept.travel.len(), 0.0);
+            for (scale, travel) in self.scale.iter_mut().zip(&orbit.kept.travel) {
                 *scale = scale.max(*travel);
             }
         }
@@ -88,7 +88,7 @@ impl CoupledProblem<'_> {
             return Some(first);
         }
         let guess = first.unknowns.rows(0, guess.len()).into_owned();
-        near(&guess, &first.kept)
+        near(&guess, &first.kept.travel)
     }
 
     /// Follows the branch through a start, unless it is known.
@@ -103,7 +103,7 @@ impl CoupledProblem<'_> {
         let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
         let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
         let largest = extent(&known.scale);
-        if largest > 0.0 && extent(&orbit.kept) > ENORMOUS * largest {
+        if largest > 0.0 && extent(&orbit.kept.travel) > ENORMOUS * largest {
             return;
         }
         if self.is_known(&orbit, known) {
@@ -123,17 +123,18 @@ impl CoupledProblem<'_> {
                 self.branch_through(orbits, orbit, scale, anchor)
             })
         };
-        let scale = known.scale_with(&orbit.kept);
+        let scale = known.scale_with(&orbit.kept.travel);
         let branch = follow(orbit, &scale);
         let largest = branch
             .orbits
             .iter()
-            .max_by(|one, other| extent(&one.kept).total_cmp(&extent(&other.kept)));
-        let again = largest
-            .filter(|orbit| extent(&orbit.kept) > LARGER * extent(&scale) && !self.is_exhausted());
+            .max_by(|one, other| extent(&one.kept.travel).total_cmp(&extent(&other.kept.travel)));
+        let again = largest.filter(|orbit| {
+            extent(&orbit.kept.travel) > LARGER * extent(&scale) && !self.is_exhausted()
+        });
         let branch = match again.cloned() {
             Some(orbit) => {
-                let scale = known.scale_with(&orbit.kept);
+                let scale = known.scale_with(&orbit.kept.travel);
                 let longer = follow(orbit, &scale);
                 self.down_to_rest(longer, branch)
             }
@@ -156,7 +157,7 @@ impl CoupledProblem<'_> {
     /// the same branch as it was followed by shorter steps.
     fn down_to_rest(&self, mut branch: OrbitBranch, small: OrbitBranch) -> OrbitBranch {
         let n = self.coordinates;
-        let extent = |orbit: &Orbit| orbit.kept[..n].iter().copied().fold(0.0, f64::max);
+        let extent = |orbit: &Orbit| orbit.kept.travel[..n].iter().copied().fold(0.0, f64::max);
         let at_rest = |ends: &[BranchEnd; 2]| ends.iter().position(|end| *end == BranchEnd::Rest);
         let (Some(side), Some(begin)) = (at_rest(&branch.ends), at_rest(&small.ends)) else {
             return branch;
@@ -249,7 +250,7 @@ impl CoupledProblem<'_> {
     /// periods of the drive; `None` if it is neither.
     fn image_of(&self, from: &Orbit, to: &Orbit, scale: &[f64]) -> Option<bool> {
         let [shifted, mirrored] = self.images(from, scale)?;
-        let sizes = self.state_sizes(&from.kept, scale);
+        let sizes = self.state_sizes(&from.kept.travel, scale);
         let apart = |one: &Vec<f64>| {
             let each = one.iter().zip(to.unknowns.iter()).zip(&sizes);
             each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
@@ -322,7 +323,7 @@ impl CoupledProblem<'_> {
         let n = self.coordinates;
         let extent = |travel: &[f64]| travel[..n].iter().copied().fold(0.0, f64::max);
         let ordinary = scale.get(..n).map_or(0.0, extent);
-        let bound = ENORMOUS * extent(&orbit.kept).max(ordinary);
+        let bound = ENORMOUS * extent(&orbit.kept.travel).max(ordinary);
         let limits = OrbitBranchLimits {
             range: self.question.range,
             longest: LONGEST_STEP,
@@ -332,9 +333,13 @@ impl CoupledProblem<'_> {
         let is_cycle = matches!(self.kind, Kind::SelfExcited | Kind::Free);
         // A branch of cycles or of free motions ends at rest, near a Hopf point or a linear mode.
         const AT_REST: f64 = 0.02;
-        let least = AT_REST * extent(&orbit.kept);
+        // No step leads over rest to the mirror images.
+        const STEPS: f64 = 1.5;
+        let own = extent(&orbit.kept.travel);
+        let step = LONGEST_STEP * SMALLEST * ordinary;
+        let least = (AT_REST * own).max((STEPS * step).min(0.5 * own));
         let refused = |orbit: &Orbit| {
-            let extent = extent(&orbit.kept);
+            let extent = extent(&orbit.kept.travel);
             extent > bound || is_cycle && extent < least || self.is_exhausted()
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
@@ -347,7 +352,7 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Points => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused => match last[side] {
-                Some(point) if extent(&point.kept) < 0.1 * bound => BranchEnd::Rest,
+                Some(point) if extent(&point.kept.travel) < 0.1 * bound => BranchEnd::Rest,
                 _ => BranchEnd::Unbounded,
             },
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
@@ -456,7 +461,7 @@ impl CoupledProblem<'_> {
         const SAME: f64 = 1e-5;
         let (n, parameter) = (self.states.len(), orbit.parameter());
         let [shifted, mirrored] = self.images(orbit, &known.scale)?;
-        let sizes = self.state_sizes(&orbit.kept, &known.scale);
+        let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
         let apart = |one: &[f64], other: &[f64]| {
             let each = one.iter().zip(other).zip(&sizes);
             each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
@@ -478,12 +483,13 @@ impl CoupledProblem<'_> {
                 };
                 let mixed: Vec<f64> = from
                     .kept
+                    .travel
                     .iter()
-                    .zip(&to.kept)
+                    .zip(&to.kept.travel)
                     .map(|(one, other)| one + part * (other - one))
                     .collect();
                 let candidates = match by_travel {
-                    true => apart(&mixed, &orbit.kept) <= NEAR,
+                    true => apart(&mixed, &orbit.kept.travel) <= NEAR,
                     false => is_near(&shifted) || is_near(&mirrored),
                 };
                 if !candidates {

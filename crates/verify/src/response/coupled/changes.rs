@@ -13,7 +13,7 @@ use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 
-use super::problem::{CoupledProblem, Kind, Orbit, Orbits, monodromy};
+use super::problem::{CoupledProblem, Kind, Orbit, Orbits};
 use crate::numeric::ode::root::find_root;
 use crate::response::bifurcation::{BifurcationKind, bisect_sign_change};
 
@@ -42,7 +42,7 @@ impl CoupledProblem<'_> {
     /// The multipliers of an orbit without those that are 1 for every such motion: one of a cycle,
     /// two of a free motion.
     pub(super) fn multipliers(&self, orbit: &Orbit) -> Option<Vec<Complex<f64>>> {
-        let mut all = eigenvalues(monodromy(orbit, self.states.len()))?;
+        let mut all = eigenvalues(orbit.kept.monodromy.clone())?;
         let trivial = match self.kind {
             Kind::Driven(_) => 0,
             Kind::SelfExcited => 1,

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use super::branches::Start;
 use super::changes::change_between;
 use super::equilibria::null_vector;
-use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, Travel, monodromy};
+use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, Travel};
 use crate::numeric::normal_form::{CubicTerm, cubic_term};
 use crate::numeric::orbit_branch::{OrbitEquations, PeriodImage};
 use crate::response::bifurcation::BifurcationKind;
@@ -134,7 +134,7 @@ impl CoupledProblem<'_> {
     /// A motion of twice the period near one with the multiplier -1, at a distance from it.
     fn doubled(&self, at: &Orbit, orbits: &Orbits, scale: &[f64], apart: f64) -> Option<Orbit> {
         let n = self.states.len();
-        let mut direction = null_vector(monodromy(at, n) + DMatrix::identity(n, n))?;
+        let mut direction = null_vector(at.kept.monodromy.clone() + DMatrix::identity(n, n))?;
         let mut guess = at.unknowns.clone();
         if matches!(self.kind, Kind::SelfExcited) {
             // The condition on the beginning of a cycle holds in the direction as well.
@@ -144,7 +144,7 @@ impl CoupledProblem<'_> {
             direction -= flow * shift;
             guess[n] *= 2.0;
         }
-        let sizes = self.sizes(&at.kept, scale, &guess);
+        let sizes = self.sizes(&at.kept.travel, scale, &guess);
         let mut along = DVector::zeros(guess.len());
         for i in 0..n {
             along[i] = direction[i] / sizes[i];
@@ -182,7 +182,7 @@ impl CoupledProblem<'_> {
             .min_by(|one, other| (one.norm() - 1.0).abs().total_cmp(&(other.norm() - 1.0).abs()))?;
         let section = Section::new(self, at, scale)?;
         let sizes = &section.sizes;
-        let scaled = DMatrix::from_fn(n, n, |i, j| at.monodromy[(i, j)] * sizes[j] / sizes[i]);
+        let scaled = DMatrix::from_fn(n, n, |i, j| at.kept.monodromy[(i, j)] * sizes[j] / sizes[i]);
         let derivative = section.basis.transpose() * scaled * &section.basis;
         let map = |place: &DVector<f64>| section.image(place);
         Some(match cubic_term(&map, &derivative, multiplier)? {
@@ -211,7 +211,7 @@ impl<'a> Section<'a> {
     fn new(problem: &'a CoupledProblem, at: &Orbit, scale: &[f64]) -> Option<Self> {
         let (n, parameter) = (problem.states.len(), at.parameter());
         let start = at.unknowns.rows(0, n).into_owned();
-        let sizes = DVector::from_vec(problem.state_sizes(&at.kept, scale));
+        let sizes = DVector::from_vec(problem.state_sizes(&at.kept.travel, scale));
         let (basis, across) = match problem.kind {
             Kind::SelfExcited => {
                 let flow = problem.in_time.rates_at(start.as_slice(), 0.0, parameter);

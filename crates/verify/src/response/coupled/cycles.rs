@@ -78,7 +78,7 @@ impl CoupledProblem<'_> {
     fn cycle_near(&self, start: &Start, scale: &[f64], anchor: Anchor) -> Option<Orbit> {
         let n = self.states.len();
         let orbit = self.orbit_near(start, scale, anchor)?;
-        let travel = &orbit.kept[..self.coordinates];
+        let travel = &orbit.kept.travel[..self.coordinates];
         let guessed = start.unknowns[n];
         let period = orbit.unknowns[n];
         let moves = travel.iter().any(|travel| *travel > 1e-6 * (1.0 + start.unknowns[0].abs()));
@@ -102,7 +102,7 @@ impl CoupledProblem<'_> {
         const SAME: f64 = 1e-6;
         let n = self.states.len();
         let start = &orbit.unknowns.as_slice()[..n];
-        let sizes = self.state_sizes(&orbit.kept, scale);
+        let sizes = self.state_sizes(&orbit.kept.travel, scale);
         let closes = |turns: &usize| {
             let period = orbit.unknowns[n] / *turns as f64;
             let end = self.in_time.end(start, [0.0, period], orbit.parameter(), &sizes);
@@ -150,7 +150,7 @@ impl CoupledProblem<'_> {
             let orbit = self.with_orbits(&[], anchor, |orbits| {
                 orbits.orbit_along(&guess, &direction, &sizes)
             })?;
-            let extent = orbit.kept[..self.coordinates].iter().copied().fold(0.0, f64::max);
+            let extent = orbit.kept.travel[..self.coordinates].iter().copied().fold(0.0, f64::max);
             (size / OTHER..size * OTHER).contains(&extent).then_some((orbit, anchor))
         })
     }
@@ -220,5 +220,5 @@ impl CoupledProblem<'_> {
 /// The anchor of a cycle at a turn of a coordinate, for motions of this travel and period.
 fn anchor_of(state: usize, travel: f64, period: f64) -> Anchor {
     let travel = if travel > 0.0 { travel } else { 1.0 };
-    Anchor { state, size: travel / (period * period) }
+    Anchor { state, size: travel / (period * period), from_rest: false }
 }

@@ -12,7 +12,7 @@ use num_complex::Complex;
 
 use super::branches::{Known, OrbitBranch};
 use super::changes::{changes_between, least_squares};
-use super::problem::{CoupledProblem, Kind, Orbit, monodromy};
+use super::problem::{CoupledProblem, Kind, Orbit};
 use crate::expr::Expr;
 use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::response::bifurcation::BifurcationKind;
@@ -144,9 +144,9 @@ impl CoupledProblem<'_> {
         let (n, m) = (self.states.len(), self.coordinates);
         let start = &orbit.unknowns.as_slice()[..n];
         let end = path.states_at(period)?;
-        let sizes = self.state_sizes(&orbit.kept, scale);
+        let sizes = self.state_sizes(&orbit.kept.travel, scale);
         let mut missed = DVector::from_iterator(n, (0..n).map(|i| (end[i] - start[i]) / sizes[i]));
-        let full = monodromy(orbit, n);
+        let full = orbit.kept.monodromy.clone();
         let mut matrix =
             DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - full[(i, j)] * sizes[j] / sizes[i]);
         let step = match self.kind {
@@ -167,9 +167,10 @@ impl CoupledProblem<'_> {
         /// Motions smaller than this part of the largest are compared as if they were as large.
         const SMALL: f64 = 1e-3;
         let extent = |travel: &[f64]| travel.iter().take(m).copied().fold(0.0, f64::max);
-        let least = (super::problem::SMALLEST * extent(&orbit.kept)).max(SMALL * extent(scale));
+        let least =
+            (super::problem::SMALLEST * extent(&orbit.kept.travel)).max(SMALL * extent(scale));
         let of_place = (0..m).map(|i| {
-            let size = orbit.kept[i].max(least);
+            let size = orbit.kept.travel[i].max(least);
             if size > 0.0 { (step[i] * sizes[i] / size).abs() } else { 0.0 }
         });
         let of_period = step.get(n).copied().unwrap_or(0.0).abs();

@@ -35,8 +35,13 @@ impl CoupledProblem<'_> {
         self.question.progress.begin(frequencies.len());
         for frequency in frequencies {
             let square = frequency * frequency;
-            for shape in shapes(&stiffness - DMatrix::identity(n, n) * square) {
-                if let Some((orbit, anchor)) = self.small_mode(&rest, frequency, &shape) {
+            let shapes = shapes(&stiffness - DMatrix::identity(n, n) * square);
+            // Of equal frequencies small motions of every shift between the coordinates are nearly
+            // periodic; those that begin at rest are single.
+            let from_rest = shapes.len() > 1;
+            for shape in shapes {
+                if let Some((orbit, anchor)) = self.small_mode(&rest, frequency, &shape, from_rest)
+                {
                     self.add_branch(orbit, anchor, &mut known);
                 }
             }
@@ -80,6 +85,7 @@ impl CoupledProblem<'_> {
         rest: &[f64],
         frequency: f64,
         shape: &DVector<f64>,
+        from_rest: bool,
     ) -> Option<(Orbit, Anchor)> {
         /// Part of the range by which the frequency is to have moved.
         const MOVED: f64 = 2e-3;
@@ -94,7 +100,7 @@ impl CoupledProblem<'_> {
         }
         guess[n + 1] = frequency;
         for _ in 0..DOUBLINGS {
-            let anchor = Anchor { state: largest, size: size * shape[largest].abs() };
+            let anchor = Anchor { state: largest, size: size * shape[largest].abs(), from_rest };
             let travel: Vec<f64> = (0..n)
                 .map(|i| size * shape[i % m].abs() * if i < m { 1.0 } else { frequency })
                 .collect();
@@ -140,10 +146,12 @@ impl CoupledProblem<'_> {
 
 /// The directions that a matrix makes zero. Of several independent ones, whose sums are modes as
 /// well, those along single coordinates and the sums and differences of pairs of them: of two equal
-/// oscillators each alone, both in phase, and both out of phase.
+/// oscillators each alone, both in phase and both out of phase, equally or one of them less.
 fn shapes(matrix: DMatrix<f64>) -> Vec<DVector<f64>> {
     /// Ratio to the largest singular value of those that count as zero.
     const ZERO: f64 = 1e-8;
+    /// Motion of the other coordinate where one moves more.
+    const LESS: f64 = 1.0 / 3.0;
     let n = matrix.ncols();
     let eigen = (matrix.transpose() * &matrix).symmetric_eigen();
     let largest = eigen.eigenvalues.max().max(f64::MIN_POSITIVE);
@@ -169,6 +177,10 @@ fn shapes(matrix: DMatrix<f64>) -> Vec<DVector<f64>> {
     for i in 0..n {
         for j in 0..i {
             wanted.extend([unit(i) + unit(j), unit(i) - unit(j)]);
+            for (one, other) in [(i, j), (j, i)] {
+                let part = unit(other) * LESS;
+                wanted.extend([unit(one) + &part, unit(one) - part]);
+            }
         }
     }
     let mut found: Vec<DVector<f64>> = Vec::new();

@@ -30,8 +30,16 @@ use crate::system::{Solver, System, SystemOptions};
 /// The travel of each state of an orbit: half of the way from its lowest to its highest value.
 pub(super) type Travel = Vec<f64>;
 
+/// The data of a motion over its period that are kept.
+#[derive(Clone, Debug)]
+pub(super) struct Course {
+    pub(super) travel: Travel,
+    /// The derivative of the states after the period by those at the beginning.
+    pub(super) monodromy: DMatrix<f64>,
+}
+
 /// An orbit of a branch.
-pub(super) type Orbit = OrbitPoint<Travel>;
+pub(super) type Orbit = OrbitPoint<Course>;
 
 /// The state whose rate is zero where a motion without a drive begins, and a size for that rate over
 /// the unknown that goes with it.
@@ -39,15 +47,18 @@ pub(super) type Orbit = OrbitPoint<Travel>;
 pub(super) struct Anchor {
     pub(super) state: usize,
     pub(super) size: f64,
+    /// Whether all rates are zero there, and half a period later: of free motions beside which there are
+    /// others with a shift between the coordinates, so that the one rate does not fix the motion.
+    pub(super) from_rest: bool,
 }
 
 impl Anchor {
     /// The anchor of driven motions, which need none.
-    pub(super) const NONE: Self = Self { state: 0, size: 1.0 };
+    pub(super) const NONE: Self = Self { state: 0, size: 1.0, from_rest: false };
 }
 
 /// The equations of orbits.
-pub(super) type Orbits<'a> = OrbitEquations<'a, Travel, Travel>;
+pub(super) type Orbits<'a> = OrbitEquations<'a, Course, Course>;
 
 /// The kind of motions that a system has.
 #[derive(Clone, Debug)]
@@ -197,8 +208,8 @@ impl<'a> CoupledProblem<'a> {
     /// Whether the search has taken as much work as it may: of motions with hundreds of swings in a
     /// period there are many branches, and each point of them takes long.
     pub(super) fn is_exhausted(&self) -> bool {
-        /// Largest number of evaluations for each motion and variation: some ten seconds of two coordinates.
-        const MOST_WORK: u64 = 100_000_000;
+        /// Largest number of evaluations for each motion and variation: some twenty seconds of two coordinates.
+        const MOST_WORK: u64 = 300_000_000;
         let in_phase = self.in_phase.as_ref().map_or(0, Flow::evaluations);
         self.in_time.evaluations() + in_phase > MOST_WORK
     }
@@ -290,11 +301,14 @@ impl<'a> CoupledProblem<'a> {
             match self.kind {
                 Kind::Driven(_) => self.driven_image(start.as_slice(), parameter, scale),
                 Kind::SelfExcited => self.cycle_image(start.as_slice(), parameter, scale, anchor),
+                Kind::Free if anchor.from_rest => {
+                    self.image_from_rest(start.as_slice(), parameter, scale)
+                }
                 Kind::Free => self.free_image(start.as_slice(), parameter, scale, anchor),
             }
         };
-        let keep = |_: &DVector<f64>, image: &PeriodImage<Travel>| image.path.clone();
-        let sizes = |orbit: &Orbit| self.sizes(&orbit.kept, scale, &orbit.unknowns);
+        let keep = |_: &DVector<f64>, image: &PeriodImage<Course>| image.path.clone();
+        let sizes = |orbit: &Orbit| self.sizes(&orbit.kept.travel, scale, &orbit.unknowns);
         call(&OrbitEquations { map: &map, smooth: self.smooth, keep: &keep, sizes: &sizes })
     }
 
@@ -329,11 +343,12 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         parameter: f64,
         scale: &[f64],
-    ) -> Option<PeriodImage<Travel>> {
+    ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
         let FlowImage { end, by_start, by_parameter, travel } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        Some(PeriodImage { end, by_start, by_parameter, path: travel })
+        let path = Course { travel, monodromy: by_start.clone() };
+        Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
     fn cycle_image(
@@ -341,8 +356,8 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         parameter: f64,
         scale: &[f64],
-        Anchor { state, size }: Anchor,
-    ) -> Option<PeriodImage<Travel>> {
+        Anchor { state, size, .. }: Anchor,
+    ) -> Option<PeriodImage<Course>> {
         let n = self.states.len();
         let (start, period) = (&start[..n], start[n]);
         if !(period > 0.0 && period.is_finite()) {
@@ -352,6 +367,7 @@ impl<'a> CoupledProblem<'a> {
         let image = self.in_time.image(start, period, parameter, &sizes)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
+        let path = Course { travel: image.travel, monodromy: image.by_start.clone() };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
         for column in 0..n {
@@ -362,7 +378,7 @@ impl<'a> CoupledProblem<'a> {
             end: image.end.push(period + begin.rates[state] / size),
             by_start,
             by_parameter: image.by_parameter.push(begin.by_parameter[state] / size),
-            path: image.travel,
+            path,
         })
     }
 
@@ -371,8 +387,8 @@ impl<'a> CoupledProblem<'a> {
         start: &[f64],
         omega: f64,
         scale: &[f64],
-        Anchor { state, size }: Anchor,
-    ) -> Option<PeriodImage<Travel>> {
+        Anchor { state, size, .. }: Anchor,
+    ) -> Option<PeriodImage<Course>> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
@@ -384,14 +400,51 @@ impl<'a> CoupledProblem<'a> {
         for column in 0..n {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
-        let travel = travel[..n].to_vec();
-        Some(PeriodImage { end, by_start, by_parameter, path: travel })
+        let monodromy = by_start.view((0, 0), (n, n)).into_owned();
+        let path = Course { travel: travel[..n].to_vec(), monodromy };
+        Some(PeriodImage { end, by_start, by_parameter, path })
     }
-}
 
-/// The part of the monodromy matrix of an orbit that belongs to its states.
-pub(super) fn monodromy(orbit: &Orbit, states: usize) -> DMatrix<f64> {
-    orbit.monodromy.view((0, 0), (states, states)).into_owned()
+    /// The conditions of a free motion that begins at rest and is at rest half a period later, after
+    /// which it goes back the same way:
+    ///
+    /// ```text
+    /// v(0) = 0,   v(T/2) = 0,   lambda = 0,       M = R H^(-1) R H,   R = diag(1, -1),   H: half a period
+    /// ```
+    fn image_from_rest(
+        &self,
+        start: &[f64],
+        omega: f64,
+        scale: &[f64],
+    ) -> Option<PeriodImage<Course>> {
+        let (n, m) = (self.states.len(), self.coordinates);
+        let mut sizes = self.sizes_of_start(&start[..n], scale);
+        sizes.push(omega);
+        let half = self.in_phase.as_ref()?.image(start, 0.5 * TAU, omega, &sizes)?;
+        let mut end = DVector::from_column_slice(start) * 2.0;
+        let mut by_start = DMatrix::identity(n + 1, n + 1) * 2.0;
+        let mut by_parameter = DVector::zeros(n + 1);
+        for i in 0..m {
+            let velocity = half.end[m + i];
+            end[i] = start[i] + velocity / omega;
+            for column in 0..=n {
+                by_start[(i, column)] = half.by_start[(m + i, column)] / omega;
+            }
+            by_start[(i, i)] += 1.0;
+            by_parameter[i] = half.by_parameter[m + i] / omega - velocity / (omega * omega);
+        }
+        let forward = half.by_start.view((0, 0), (n, n)).into_owned();
+        let reversed = |matrix: DMatrix<f64>| {
+            DMatrix::from_fn(n, n, |i, j| {
+                if (i < m) == (j < m) { matrix[(i, j)] } else { -matrix[(i, j)] }
+            })
+        };
+        let monodromy = reversed(forward.clone().try_inverse()?) * forward;
+        // On the way back the velocities are the negative ones.
+        let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
+        let travel = half.travel[..n].iter().enumerate().map(travel).collect();
+        Some(PeriodImage { end, by_start, by_parameter, path: Course { travel, monodromy } })
+    }
 }
 
 /// The right sides in the phase of a motion of frequency `base`.

@@ -266,7 +266,7 @@ impl CoupledProblem<'_> {
         /// or comes to it still.
         const NEAR: f64 = 0.05;
         let orbit = self.orbit_near(start, &known.scale, Anchor::NONE)?;
-        let sizes = self.state_sizes(&orbit.kept, &known.scale);
+        let sizes = self.state_sizes(&orbit.kept.travel, &known.scale);
         let each = orbit.unknowns.iter().zip(&start.unknowns).zip(&sizes);
         let apart = each.map(|((one, other), size)| ((one - other) / size).abs());
         let apart = apart.fold(0.0, f64::max);

@@ -187,8 +187,12 @@ pub(super) fn amplitude(
 /// The answer to a question, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
 pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
-    let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, ReadingCommand::Derive)?;
+    solved_problem(arguments, &problem(&arguments.problem)?)
+}
+
+/// As [`solved`], of a problem that has been read.
+fn solved_problem(arguments: &EquationArguments, problem: &Problem) -> Result<Solved, Failure> {
+    let formula = formula(problem, ReadingCommand::Derive)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
@@ -201,7 +205,7 @@ pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
     }
     let coordinate = oscillator.coordinate;
     let Numbered { oscillator, values, mut notes } =
-        with_values(oscillator, &arguments.at, &problem)?;
+        with_values(oscillator, &arguments.at, problem)?;
     // A name that is no function may be why the equation is refused.
     let misleading = notes.iter().filter(|note| matches!(note, Note::Misleading { .. }));
     let misleading: Vec<String> = misleading.map(Note::to_string).collect();
@@ -304,7 +308,8 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
         ("--format svg", arguments.common.format() == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
-    let Solved { oscillator, values, solution, letters } = solved(&arguments.question)?;
+    let Solved { oscillator, values, solution, letters } =
+        solved_problem(&arguments.question, &problem)?;
     let _letters = letters.in_force();
     let tolerance = tolerance(&arguments.common);
     let judged =

@@ -22,6 +22,7 @@ const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequen
 fn every_option_changes_the_answer_or_is_refused_by_name() {
     let cubic = "x'' + x + eps*x^3 + eps*x^5 = 0";
     let well = "x'' - x + x^3 = 0";
+    let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
     let cycles = "x'' + x - eps*(1 - x^2 + x^4/20)*x' = 0";
     let file = path("output").with_extension("txt");
     let file = file.to_str().expect("a path in text");
@@ -60,6 +61,8 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("derive", vec!["pendulum", "--method", "energy-balance"], vec!["--omega-only"]),
         ("derive", vec![cycles], vec!["--cycle", "2"]),
         ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
+        ("derive", vec![pair], vec!["--mode", "2"]),
+        ("derive", vec!["pendulum"], vec!["--mode", "1"]),
         ("derive", vec!["pendulum", "--method", "energy-balance"], vec!["--cycle", "1"]),
         ("derive", vec!["pendulum", "--method", "exact"], vec!["--order", "3"]),
         ("derive", vec!["pendulum"], vec!["--at", "A=1"]),

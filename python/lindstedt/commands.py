@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .documents.lagrangian import Lagrangian
     from .impacts import Impact
     from .law import Law
+    from .modes import Modes
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .tabulated import Friction, Materials, Stability
 
@@ -40,6 +41,7 @@ def derive(
     omega_only: bool = False,
     jobs: int | None = None,
     steps: bool = False,
+    mode: int | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
     at: Values | None = None,
@@ -73,6 +75,7 @@ def derive(
         jobs: Threads of a long expansion; all cores without it. The result is the same for any
             number.
         steps: Whether the derivation is kept, line by line.
+        mode: Which normal mode of coupled equations, 1 for the slowest; without it all of them.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -83,7 +86,7 @@ def derive(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("derive", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("derive", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def compare(
@@ -562,6 +565,7 @@ class EquationCommands:
         omega_only: bool = False,
         jobs: int | None = None,
         steps: bool = False,
+        mode: int | None = None,
         tolerance: float | None = None,
         timeout: float | None = None,
         at: Values | None = None,
@@ -594,6 +598,8 @@ class EquationCommands:
             jobs: Threads of a long expansion; all cores without it. The result is the same for
                 any number.
             steps: Whether the derivation is kept, line by line.
+            mode: Which normal mode of coupled equations, 1 for the slowest; without it all of
+                them.
             tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
             at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -604,7 +610,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("derive", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("derive", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "steps": steps, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def compare(
         self,

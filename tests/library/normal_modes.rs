@@ -358,6 +358,12 @@ fn resonance_is_refused_where_it_is_one() {
         Some(&ModeError::InternalResonance { number: 1, other: 2, ratio: 3, order: 3 })
     );
     assert!(one.modes[1].is_ok());
+    // Two modes of one frequency that the first one drives at twice its own.
+    let several = "x'' + x = x*y; y'' + 4*y + y*z = 0; z'' + 4*z = x^2";
+    assert_eq!(
+        modes_of(several, &to_order(4)).modes[0].as_ref().err(),
+        Some(&ModeError::InternalResonance { number: 1, other: 2, ratio: 2, order: 2 })
+    );
     let two = modes_of("x'' + 5*x - 4*y + x^3 = 0; y'' + 5*y - 4*x + y^3 = 0", &to_order(4));
     let laws: Vec<String> = formulas(&two).iter().map(|mode| mode.formula()).collect();
     // In phase both are Duffing's oscillator x'' + x + x^3.

@@ -16,6 +16,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/impact/1": ("impact", ("Impact",)),
     "lindstedt/lagrangian/1": ("lagrangian", ("Lagrangian",)),
     "lindstedt/materials/1": ("materials", ("Materials",)),
+    "lindstedt/modes/1": ("modes", ("Modes",)),
     "lindstedt/motion-sweep/1": ("motion_sweep", ("MotionSweep",)),
     "lindstedt/motion/1": ("motion", ("Motion",)),
     "lindstedt/optimization/1": ("optimization", ("Optimization",)),

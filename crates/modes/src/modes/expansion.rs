@@ -275,9 +275,12 @@ impl<R: Ring> OverRing<'_, R> {
         harmonic: usize,
         order: usize,
     ) -> Result<(), ModeError> {
-        let Some((other, left)) = &inverse.resonant else { return Ok(()) };
-        let left: Vec<R::Element> = left.iter().map(self.element).collect();
-        match self.ring.is_certainly_zero(&(self.tidy)(&self.dot(&left, force))) {
+        let Some((other, against)) = &inverse.resonant else { return Ok(()) };
+        let is_zero = |left: &Vec<Polynomial>| {
+            let left: Vec<R::Element> = left.iter().map(self.element).collect();
+            self.ring.is_certainly_zero(&(self.tidy)(&self.dot(&left, force)))
+        };
+        match against.iter().all(is_zero) {
             true => Ok(()),
             false => Err(ModeError::InternalResonance {
                 number: self.question.number,

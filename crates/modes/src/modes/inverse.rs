@@ -20,9 +20,9 @@ use crate::symbol::{Symbol, fresh};
 pub(super) struct HarmonicInverse {
     /// The entries, a row for each unknown.
     pub(super) entries: Vec<Vec<Polynomial>>,
-    /// Where the matrix is singular for k other than 1: the index of the mode that resonates, and
-    /// its u, against which the force must be zero.
-    pub(super) resonant: Option<(usize, Vec<Polynomial>)>,
+    /// Where the matrix is singular for k other than 1: the index of the mode that resonates, and the
+    /// vectors u against which the force must be zero.
+    pub(super) resonant: Option<(usize, Vec<Vec<Polynomial>>)>,
 }
 
 /// The inverses for the harmonics of one mode, with the names of their divisors.
@@ -66,12 +66,22 @@ impl<'a> HarmonicInverses<'a> {
         let resonates = modes.roots.iter().position(|root| near(&root.value));
         let (entries, resonant) = match resonates {
             None => (matrix::inverse(&matrix)?, None),
+            Some(other) if modes.roots.iter().filter(|root| near(&root.value)).count() > 1 => {
+                // Several modes resonate: a force on any coordinate may drive one of them.
+                let count = matrix.len();
+                let unit = |i: usize| -> Vec<Polynomial> {
+                    (0..count).map(|j| super::linear::whole((i == j).into())).collect()
+                };
+                let entries = vec![vec![Polynomial::zero(); count]; count];
+                let resonant = Some((other, (0..count).map(unit).collect()));
+                return Some(HarmonicInverse { entries, resonant });
+            }
             Some(other) => {
                 let shape = matrix::null_vector(&matrix);
                 let left = matrix::null_vector(&matrix::transposed(&matrix));
                 let entries = bordered_inverse(&matrix, &modes.mass, &shape, &left)?;
                 let left = left.into_iter().map(Polynomial::constant).collect();
-                (entries, (other != self.index).then_some((other, left)))
+                (entries, (other != self.index).then_some((other, vec![left])))
             }
         };
         let entry = |entry: Rational| {
@@ -105,7 +115,7 @@ impl<'a> HarmonicInverses<'a> {
         };
         let mut resonant = None;
         if divisor.is_zero() {
-            resonant = Some((other, super::linear::unit(other)));
+            resonant = Some((other, vec![super::linear::unit(other)]));
         } else {
             entries[other][other] =
                 divisor.power(-1).or_else(|| self.named(&divisor, harmonic).power(-1))?;

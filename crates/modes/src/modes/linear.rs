@@ -58,7 +58,8 @@ pub(super) enum LinearModes {
     Two(Box<TwoModes>),
 }
 
-fn whole(value: i64) -> Polynomial {
+/// A whole number.
+pub(super) fn whole(value: i64) -> Polynomial {
     Polynomial::constant(ratio(value, 1))
 }
 

@@ -1,0 +1,157 @@
+"""Made by `python/generate.py` from the JSON schemas: change those."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from .._answer import Answer
+from .._document import Document, mapped, several
+from .common import Constant, Harmonic, Polynomial
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModeVerification(Document):
+    """A mode beside the true motion.
+
+    Attributes:
+        at: The values.
+        omega: omega by the formula; null if its square is not positive.
+        true_omega: omega of the true motion, by shooting.
+        relative_error: `omega/true_omega - 1`; null where there is no omega.
+        max_deviation: Largest deviation of a coordinate at the same theta, as a part of the
+            largest displacement.
+        slope: The measured exponent of the error of omega; null if rounding hides it.
+        verdict: `pass` or `fail`.
+    """
+
+    at: dict[str, Constant]
+    omega: float | None
+    true_omega: float
+    relative_error: float | None
+    max_deviation: float
+    slope: float | None
+    verdict: str
+
+
+ModeVerification.FIELDS = (
+    ("at", "at", mapped(Constant.from_json)),
+    ("omega", "omega", None),
+    ("true_omega", "true_omega", None),
+    ("relative_error", "relative_error", None),
+    ("max_deviation", "max_deviation", None),
+    ("slope", "slope", None),
+    ("verdict", "verdict", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mode(Document):
+    """A nonlinear normal mode. Its polynomials are in the letters of the equations, the symbol of the
+    amplitude and those of `definitions`.
+
+    Attributes:
+        number: Its number, 1 for the slowest.
+        order: The highest power of the amplitude in omega^2 that was reached.
+        linear_omega_squared: omega^2 of the linear mode.
+        shape: The linear mode: each coordinate over the first that moves.
+        modal_coordinate: The factors of the coordinates in the sum of which the amplitude is that
+            of the first harmonic.
+        omega_squared: omega^2 in powers of the amplitude.
+        formula: The law in one line.
+        motion: The harmonics of each coordinate in theta = omega*t.
+        along: The coordinate in which the modal lines are written.
+        modal_lines: Each other coordinate as a polynomial in that one and the amplitude, up to
+            third powers.
+        definitions: What the formulas name, each by those before it.
+        numerical: Whether coefficients are rounded to fifteen digits, because the linear
+            frequency is no fraction.
+        verification: The mode at values beside the true motion; null without values.
+        unjudged: The reason why no true motion was found; null where one was, or none was asked
+            for.
+    """
+
+    number: int
+    order: int
+    linear_omega_squared: Polynomial
+    shape: dict[str, Polynomial]
+    modal_coordinate: dict[str, Polynomial]
+    omega_squared: Polynomial
+    formula: str
+    motion: dict[str, tuple[Harmonic, ...]]
+    along: str
+    modal_lines: dict[str, Polynomial]
+    definitions: dict[str, str]
+    numerical: bool
+    verification: ModeVerification | None
+    unjudged: str | None
+
+
+Mode.FIELDS = (
+    ("number", "number", None),
+    ("order", "order", None),
+    ("linear_omega_squared", "linear_omega_squared", Polynomial.from_json),
+    ("shape", "shape", mapped(Polynomial.from_json)),
+    ("modal_coordinate", "modal_coordinate", mapped(Polynomial.from_json)),
+    ("omega_squared", "omega_squared", Polynomial.from_json),
+    ("formula", "formula", None),
+    ("motion", "motion", mapped(several(Harmonic.from_json))),
+    ("along", "along", None),
+    ("modal_lines", "modal_lines", mapped(Polynomial.from_json)),
+    ("definitions", "definitions", dict),
+    ("numerical", "numerical", None),
+    ("verification", "verification", ModeVerification.from_json),
+    ("unjudged", "unjudged", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Modes(Answer):
+    """The nonlinear normal modes of coupled equations that nothing drives or damps.
+
+    Attributes:
+        schema: The kind of document.
+        equations: The equations as they were understood.
+        coordinates: The coordinates.
+        rest: The place of rest from which each coordinate is counted, a formula.
+        parameters: The letters of the equations, in alphabetical order.
+        method: The method: `lindstedt-poincare`.
+        order: The highest power of the amplitude in omega^2 that was asked for.
+        amplitude: What the amplitude measures: `first-harmonic` or `initial`.
+        amplitude_symbol: The symbol of the amplitude.
+        count: The number of all modes.
+        modes: The modes that have formulas, the slowest first.
+        refused: The reasons why other modes have none.
+        tolerance: The largest relative error of omega that passes; null without values.
+    """
+
+    schema: Literal["lindstedt/modes/1"]
+    equations: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    rest: dict[str, str]
+    parameters: tuple[str, ...]
+    method: str
+    order: int
+    amplitude: str
+    amplitude_symbol: str
+    count: int
+    modes: tuple[Mode, ...]
+    refused: tuple[str, ...]
+    tolerance: float | None
+
+
+Modes.FIELDS = (
+    ("schema", "schema", None),
+    ("equations", "equations", tuple),
+    ("coordinates", "coordinates", tuple),
+    ("rest", "rest", dict),
+    ("parameters", "parameters", tuple),
+    ("method", "method", None),
+    ("order", "order", None),
+    ("amplitude", "amplitude", None),
+    ("amplitude_symbol", "amplitude_symbol", None),
+    ("count", "count", None),
+    ("modes", "modes", several(Mode.from_json)),
+    ("refused", "refused", tuple),
+    ("tolerance", "tolerance", None),
+)

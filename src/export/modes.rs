@@ -2,7 +2,18 @@
 
 use super::figure::{Curve, CurveStyle, FigureError, Panel, Points, figure};
 use crate::decimal::significant;
+use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
+use crate::verify::JudgedMode;
+
+/// The curves of one mode: each by the formula, and in truth.
+struct DrawnMode {
+    title: String,
+    /// The second coordinate against the first.
+    lines: [Vec<Points>; 2],
+    /// Every coordinate over half a period.
+    times: [Vec<Points>; 2],
+}
 
 /// The modal lines at the values, by the formulas over the true motions: the second coordinate against
 /// the first, and half a period of every coordinate.
@@ -10,57 +21,25 @@ use crate::report::ModesReport;
 /// # Errors
 /// As [`figure`]; without values there is nothing to draw.
 pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
-    let coordinates = &report.modes.system.equations.coordinates;
-    let judged: Vec<_> = report
-        .judged_modes()
-        .filter_map(|(mode, judged)| Some((mode, judged?.as_ref().ok()?)))
-        .collect();
-    let [first, second] = [0, 1].map(|index| coordinates.get(index).map(ToString::to_string));
-    let (first, second) = (first.unwrap_or_default(), second.unwrap_or_default());
+    let names: Vec<String> =
+        report.modes.system.equations.coordinates.iter().map(ToString::to_string).collect();
+    let name = |index: usize| names.get(index).cloned().unwrap_or_default();
+    let (first, second, all) = (name(0), name(1), names.join(", "));
     let phase = format!("{} (π)", report.phase());
-    let names: Vec<String> = coordinates.iter().map(ToString::to_string).collect();
-    let all = names.join(", ");
-    let mut drawn: Vec<(String, [Vec<Points>; 2], [Vec<Points>; 2])> = Vec::new();
-    for (mode, judged) in &judged {
-        let lines = judged.paths.each_ref().map(|path| {
-            let points = path.iter().map(|place| (place[0], place.get(1).copied().unwrap_or(0.0)));
-            vec![points.collect::<Points>()]
-        });
-        let times = judged.paths.each_ref().map(|path| {
-            let steps = path.len().saturating_sub(1).max(1) as f64;
-            let of = |coordinate: usize| -> Points {
-                let points = path.iter().enumerate();
-                points.map(|(index, place)| (index as f64 / steps, place[coordinate])).collect()
-            };
-            (0..coordinates.len()).map(of).collect()
-        });
-        let title = match judged.relative_error {
-            Some(error) => {
-                format!("Mode {}: omega off by {} %", mode.number, significant(100.0 * error, 2))
-            }
-            None => format!("Mode {}", mode.number),
-        };
-        drawn.push((title, lines, times));
-    }
+    let drawn: Vec<DrawnMode> = report
+        .judged_modes()
+        .filter_map(|(mode, judged)| Some(drawn(mode, judged?.as_ref().ok()?)))
+        .collect();
     let mut panels = Vec::new();
-    for (title, lines, times) in &drawn {
-        for (points, x_label, y_label) in [(lines, &first, &second), (times, &phase, &all)] {
-            let [formula, truth] = points;
-            let truth = truth.iter().map(|points| Curve {
-                label: "true motion",
-                points,
-                style: CurveStyle::RUNGE_KUTTA,
-            });
-            let formula = formula.iter().map(|points| Curve {
-                label: "formula",
-                points,
-                style: CurveStyle::FORMULA,
-            });
+    for mode in &drawn {
+        for (points, x_label, y_label) in
+            [(&mode.lines, &first, &second), (&mode.times, &phase, &all)]
+        {
             panels.push(Panel {
-                title,
+                title: &mode.title,
                 x_label,
                 y_label,
-                curves: truth.chain(formula).collect(),
+                curves: curves(points),
                 ..Panel::default()
             });
         }
@@ -70,4 +49,36 @@ pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
         report.modes.order
     );
     figure(&panels, &caption)
+}
+
+fn drawn(mode: &NonlinearMode, judged: &JudgedMode) -> DrawnMode {
+    let lines = judged.paths.each_ref().map(|path| {
+        let points = path.iter().map(|place| (place[0], place.get(1).copied().unwrap_or(0.0)));
+        vec![points.collect::<Points>()]
+    });
+    let times = judged.paths.each_ref().map(|path| {
+        let steps = path.len().saturating_sub(1).max(1) as f64;
+        let of = |coordinate: usize| -> Points {
+            let points = path.iter().enumerate();
+            points.map(|(index, place)| (index as f64 / steps, place[coordinate])).collect()
+        };
+        (0..mode.motion.len()).map(of).collect()
+    });
+    let title = match judged.relative_error {
+        Some(error) => {
+            format!("Mode {}: omega off by {} %", mode.number, significant(100.0 * error, 2))
+        }
+        None => format!("Mode {}", mode.number),
+    };
+    DrawnMode { title, lines, times }
+}
+
+/// The formula over the true motion.
+fn curves([formula, truth]: &[Vec<Points>; 2]) -> Vec<Curve<'_>> {
+    let styles = [("true motion", CurveStyle::RUNGE_KUTTA), ("formula", CurveStyle::FORMULA)];
+    let each = [truth, formula].into_iter().zip(styles);
+    each.flat_map(|(all, (label, style))| {
+        all.iter().map(move |points| Curve { label, points, style })
+    })
+    .collect()
 }

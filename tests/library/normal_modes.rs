@@ -186,20 +186,17 @@ fn random_systems_err_as_their_order_promises() {
     for _ in 0..cases.unwrap_or(12) {
         let count = 2 + below(2) as usize;
         let names = &["x", "y", "z"][..count];
-        let mut couplings = vec![vec![0; count]; count];
-        for i in 0..count {
-            for j in 0..i {
-                let coupling = below(3);
-                couplings[i][j] = coupling;
-                couplings[j][i] = coupling;
-            }
-        }
+        let lower: Vec<Vec<u64>> = (0..count).map(|i| (0..i).map(|_| below(3)).collect()).collect();
+        let coupling = |i: usize, j: usize| match i == j {
+            true => 0,
+            false => lower[i.max(j)][i.min(j)],
+        };
         let mut equations = Vec::new();
         for (i, name) in names.iter().enumerate() {
-            let own = 2 + below(6) + couplings[i].iter().sum::<u64>();
+            let own = 2 + below(6) + (0..count).map(|j| coupling(i, j)).sum::<u64>();
             let mut text = format!("{}*{name}'' + {own}*{name}", 1 + below(3));
-            for (other, coupling) in names.iter().zip(&couplings[i]).filter(|(_, c)| **c > 0) {
-                text.push_str(&format!(" - {coupling}*{other}"));
+            for (j, other) in names.iter().enumerate().filter(|(j, _)| coupling(i, *j) > 0) {
+                text.push_str(&format!(" - {}*{other}", coupling(i, j)));
             }
             for _ in 0..2 {
                 let [one, two, three] = [(); 3].map(|()| names[below(count as u64) as usize]);

@@ -522,7 +522,9 @@ pub(super) fn with_values(
     problem: &Problem,
 ) -> Result<Numbered, Failure> {
     let values = exact_values(at, problem.values_of_motion())?;
-    let values = values.map(|values| as_meant(&values, &oscillator)).transpose()?;
+    let values = values
+        .map(|values| as_meant(&values, |name| oscillator.resolve_symbol(name)))
+        .transpose()?;
     let notes = notes_on_names(&oscillator, values.as_ref());
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     Ok(Numbered { oscillator, values, notes })
@@ -540,11 +542,14 @@ fn notes_on_names(oscillator: &Oscillator, values: Option<&Values>) -> Vec<Note>
 }
 
 /// The values under the names that they are meant for.
-fn as_meant(values: &Values, oscillator: &Oscillator) -> Result<Values, Failure> {
+pub(super) fn as_meant(
+    values: &Values,
+    resolve: impl Fn(Symbol) -> Symbol,
+) -> Result<Values, Failure> {
     let mut meant = Values::default();
     for (name, value) in values.iter() {
         meant
-            .insert(oscillator.resolve_symbol(name), value.clone())
+            .insert(resolve(name), value.clone())
             .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
     Ok(meant)

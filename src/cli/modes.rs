@@ -11,7 +11,7 @@ use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
 
 use super::answer::{Answer, no_such};
-use super::derive::{DeriveArguments, amplitude, exact_values, unjudged};
+use super::derive::{DeriveArguments, amplitude, as_meant, exact_values, unjudged};
 use super::progress::with_progress;
 use super::{Failure, Format, Outcome, files, json_text, session, tolerance};
 
@@ -69,7 +69,7 @@ pub(super) fn run(
     let letters = system.letters;
     let _letters = letters.in_force();
     let values = exact_values(&question.at, problem.values_of_motion())?;
-    let values = values.map(|values| meant(&values, &system)).transpose()?;
+    let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
     let (modes, values) = with_progress("of the calculation", || {
         with_numbers(&system, &options, values).map_err(refused)
     })?;
@@ -138,17 +138,6 @@ fn no_formula(modes: &NormalModes) -> Option<ModeError> {
     let mut reasons = modes.modes.iter().map(|mode| mode.as_ref().err().cloned());
     let first = reasons.next().flatten()?;
     reasons.all(|reason| reason.is_some()).then_some(first)
-}
-
-/// The values under the names that they are meant for.
-fn meant(values: &Values, system: &FreeSystem) -> Result<Values, Failure> {
-    let mut meant = Values::default();
-    for (name, value) in values.iter() {
-        meant
-            .insert(system.resolve(name), value.clone())
-            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
-    }
-    Ok(meant)
 }
 
 /// The verdict on each mode that has a formula; `None` for the others. Missing values are refused, a

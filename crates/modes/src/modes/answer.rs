@@ -10,6 +10,7 @@ use super::modal_line::modal_lines;
 use super::{FreeSystem, ModeError};
 use crate::decimal::rounded_fraction;
 use crate::exact::polynomial::Monomial;
+use crate::exact::rational::to_f64;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
 use crate::interrupt::Supervision;
 use crate::series::FourierSeries;
@@ -21,6 +22,9 @@ const USUAL_ORDER: u32 = 4;
 
 /// The highest order.
 const HIGHEST_ORDER: u32 = 200;
+
+/// Size below which a coefficient of rounded numbers is what is left of terms that cancel.
+const NOISE: f64 = 1e-50;
 
 /// Number of digits of rounded coefficients.
 const KEPT_DIGITS: usize = 15;
@@ -257,7 +261,10 @@ fn in_amplitude(
         Monomial::power_of(amplitude, i32::try_from(exponent).unwrap_or(i32::MAX))
     };
     let round = |polynomial: &Polynomial| match rounded {
-        true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
+        true => polynomial.map(|number| match to_f64(number).abs() < NOISE {
+            true => Rational::zero(),
+            false => rounded_fraction(number, KEPT_DIGITS),
+        }),
         false => polynomial.clone(),
     };
     let reached = expansion.frequency_squared.len() - 1;

@@ -7,8 +7,8 @@
 
 use num_traits::{One, Zero};
 
-use super::linear::{DIGITS, LinearModes, NumberModes, TwoModes};
-use super::matrix::{self, Matrix};
+use super::linear::{DIGITS, LinearModes, NumberModes, TwoModes, tidied};
+use super::matrix::{self, Matrix, Tidy};
 use crate::decimal::rounded_fraction;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
@@ -63,9 +63,10 @@ impl<'a> HarmonicInverses<'a> {
             false => rounded_fraction(root, DIGITS - 10) == rounded_fraction(&lambda, DIGITS - 10),
         };
         let matrix = modes.matrix_at(&lambda);
+        let tidy = |entry: &Rational| tidied(entry, own.exact);
         let resonates = modes.roots.iter().position(|root| near(&root.value));
         let (entries, resonant) = match resonates {
-            None => (matrix::inverse(&matrix)?, None),
+            None => (matrix::inverse(&matrix, &tidy)?, None),
             Some(other) if modes.roots.iter().filter(|root| near(&root.value)).count() > 1 => {
                 // Several modes resonate: a force on any coordinate may drive one of them.
                 let count = matrix.len();
@@ -77,9 +78,9 @@ impl<'a> HarmonicInverses<'a> {
                 return Some(HarmonicInverse { entries, resonant });
             }
             Some(other) => {
-                let shape = matrix::null_vector(&matrix);
-                let left = matrix::null_vector(&matrix::transposed(&matrix));
-                let entries = bordered_inverse(&matrix, &modes.mass, &shape, &left)?;
+                let shape = matrix::null_vector(&matrix, &tidy);
+                let left = matrix::null_vector(&matrix::transposed(&matrix), &tidy);
+                let entries = bordered_inverse(&matrix, &modes.mass, &shape, &left, &tidy)?;
                 let left = left.into_iter().map(Polynomial::constant).collect();
                 (entries, (other != self.index).then_some((other, vec![left])))
             }
@@ -139,6 +140,7 @@ fn bordered_inverse(
     mass: &Matrix,
     shape: &[Rational],
     left: &[Rational],
+    tidy: Tidy,
 ) -> Option<Matrix> {
     let count = shape.len();
     let column = matrix::applied(mass, shape);
@@ -149,6 +151,6 @@ fn bordered_inverse(
         .map(|(row, last)| row.iter().cloned().chain([last]).collect())
         .collect();
     bordered.push(row.into_iter().chain([Rational::zero()]).collect());
-    let inverse = matrix::inverse(&bordered)?;
+    let inverse = matrix::inverse(&bordered, tidy)?;
     Some(inverse[..count].iter().map(|row| row[..count].to_vec()).collect())
 }

@@ -263,8 +263,9 @@ impl NumberModes {
             return Err(ModeError::EqualFrequencies { number, other: other + 1, square });
         }
         let singular = self.matrix_at(value);
-        let shape = matrix::null_vector(&singular);
-        let left = matrix::null_vector(&matrix::transposed(&singular));
+        let tidy = |entry: &Rational| tidied(entry, *exact);
+        let shape = matrix::null_vector(&singular, &tidy);
+        let left = matrix::null_vector(&matrix::transposed(&singular), &tidy);
         let mass = matrix::dot(&left, &matrix::applied(&self.mass, &shape));
         if mass.is_zero() {
             return Err(ModeError::NotReal);
@@ -282,6 +283,16 @@ impl NumberModes {
     /// `K - lambda M`.
     pub(super) fn matrix_at(&self, lambda: &Rational) -> Matrix {
         matrix::less(&self.stiffness, lambda, &self.mass)
+    }
+}
+
+/// An entry of exact numbers, or of rounded ones, with more digits than are kept.
+pub(super) fn tidied(entry: &Rational, exact: bool) -> Rational {
+    /// What elimination may lose.
+    const SPARE: usize = 20;
+    match exact {
+        true => entry.clone(),
+        false => rounded_fraction(entry, DIGITS + SPARE),
     }
 }
 

@@ -1,7 +1,9 @@
 //! Fractions in rows: determinants, inverses and null vectors by Gaussian elimination.
 //!
 //! A pivot is the largest entry that is left, so that fractions which stand for rounded numbers of
-//! many digits are treated as well as exact ones; an entry below [`NEGLIGIBLE`] is zero.
+//! many digits are treated as well as exact ones; an entry below [`NEGLIGIBLE`] is zero. Such fractions
+//! would grow by as many digits with each step: they are tidied, rounded again, and exact ones are not.
+//! The work is n^3 products.
 
 use num_traits::{One, Signed, Zero};
 
@@ -10,6 +12,9 @@ use crate::exact::rational::to_f64;
 
 /// A matrix in rows.
 pub(super) type Matrix = Vec<Vec<Rational>>;
+
+/// What is done to each new entry.
+pub(super) type Tidy<'a> = &'a dyn Fn(&Rational) -> Rational;
 
 /// Size below which an entry is that of rounding: roots are refined to [`super::linear::DIGITS`]
 /// digits, and entries are of the order of one or exact.
@@ -55,24 +60,24 @@ pub(super) fn determinant(matrix: &Matrix) -> Rational {
             product = -product;
         }
         product *= rows[pivot][pivot].clone();
-        eliminate_below(&mut rows, pivot);
+        eliminate_below(&mut rows, pivot, &Rational::clone);
     }
     product
 }
 
-fn eliminate_below(rows: &mut Matrix, pivot: usize) {
+fn eliminate_below(rows: &mut Matrix, pivot: usize, tidy: Tidy) {
     let (above, below) = rows.split_at_mut(pivot + 1);
     let of_pivot = &above[pivot];
     for row in below.iter_mut().filter(|row| !row[pivot].is_zero()) {
         let factor = &row[pivot] / &of_pivot[pivot];
         for (entry, of_pivot) in row.iter_mut().zip(of_pivot).skip(pivot) {
-            *entry -= &factor * of_pivot;
+            *entry = tidy(&(&*entry - &factor * of_pivot));
         }
     }
 }
 
 /// The inverse; `None` if a pivot vanishes.
-pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
+pub(super) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
     let count = matrix.len();
     let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
     let mut rows: Matrix = matrix
@@ -88,7 +93,7 @@ pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
         }
         rows.swap(pivot, largest);
         let scale = rows[pivot][pivot].clone();
-        rows[pivot].iter_mut().for_each(|entry| *entry /= scale.clone());
+        rows[pivot].iter_mut().for_each(|entry| *entry = tidy(&(&*entry / &scale)));
         let of_pivot = rows[pivot].clone();
         for (index, row) in rows.iter_mut().enumerate() {
             if index == pivot || row[pivot].is_zero() {
@@ -96,7 +101,9 @@ pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
             }
             let factor = row[pivot].clone();
             for (entry, of_pivot) in row.iter_mut().zip(&of_pivot) {
-                *entry -= &factor * of_pivot;
+                if !of_pivot.is_zero() {
+                    *entry = tidy(&(&*entry - &factor * of_pivot));
+                }
             }
         }
     }
@@ -104,7 +111,7 @@ pub(super) fn inverse(matrix: &Matrix) -> Option<Matrix> {
 }
 
 /// The vector that a matrix of rank n - 1 makes zero; its first entry that is not zero is one.
-pub(super) fn null_vector(matrix: &Matrix) -> Vec<Rational> {
+pub(super) fn null_vector(matrix: &Matrix, tidy: Tidy) -> Vec<Rational> {
     let count = matrix.len();
     let mut rows = matrix.clone();
     let mut columns: Vec<usize> = (0..count).collect();
@@ -121,14 +128,14 @@ pub(super) fn null_vector(matrix: &Matrix) -> Vec<Rational> {
         rows.swap(pivot, row);
         rows.iter_mut().for_each(|row| row.swap(pivot, column));
         columns.swap(pivot, column);
-        eliminate_below(&mut rows, pivot);
+        eliminate_below(&mut rows, pivot, tidy);
     }
     let mut found = vec![Rational::zero(); count];
     found[count - 1] = Rational::one();
     for row in (0..count.saturating_sub(1)).rev() {
         let known = dot(&rows[row][row + 1..], &found[row + 1..]);
         if !rows[row][row].is_zero() {
-            found[row] = -known / &rows[row][row];
+            found[row] = tidy(&(-known / &rows[row][row]));
         }
     }
     let mut vector = vec![Rational::zero(); count];
@@ -136,7 +143,7 @@ pub(super) fn null_vector(matrix: &Matrix) -> Vec<Rational> {
         vector[place] = if size(&entry) < NEGLIGIBLE { Rational::zero() } else { entry };
     }
     if let Some(first) = vector.iter().find(|entry| !entry.is_zero()).cloned() {
-        vector.iter_mut().for_each(|entry| *entry /= first.clone());
+        vector.iter_mut().for_each(|entry| *entry = tidy(&(&*entry / &first)));
     }
     vector
 }
@@ -153,11 +160,14 @@ mod tests {
             .to_vec();
         assert_eq!(determinant(&matrix), ratio(4, 1));
         let vector = [ratio(1, 3), ratio(-2, 1), ratio(5, 7)];
-        let inverse = inverse(&matrix).expect("a regular matrix");
+        let inverse = inverse(&matrix, &Rational::clone).expect("a regular matrix");
         assert_eq!(applied(&inverse, &applied(&matrix, &vector)), vector);
         let unit: Matrix =
             (0..3).map(|i| (0..3).map(|j| ratio((i == j).into(), 1)).collect()).collect();
         let singular = less(&matrix, &ratio(2, 1), &unit);
-        assert_eq!(null_vector(&singular), [ratio(1, 1), ratio(0, 1), ratio(-1, 1)]);
+        assert_eq!(
+            null_vector(&singular, &Rational::clone),
+            [ratio(1, 1), ratio(0, 1), ratio(-1, 1)]
+        );
     }
 }

@@ -6,6 +6,9 @@ use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
 use crate::verify::JudgedMode;
 
+/// Largest number of modes that are drawn: the slowest of those that were asked for.
+const MOST_MODES: usize = 6;
+
 /// The curves of one mode: each by the formula, and in truth.
 struct DrawnMode {
     title: String,
@@ -16,7 +19,7 @@ struct DrawnMode {
 }
 
 /// The modal lines at the values, by the formulas over the true motions: the second coordinate against
-/// the first, and half a period of every coordinate.
+/// the first, and half a period of every coordinate; of the first six modes.
 ///
 /// # Errors
 /// As [`figure`]; without values there is nothing to draw.
@@ -29,6 +32,7 @@ pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
     let drawn: Vec<DrawnMode> = report
         .judged_modes()
         .filter_map(|(mode, judged)| Some(drawn(mode, judged?.as_ref().ok()?)))
+        .take(MOST_MODES)
         .collect();
     let mut panels = Vec::new();
     for mode in &drawn {

@@ -22,7 +22,7 @@ struct DrawnMode {
 /// the first, and half a period of every coordinate; of the first six modes.
 ///
 /// # Errors
-/// As [`figure`]; without values there is nothing to draw.
+/// [`FigureError`], as of [`figure`]; without values there is nothing to draw.
 pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
     let names: Vec<String> =
         report.modes.system.equations.coordinates.iter().map(ToString::to_string).collect();

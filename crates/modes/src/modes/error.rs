@@ -107,9 +107,6 @@ pub enum ModeError {
         /// The power of the amplitude.
         order: usize,
     },
-    /// The expansion was interrupted.
-    #[error("the expansion was interrupted")]
-    Interrupted,
     /// An order that is too high.
     #[error("order {0} is above the limit of {1}")]
     Order(u32, u32),

@@ -63,7 +63,7 @@ pub(super) struct OverRing<'a, R: Ring> {
     pub(super) ring: R,
     /// A coefficient in the ring.
     pub(super) element: &'a dyn Fn(&Polynomial) -> R::Element,
-    /// What is done to each new coefficient: nothing, or rounding.
+    /// The change of each new coefficient: none, or rounding.
     pub(super) tidy: &'a dyn Fn(&R::Element) -> R::Element,
 }
 

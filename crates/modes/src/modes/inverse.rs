@@ -1,6 +1,6 @@
 //! The motion of each harmonic under a force: `(K - k^2 lambda M) q_k = r_k`.
 //!
-//! Of numbers the matrix is inverted; in the modal coordinates of two coordinates in closed form it is
+//! A matrix of numbers is inverted; in the modal coordinates of two coordinates in closed form it is
 //! diagonal, with the entries `lambda_j - k^2 lambda`. For k = 1 the mode itself is left out. Where
 //! `k^2 lambda` is the root of another mode, that one is left out too, and a force along it is an
 //! internal resonance.
@@ -20,7 +20,7 @@ use crate::symbol::{Symbol, fresh};
 pub(super) struct HarmonicInverse {
     /// The entries, a row for each unknown.
     pub(super) entries: Vec<Vec<Polynomial>>,
-    /// Where the matrix is singular for k other than 1: the index of the mode that resonates, and the
+    /// The index of the mode that resonates, where the matrix is singular for k other than 1, and the
     /// vectors u against which the force must be zero.
     pub(super) resonant: Option<(usize, Vec<Vec<Polynomial>>)>,
 }

@@ -52,9 +52,9 @@ pub struct NearResonance {
 /// The linear modes of a system.
 #[derive(Clone, Debug)]
 pub(super) enum LinearModes {
-    /// Of matrices of numbers.
+    /// The modes of matrices of numbers.
     Numbers(NumberModes),
-    /// Of two coordinates, in closed form.
+    /// The modes of two coordinates, in closed form.
     Two(Box<TwoModes>),
 }
 
@@ -288,7 +288,7 @@ impl NumberModes {
 
 /// An entry of exact numbers, or of rounded ones, with more digits than are kept.
 pub(super) fn tidied(entry: &Rational, exact: bool) -> Rational {
-    /// What elimination may lose.
+    /// The digits that elimination may lose.
     const SPARE: usize = 20;
     match exact {
         true => entry.clone(),
@@ -341,7 +341,7 @@ fn refined(start: f64, polynomial: &[Rational]) -> Rational {
     rounded_fraction(&root, DIGITS)
 }
 
-/// How often a factor divides a polynomial.
+/// The number of times that a factor divides a polynomial.
 fn multiplicity(polynomial: &[Rational], factor: &[Rational]) -> usize {
     let mut slope = polynomial.to_vec();
     let mut times = 0;

@@ -13,7 +13,7 @@ use crate::exact::rational::to_f64;
 /// A matrix in rows.
 pub(super) type Matrix = Vec<Vec<Rational>>;
 
-/// What is done to each new entry.
+/// The change of each new entry: none, or rounding.
 pub(super) type Tidy<'a> = &'a dyn Fn(&Rational) -> Rational;
 
 /// Size below which an entry is that of rounding: roots are refined to [`super::linear::DIGITS`]

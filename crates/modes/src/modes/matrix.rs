@@ -1,7 +1,7 @@
 //! Fractions in rows: determinants, inverses and null vectors by Gaussian elimination.
 //!
 //! A pivot is the largest entry that is left, so that fractions which stand for rounded numbers of
-//! many digits are treated as well as exact ones; an entry below [`NEGLIGIBLE`] is zero. Such fractions
+//! many digits are treated as well as exact ones; an entry of a null vector below [`NEGLIGIBLE`] is zero. Such fractions
 //! would grow by as many digits with each step: they are tidied, rounded again, and exact ones are not.
 //! The work is n^3 products.
 
@@ -16,7 +16,7 @@ pub(super) type Matrix = Vec<Vec<Rational>>;
 /// The change of each new entry: none, or rounding.
 pub(super) type Tidy<'a> = &'a dyn Fn(&Rational) -> Rational;
 
-/// Size below which an entry is that of rounding: roots are refined to [`super::linear::DIGITS`]
+/// Size below which an entry of a null vector is that of rounding: roots are refined to [`super::linear::DIGITS`]
 /// digits, and entries are of the order of one or exact.
 const NEGLIGIBLE: f64 = 1e-45;
 
@@ -88,7 +88,7 @@ pub(super) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
     for pivot in 0..count {
         let largest = (pivot..count)
             .max_by(|one, other| size(&rows[*one][pivot]).total_cmp(&size(&rows[*other][pivot])))?;
-        if size(&rows[largest][pivot]) < NEGLIGIBLE {
+        if rows[largest][pivot].is_zero() {
             return None;
         }
         rows.swap(pivot, largest);
@@ -169,5 +169,18 @@ mod tests {
             null_vector(&singular, &Rational::clone),
             [ratio(1, 1), ratio(0, 1), ratio(-1, 1)]
         );
+    }
+
+    /// Units do not matter: a matrix of small numbers is as regular as its multiple.
+    #[test]
+    fn a_matrix_of_small_numbers_has_an_inverse() {
+        let small = ratio(1, 10_i64.pow(15));
+        let small = &small * &small * &small * small.clone();
+        let matrix: Matrix = [[2, -1], [-1, 2]]
+            .map(|row| row.map(|entry| ratio(entry, 1) * &small).to_vec())
+            .to_vec();
+        let inverse = inverse(&matrix, &Rational::clone).expect("a regular matrix");
+        let vector = [ratio(1, 3), ratio(-2, 1)];
+        assert_eq!(applied(&inverse, &applied(&matrix, &vector)), vector);
     }
 }

@@ -14,6 +14,7 @@ pub mod ball;
 pub mod ball_products;
 pub mod big_float;
 pub mod bound;
+pub mod complex_polynomial;
 mod dense_product;
 pub(crate) mod integer;
 pub mod polynomial;
@@ -25,6 +26,7 @@ pub mod scaled;
 pub mod zero_clusters;
 
 pub use bound::Bound;
+pub use complex_polynomial::ComplexPolynomial;
 pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
 pub use rational::{Rational, convergent, factorial, from_f64, ratio, to_f64};

@@ -22,20 +22,10 @@ use std::collections::BTreeMap;
 
 use num_traits::{One, Zero};
 
-use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{ComplexPolynomial as Complex, Polynomial, Rational};
 use crate::method::drive::Quadrature;
 use crate::symbol::Symbol;
-
-/// A complex number whose parts are polynomials in the real symbols, in `B` and in its conjugate.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Complex {
-    /// Real part.
-    pub real: Polynomial,
-    /// Imaginary part.
-    pub imaginary: Polynomial,
-}
 
 /// `B` and its conjugate, as symbols.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,75 +82,10 @@ pub(super) struct MultipleScalesExpansion {
     pub resonant: Vec<Complex>,
 }
 
-impl Complex {
-    pub(super) fn zero() -> Self {
-        Self { real: Polynomial::zero(), imaginary: Polynomial::zero() }
-    }
-
-    pub(super) fn is_zero(&self) -> bool {
-        self.real.is_zero() && self.imaginary.is_zero()
-    }
-
-    pub(super) fn real(real: Polynomial) -> Self {
-        Self { real, imaginary: Polynomial::zero() }
-    }
-
-    pub(super) fn accumulate(&mut self, other: &Self) {
-        self.real.accumulate(&other.real);
-        self.imaginary.accumulate(&other.imaginary);
-    }
-
-    fn subtract(&mut self, other: &Self) {
-        let mut other = other.clone();
-        other.real.negate();
-        other.imaginary.negate();
-        self.accumulate(&other);
-    }
-
-    pub(super) fn product(&self, other: &Self) -> Self {
-        let mut real = self.imaginary.product(&other.imaginary);
-        real.negate();
-        real.accumulate(&self.real.product(&other.real));
-        let mut imaginary = self.real.product(&other.imaginary);
-        imaginary.accumulate(&self.imaginary.product(&other.real));
-        Self { real, imaginary }
-    }
-
-    pub(super) fn times(&self, factor: &Polynomial) -> Self {
-        Self { real: self.real.product(factor), imaginary: self.imaginary.product(factor) }
-    }
-
-    /// `i` times it.
-    pub(super) fn times_i(&self) -> Self {
-        let mut real = self.imaginary.clone();
-        real.negate();
-        Self { real, imaginary: self.real.clone() }
-    }
-
-    pub(super) fn conjugate(&self, amplitude: ComplexAmplitude) -> Self {
-        let mut imaginary = amplitude.conjugated(&self.imaginary);
-        imaginary.negate();
-        Self { real: amplitude.conjugated(&self.real), imaginary }
-    }
-
-    /// Its derivative with respect to a symbol.
-    fn slope(&self, symbol: Symbol) -> Self {
-        Self { real: self.real.slope(symbol), imaginary: self.imaginary.slope(symbol) }
-    }
-}
-
 impl ComplexAmplitude {
-    /// `B` and its conjugate exchanged.
-    fn conjugated(self, polynomial: &Polynomial) -> Polynomial {
-        let mut result = Polynomial::zero();
-        for (monomial, number) in polynomial.terms() {
-            let (p, q) = (monomial.exponent(self.own), monomial.exponent(self.conjugate));
-            let rest = monomial.without(self.own).without(self.conjugate);
-            let turned =
-                Monomial::power_of(self.own, q).product(&Monomial::power_of(self.conjugate, p));
-            result.add_term(rest.product(&turned), number.clone());
-        }
-        result
+    /// The pair that a conjugate exchanges.
+    fn pair(self) -> [Symbol; 2] {
+        [self.own, self.conjugate]
     }
 }
 
@@ -204,7 +129,7 @@ fn mirrored(mut wave: FastPhaseSeries, amplitude: ComplexAmplitude) -> FastPhase
     let above: Vec<(i32, Complex)> = wave
         .iter()
         .filter(|entry| *entry.0 > 0)
-        .map(|(m, value)| (-m, value.conjugate(amplitude)))
+        .map(|(m, value)| (-m, value.conjugate(&[amplitude.pair()])))
         .collect();
     wave.extend(above);
     wave
@@ -290,9 +215,7 @@ impl ScaledProblem {
             let positions = total(&found.displacement, &forced);
             let velocities = total(&velocity, &forced_velocity);
             accumulate(&mut right, &self.force(order, &positions, &velocities, amplitude));
-            for term in right.values_mut() {
-                *term = Complex::zero().minus(term);
-            }
+            right = right.into_iter().map(|(m, term)| (m, term.negative())).collect();
             let resonant = right.get(&self.own).cloned().unwrap_or_else(Complex::zero);
             // 2 i omega0 D_k B takes the resonant terms away.
             let half = Polynomial::constant(ratio(-1, 2)).product(&inverse);
@@ -356,7 +279,7 @@ impl ScaledProblem {
             let rate = &found.rates[j];
             if !rate.is_zero() {
                 add(&mut result, *m, &value.slope(amplitude.own).product(rate));
-                let conjugate = rate.conjugate(amplitude);
+                let conjugate = rate.conjugate(&[amplitude.pair()]);
                 add(&mut result, *m, &value.slope(amplitude.conjugate).product(&conjugate));
             }
         }
@@ -404,21 +327,13 @@ impl ScaledProblem {
     }
 }
 
-impl Complex {
-    fn minus(mut self, other: &Self) -> Self {
-        self.subtract(other);
-        self
-    }
-}
-
 /// `cos(m phi)` or `sin(m phi)`.
 fn drive(harmonic: i32, quadrature: Quadrature) -> FastPhaseSeries {
     let half = Polynomial::constant(ratio(1, 2));
     let above = match quadrature {
         Quadrature::Cosine => Complex::real(half),
-        Quadrature::Sine => Complex::zero().minus(&Complex::real(half).times_i()),
+        Quadrature::Sine => Complex::real(half).times_i().negative(),
     };
-    let below =
-        Complex { real: above.real.clone(), imaginary: Complex::zero().minus(&above).imaginary };
+    let below = above.conjugate(&[]);
     FastPhaseSeries::from([(harmonic, above), (-harmonic, below)])
 }

@@ -7,10 +7,10 @@ use num_traits::Zero;
 
 use super::driven::DrivenProblem;
 use super::names::ExpansionSymbols;
-use super::slow_times::{Complex, MultipleScalesExpansion};
+use super::slow_times::MultipleScalesExpansion;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{ComplexPolynomial as Complex, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::Refusal;
 use crate::method::frequency_response::{FrequencyResponse, PhaseWaves, eliminated, turning};

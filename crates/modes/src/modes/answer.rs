@@ -151,7 +151,7 @@ pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes,
         return Err(ModeError::Order(order, HIGHEST_ORDER));
     }
     let mut system = system.clone();
-    let linear = LinearModes::new(&system)?;
+    let linear = LinearModes::new(&system.mass, &system.stiffness, system.names())?;
     let count = linear.count();
     let numbers = match options.mode {
         None => 1..=count,

@@ -22,7 +22,7 @@ use crate::solution::AmplitudeConvention;
 
 /// The unknowns eta of an expansion, `q = V eta`, and the equations for them, `P (M q'' + K q + f) = 0`.
 #[derive(Clone, Debug)]
-pub(super) struct Basis {
+pub(crate) struct Basis {
     /// V, a row for each coordinate.
     pub(super) coordinates: Vec<Vec<Polynomial>>,
     /// P, a row for each unknown.

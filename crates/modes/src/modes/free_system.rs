@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::{Signed, ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive};
 
 use super::ModeError;
-use crate::coupled::{CoupledEquations, CoupledError};
-use crate::exact::{Polynomial, Rational};
-use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, ResultSymbols};
-use crate::mechanics::{EquationsOfMotion, equilibria};
+use super::reading::{at_rest, counted_from_rest, polynomial, with_own_names_apart};
+use crate::coupled::CoupledEquations;
+use crate::exact::Polynomial;
+use crate::expr::{Expr, ExprError, ResultSymbols};
+use crate::mechanics::EquationsOfMotion;
 use crate::series::taylor;
 use crate::solution::Definition;
 use crate::symbol::Symbol;
-use crate::symbol::fresh;
 
 /// A free system without damping about its place of rest, where every coordinate is zero.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,22 +96,7 @@ impl FreeSystem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn of_mechanism(equations: &EquationsOfMotion) -> Result<Self, ModeError> {
-        let coupled = CoupledEquations::of_mechanism(equations)?;
-        let found = equilibria(equations).map_err(CoupledError::from)?;
-        let Some(place) = found.first().map(|rest| rest.values(&equations.coordinates)) else {
-            return Self::new(coupled);
-        };
-        let rest: Vec<Expr> = coupled
-            .coordinates
-            .iter()
-            .map(|name| place.get(name).cloned().unwrap_or_else(Expr::zero))
-            .collect();
-        let counted: BTreeMap<Symbol, Expr> =
-            place.iter().map(|(name, place)| (*name, place + &Expr::from(*name))).collect();
-        let sides = coupled.equations.iter().map(|(left, right)| {
-            Ok((left.substitute_all(&counted)?, right.substitute_all(&counted)?))
-        });
-        let coupled = CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)?;
+        let (coupled, rest) = counted_from_rest(equations)?;
         Ok(Self { rest, ..Self::new(coupled)? })
     }
 
@@ -148,7 +133,7 @@ impl FreeSystem {
                 let driven = written_out.terms().iter().find(|term| term.contains(time));
                 return Err(ModeError::Driven(driven.unwrap_or(&residual).clone()));
             }
-            let parts = taylor(&residual, &system.variables(), 1)?;
+            let parts = taylor(&residual, &at_rest(coordinates), 1)?;
             let [rest, linear] = [0, 1].map(|degree| parts.get(degree).cloned());
             let rest = rest.unwrap_or_else(Expr::zero).expand()?;
             if !rest.is_zero() {
@@ -239,16 +224,6 @@ impl FreeSystem {
         sides.map(|(left, right)| left - right).collect()
     }
 
-    /// Coordinates, velocities and accelerations, each zero.
-    fn variables(&self) -> Vec<(Symbol, Rational)> {
-        let coordinates = self.equations.coordinates.iter();
-        let all = coordinates.flat_map(|name| {
-            let velocity = name.derivative();
-            [*name, velocity, velocity.derivative()]
-        });
-        all.map(|name| (name, Rational::zero())).collect()
-    }
-
     /// The names of the equations: coordinates, parameters, constants, time.
     pub(super) fn names(&self) -> Vec<Symbol> {
         let constants = self.constants.iter().map(|constant| constant.symbol);
@@ -258,20 +233,7 @@ impl FreeSystem {
 
     /// An expression without coordinates as a polynomial.
     fn polynomial(&mut self, expression: &Expr) -> Polynomial {
-        let mut names = self.names();
-        let constants = &mut self.constants;
-        let mut name = |factor: &Expr| {
-            let known = constants.iter().find(|constant| constant.meaning == *factor);
-            Some(known.map(|constant| constant.symbol).unwrap_or_else(|| {
-                let symbol = fresh(&format!("c{}", constants.len() + 1), &names);
-                names.push(symbol);
-                constants.push(Definition { symbol, meaning: factor.clone() });
-                symbol
-            }))
-        };
-        // Every factor has a name, so that only the length of the expression can be in the way.
-        let found = expression.to_polynomial(&mut name).ok().flatten();
-        found.unwrap_or_else(|| name(expression).map_or_else(Polynomial::zero, Polynomial::symbol))
+        polynomial(expression, &self.names(), &mut self.constants)
     }
 
     /// The terms of f up to a degree, for each equation.
@@ -279,7 +241,7 @@ impl FreeSystem {
     /// # Errors
     /// [`ModeError`] for a term that is odd in the velocities, or has no Taylor series.
     pub(super) fn force_terms(&mut self, degree: u32) -> Result<Vec<Vec<ForceTerm>>, ModeError> {
-        let variables = self.variables();
+        let variables = at_rest(&self.equations.coordinates);
         let places: BTreeMap<Symbol, (usize, usize)> = variables
             .iter()
             .enumerate()
@@ -324,24 +286,4 @@ impl FreeSystem {
         powers.sort_unstable();
         ForceTerm { coefficient: self.polynomial(&coefficient), powers }
     }
-}
-
-/// The equations with their names that are those of something in an answer kept apart.
-fn with_own_names_apart(equations: CoupledEquations) -> Result<CoupledEquations, ModeError> {
-    let is_taken = |name: &&Symbol| NAMES_OF_ANSWERS.contains(&name.name());
-    let coordinates = equations.coordinates.iter().filter(is_taken).flat_map(|name| {
-        let velocity = name.derivative();
-        [*name, velocity, velocity.derivative()]
-    });
-    let parameters = equations.parameters.iter().filter(is_taken).copied();
-    let apart: BTreeMap<Symbol, Expr> =
-        coordinates.chain(parameters).map(|name| (name, Expr::from(name.apart()))).collect();
-    if apart.is_empty() {
-        return Ok(equations);
-    }
-    let sides = equations
-        .equations
-        .iter()
-        .map(|(left, right)| Ok((left.substitute_all(&apart)?, right.substitute_all(&apart)?)));
-    Ok(CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)?)
 }

@@ -11,9 +11,9 @@
 
 use num_traits::{One, Signed, Zero};
 
+use super::ModeError;
 use super::expansion::Basis;
 use super::matrix::{self, Matrix};
-use super::{FreeSystem, ModeError};
 use crate::decimal::{rounded_fraction, significant, significant_fraction};
 use crate::exact::rational::{from_f64, ratio, to_f64};
 use crate::exact::real_roots::{derivative, positive_roots, remainder};
@@ -23,19 +23,19 @@ use crate::solution::Definition;
 use crate::symbol::{Symbol, fresh};
 
 /// Number of digits of a root that is no fraction.
-pub(super) const DIGITS: usize = 60;
+pub(crate) const DIGITS: usize = 60;
 
 /// A linear mode that oscillates.
 #[derive(Clone, Debug)]
-pub(super) struct LinearMode {
+pub(crate) struct LinearMode {
     /// lambda, the square of the linear frequency.
-    pub(super) square: Polynomial,
+    pub(crate) square: Polynomial,
     /// v, whose first entry that is not zero is one.
-    pub(super) shape: Vec<Polynomial>,
+    pub(crate) shape: Vec<Polynomial>,
     /// u, likewise.
-    pub(super) left: Vec<Polynomial>,
+    pub(crate) left: Vec<Polynomial>,
     /// `1/(u^T M v)`.
-    pub(super) inverse_mass: Polynomial,
+    pub(crate) inverse_mass: Polynomial,
 }
 
 /// A frequency that is near a multiple of that of a mode: the divisor is small.
@@ -51,7 +51,7 @@ pub struct NearResonance {
 
 /// The linear modes of a system.
 #[derive(Clone, Debug)]
-pub(super) enum LinearModes {
+pub(crate) enum LinearModes {
     /// The modes of matrices of numbers.
     Numbers(NumberModes),
     /// The modes of two coordinates, in closed form.
@@ -59,63 +59,67 @@ pub(super) enum LinearModes {
 }
 
 /// A whole number.
-pub(super) fn whole(value: i64) -> Polynomial {
+pub(crate) fn whole(value: i64) -> Polynomial {
     Polynomial::constant(ratio(value, 1))
 }
 
 /// The unit vector of two along one of them.
-pub(super) fn unit(along: usize) -> Vec<Polynomial> {
+pub(crate) fn unit(along: usize) -> Vec<Polynomial> {
     [0, 1].map(|index| whole((index == along).into())).to_vec()
 }
 
 /// The linear modes of matrices of numbers.
 #[derive(Clone, Debug)]
-pub(super) struct NumberModes {
-    pub(super) mass: Matrix,
-    pub(super) stiffness: Matrix,
+pub(crate) struct NumberModes {
+    pub(crate) mass: Matrix,
+    pub(crate) stiffness: Matrix,
     /// The roots lambda, smallest first, each as often as it counts.
-    pub(super) roots: Vec<Root>,
+    pub(crate) roots: Vec<Root>,
 }
 
 /// A root lambda.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Root {
-    pub(super) value: Rational,
+pub(crate) struct Root {
+    pub(crate) value: Rational,
     /// Whether it is that fraction, and not rounded.
-    pub(super) exact: bool,
+    pub(crate) exact: bool,
 }
 
 /// The linear modes of two coordinates in closed form.
 #[derive(Clone, Debug)]
-pub(super) struct TwoModes {
-    pub(super) modes: [LinearMode; 2],
+pub(crate) struct TwoModes {
+    pub(crate) modes: [LinearMode; 2],
     /// lambda in the letters of the equations, where it is a sum of products of powers.
-    pub(super) explicit: [Option<Polynomial>; 2],
+    pub(crate) explicit: [Option<Polynomial>; 2],
     /// lambda where no letters stand in it.
     values: [Option<f64>; 2],
     /// The names of frequencies, shapes and masses.
-    pub(super) definitions: Vec<Definition>,
+    pub(crate) definitions: Vec<Definition>,
 }
 
 impl LinearModes {
-    /// The linear modes of a system.
+    /// The linear modes of mass and stiffness matrices; `taken` are the names in use.
     ///
     /// # Errors
     /// [`ModeError`] for a singular mass matrix, roots that are not real, and letters that leave no
     /// closed form.
-    pub(super) fn new(system: &FreeSystem) -> Result<Self, ModeError> {
+    pub(crate) fn new(
+        mass: &[Vec<Polynomial>],
+        stiffness: &[Vec<Polynomial>],
+        taken: Vec<Symbol>,
+    ) -> Result<Self, ModeError> {
         let numbers = |rows: &[Vec<Polynomial>]| -> Option<Matrix> {
             rows.iter().map(|row| row.iter().map(Polynomial::as_number).collect()).collect()
         };
-        match (numbers(&system.mass), numbers(&system.stiffness)) {
+        match (numbers(mass), numbers(stiffness)) {
             (Some(mass), Some(stiffness)) => Ok(Self::Numbers(NumberModes::new(mass, stiffness)?)),
-            _ if system.mass.len() == 2 => Ok(Self::Two(Box::new(TwoModes::new(system)?))),
+            _ if mass.len() == 2 => Ok(Self::Two(Box::new(TwoModes::new(mass, stiffness, taken)?))),
             _ => {
-                let entries = system.mass.iter().chain(&system.stiffness).flatten();
+                let entries = mass.iter().chain(stiffness).flatten();
                 let mut letters: Vec<Symbol> = entries.flat_map(Polynomial::symbols).collect();
                 letters.sort_unstable();
                 letters.dedup();
-                Err(ModeError::Letters { coordinates: system.mass.len(), letters })
+                Err(ModeError::Letters { coordinates: mass.len(), letters })
             }
         }
     }
@@ -124,7 +128,7 @@ impl LinearModes {
     ///
     /// # Errors
     /// [`ModeError`] for a mode that does not oscillate, or is not the only one of its frequency.
-    pub(super) fn mode(&self, index: usize) -> Result<LinearMode, ModeError> {
+    pub(crate) fn mode(&self, index: usize) -> Result<LinearMode, ModeError> {
         match self {
             Self::Numbers(modes) => modes.mode(index),
             Self::Two(modes) => modes.mode(index),
@@ -132,7 +136,7 @@ impl LinearModes {
     }
 
     /// The number of modes.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         match self {
             Self::Numbers(modes) => modes.roots.len(),
             Self::Two(modes) => modes.modes.len(),
@@ -140,7 +144,7 @@ impl LinearModes {
     }
 
     /// The frequencies of other modes that are near a multiple of that of this mode.
-    pub(super) fn near_resonances(&self, index: usize, highest: usize) -> Vec<NearResonance> {
+    pub(crate) fn near_resonances(&self, index: usize, highest: usize) -> Vec<NearResonance> {
         /// Largest relative distance of the squares of two frequencies that are near each other.
         const NEAR: f64 = 0.1;
         let Self::Numbers(modes) = self else { return vec![] };
@@ -158,7 +162,7 @@ impl LinearModes {
     }
 
     /// Whether the mode of this index has rounded numbers.
-    pub(super) fn is_rounded(&self, index: usize) -> bool {
+    pub(crate) fn is_rounded(&self, index: usize) -> bool {
         match self {
             Self::Numbers(modes) => !modes.roots[index].exact,
             Self::Two(_) => false,
@@ -166,7 +170,7 @@ impl LinearModes {
     }
 
     /// The unknowns in which a mode is expanded.
-    pub(super) fn basis(&self, index: usize, mode: &LinearMode, mass: &[Vec<Polynomial>]) -> Basis {
+    pub(crate) fn basis(&self, index: usize, mode: &LinearMode, mass: &[Vec<Polynomial>]) -> Basis {
         let scaled = |left: &[Polynomial], factor: &Polynomial| -> Vec<Polynomial> {
             left.iter().map(|entry| entry.product(factor)).collect()
         };
@@ -202,7 +206,7 @@ impl LinearModes {
     }
 
     /// The names that the modes introduce.
-    pub(super) fn definitions(&self) -> &[Definition] {
+    pub(crate) fn definitions(&self) -> &[Definition] {
         match self {
             Self::Numbers(_) => &[],
             Self::Two(modes) => &modes.definitions,
@@ -281,13 +285,13 @@ impl NumberModes {
     }
 
     /// `K - lambda M`.
-    pub(super) fn matrix_at(&self, lambda: &Rational) -> Matrix {
+    pub(crate) fn matrix_at(&self, lambda: &Rational) -> Matrix {
         matrix::less(&self.stiffness, lambda, &self.mass)
     }
 }
 
 /// An entry of exact numbers, or of rounded ones, with more digits than are kept.
-pub(super) fn tidied(entry: &Rational, exact: bool) -> Rational {
+pub(crate) fn tidied(entry: &Rational, exact: bool) -> Rational {
     /// The digits that elimination may lose.
     const SPARE: usize = 20;
     match exact {
@@ -356,12 +360,16 @@ fn multiplicity(polynomial: &[Rational], factor: &[Rational]) -> usize {
 type Pair = [[Polynomial; 2]; 2];
 
 impl TwoModes {
-    fn new(system: &FreeSystem) -> Result<Self, ModeError> {
+    fn new(
+        mass: &[Vec<Polynomial>],
+        stiffness: &[Vec<Polynomial>],
+        taken: Vec<Symbol>,
+    ) -> Result<Self, ModeError> {
         let pair = |rows: &[Vec<Polynomial>]| -> Pair {
             [0, 1].map(|row| [0, 1].map(|column| rows[row][column].clone()))
         };
-        let (mass, stiffness) = (pair(&system.mass), pair(&system.stiffness));
-        let mut names = Names { taken: system.names(), definitions: vec![] };
+        let (mass, stiffness) = (pair(mass), pair(stiffness));
+        let mut names = Names { taken, definitions: vec![] };
         let alone = has_row_of_its_own(&mass, &stiffness);
         let squares = squares(&mass, &stiffness)?;
         let mut modes = Vec::new();

@@ -11,10 +11,10 @@ use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 
 /// A matrix in rows.
-pub(super) type Matrix = Vec<Vec<Rational>>;
+pub(crate) type Matrix = Vec<Vec<Rational>>;
 
 /// The change of each new entry: none, or rounding.
-pub(super) type Tidy<'a> = &'a dyn Fn(&Rational) -> Rational;
+pub(crate) type Tidy<'a> = &'a dyn Fn(&Rational) -> Rational;
 
 /// Size below which an entry of a null vector is that of rounding: roots are refined to [`super::linear::DIGITS`]
 /// digits, and entries are of the order of one or exact.
@@ -25,7 +25,7 @@ fn size(entry: &Rational) -> f64 {
 }
 
 /// `matrix - factor * other`.
-pub(super) fn less(matrix: &Matrix, factor: &Rational, other: &Matrix) -> Matrix {
+pub(crate) fn less(matrix: &Matrix, factor: &Rational, other: &Matrix) -> Matrix {
     let row = |(row, others): (&Vec<Rational>, &Vec<Rational>)| {
         row.iter().zip(others).map(|(entry, other)| entry - factor * other).collect()
     };
@@ -33,22 +33,22 @@ pub(super) fn less(matrix: &Matrix, factor: &Rational, other: &Matrix) -> Matrix
 }
 
 /// The transposed matrix.
-pub(super) fn transposed(matrix: &Matrix) -> Matrix {
+pub(crate) fn transposed(matrix: &Matrix) -> Matrix {
     (0..matrix.len()).map(|j| matrix.iter().map(|row| row[j].clone()).collect()).collect()
 }
 
 /// `matrix * vector`.
-pub(super) fn applied(matrix: &Matrix, vector: &[Rational]) -> Vec<Rational> {
+pub(crate) fn applied(matrix: &Matrix, vector: &[Rational]) -> Vec<Rational> {
     matrix.iter().map(|row| dot(row, vector)).collect()
 }
 
 /// The sum of products.
-pub(super) fn dot(left: &[Rational], right: &[Rational]) -> Rational {
+pub(crate) fn dot(left: &[Rational], right: &[Rational]) -> Rational {
     left.iter().zip(right).fold(Rational::zero(), |sum, (a, b)| sum + a * b)
 }
 
 /// The determinant.
-pub(super) fn determinant(matrix: &Matrix) -> Rational {
+pub(crate) fn determinant(matrix: &Matrix) -> Rational {
     let mut rows = matrix.clone();
     let mut product = Rational::one();
     for pivot in 0..rows.len() {
@@ -77,7 +77,7 @@ fn eliminate_below(rows: &mut Matrix, pivot: usize, tidy: Tidy) {
 }
 
 /// The inverse; `None` if a pivot vanishes.
-pub(super) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
+pub(crate) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
     let count = matrix.len();
     let unit = |i: usize, j: usize| if i == j { Rational::one() } else { Rational::zero() };
     let mut rows: Matrix = matrix
@@ -111,7 +111,7 @@ pub(super) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
 }
 
 /// The vector that a matrix of rank n - 1 makes zero; its first entry that is not zero is one.
-pub(super) fn null_vector(matrix: &Matrix, tidy: Tidy) -> Vec<Rational> {
+pub(crate) fn null_vector(matrix: &Matrix, tidy: Tidy) -> Vec<Rational> {
     let count = matrix.len();
     let mut rows = matrix.clone();
     let mut columns: Vec<usize> = (0..count).collect();

@@ -11,6 +11,7 @@
 //! Localization in Nonlinear Systems*, Wiley 1996, chapter 2; A. H. Nayfeh, *Perturbation Methods*,
 //! Wiley 1973, section 3.1.)
 //!
+//! - `reading`: equations counted from rest, their coefficients as polynomials.
 //! - `free_system`: the equations as `M`, `K` and the terms of `f`.
 //! - `linear`: the linear modes, exact where their roots are; `matrix`: fractions in rows.
 //! - `inverse`: `K - k^2 lambda M` inverted for each harmonic, the resonances among them.
@@ -22,9 +23,10 @@ mod error;
 mod expansion;
 mod free_system;
 mod inverse;
-mod linear;
-mod matrix;
+pub(crate) mod linear;
+pub(crate) mod matrix;
 mod modal_line;
+pub(crate) mod reading;
 
 pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;

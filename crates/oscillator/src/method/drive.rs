@@ -51,7 +51,7 @@ pub(super) struct Driven {
 
 /// The quadrature of a drive: cosine or sine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quadrature {
+pub enum Quadrature {
     /// `cos`.
     Cosine,
     /// `sin`.
@@ -284,29 +284,41 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
 }
 
 /// One term: `factor cos(rate t + phase)` or the sine of that, the rate without a minus.
-pub(super) struct HarmonicExcitation {
-    pub(super) factor: Expr,
-    pub(super) rate: Expr,
-    pub(super) phase: Expr,
-    pub(super) quadrature: Quadrature,
+#[derive(Clone, Debug)]
+pub struct HarmonicExcitation {
+    /// The factor of the wave.
+    pub factor: Expr,
+    /// The rate at which its phase turns, without a minus.
+    pub rate: Expr,
+    /// Its phase at `t = 0`.
+    pub phase: Expr,
+    /// Whether it is a cosine or a sine.
+    pub quadrature: Quadrature,
 }
 
 impl HarmonicExcitation {
     /// # Errors
     /// A term that is not a single wave, by name.
     pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {
+        Self::of_term(term)?.ok_or_else(|| Reason::NoWave.to(method).about(term))
+    }
+
+    /// The wave in a term; `None` of a term that is not a single wave.
+    ///
+    /// # Errors
+    /// A step of algebra that fails.
+    pub fn of_term(term: &Expr) -> Result<Option<Self>, ExprError> {
         let t = Symbol::new("t");
-        let not_periodic = || Reason::NoWave.to(method).about(term);
         let (number, factors) = term.factors();
         let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
             factors.iter().partition(|factor| factor.contains(t));
         let [wave] = moving.as_slice() else {
-            return Err(not_periodic());
+            return Ok(None);
         };
         let (quadrature, argument) = match wave.node() {
             Node::Function(Function::Cos, arguments) => (Quadrature::Cosine, &arguments[0]),
             Node::Function(Function::Sin, arguments) => (Quadrature::Sine, &arguments[0]),
-            _ => return Err(not_periodic()),
+            _ => return Ok(None),
         };
         let argument = argument.expand()?;
         let (turning, rest): (Vec<Expr>, Vec<Expr>) =
@@ -316,7 +328,7 @@ impl HarmonicExcitation {
         let moves =
             |part: &Expr| part.contains(t) || part.symbols().iter().any(|name| name.primes() > 0);
         if moves(&rate) || moves(&phase) {
-            return Err(not_periodic());
+            return Ok(None);
         }
         let mut factor =
             Expr::product(std::iter::once(Expr::number(number)).chain(still.into_iter().cloned()));
@@ -326,7 +338,7 @@ impl HarmonicExcitation {
                 factor = -&factor;
             }
         }
-        Ok(Self { factor, rate, phase, quadrature })
+        Ok(Some(Self { factor, rate, phase, quadrature }))
     }
 
     /// The part of the phase that does not contain the coordinate.

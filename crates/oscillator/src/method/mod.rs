@@ -54,6 +54,7 @@ pub(crate) mod transient;
 pub(crate) mod variational_iteration;
 
 pub use default_method::default_method;
+pub use drive::{HarmonicExcitation, Quadrature};
 pub use harmonic_balance::MOST_HARMONICS;
 pub use refusal::{Reason, Refusal, Refuser};
 

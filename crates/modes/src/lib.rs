@@ -17,11 +17,12 @@ pub use lindstedt_expr::{decimal, exact, expr, symbol};
 #[doc(no_inline)]
 pub use lindstedt_numeric::interrupt;
 #[doc(no_inline)]
-pub use lindstedt_oscillator::solution;
+pub use lindstedt_oscillator::{method, solution};
 #[doc(no_inline)]
 pub use lindstedt_series::series;
 
 pub mod modes;
+pub mod multiple_scales;
 
 pub use interrupt::Supervision;
 pub use symbol::Symbol;

@@ -1,0 +1,489 @@
+//! The slow equations of a system, and the motion they belong to.
+
+use num_traits::{One, Zero};
+
+use super::expansion::{Expansion, OrderedTerm, Problem, WaveVector};
+use super::modal::ModalForm;
+use super::resonance::{Frequencies, Lattice, Resonance, alias};
+use super::slow_equations::{
+    PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, slow_phases,
+};
+use super::{CoupledSystem, MultipleScalesError};
+use crate::decimal::rounded_fraction;
+use crate::exact::rational::{Integer, ratio};
+use crate::exact::{Polynomial, Rational};
+use crate::expr::Expr;
+use crate::interrupt::Supervision;
+use crate::solution::Definition;
+use crate::symbol::{Symbol, fresh, fresh_stem};
+
+use num_integer::Integer as _;
+
+/// The highest order.
+const HIGHEST_ORDER: usize = 6;
+
+/// Number of digits of rounded coefficients.
+const KEPT_DIGITS: usize = 15;
+
+/// The choices of a derivation.
+#[derive(Clone, Debug, Default)]
+pub struct MultipleScalesOptions {
+    /// The highest order of the slow equations; without it the lowest at which damping, detuning and
+    /// the nonlinear forces act.
+    pub order: Option<usize>,
+    /// The resonances, such as `omega2 = 2*omega1, Omega = omega2`, or `none`; without them those
+    /// that are near, where the frequencies are numbers.
+    pub resonance: Option<String>,
+    /// Interrupt and progress.
+    pub supervision: Supervision,
+}
+
+/// The slow equations of a system.
+#[derive(Clone, Debug)]
+pub struct SlowMotion {
+    /// The system.
+    pub system: CoupledSystem,
+    /// The highest order.
+    pub order: usize,
+    /// The order as which damping, detunings and drives at a resonance count.
+    pub small_order: usize,
+    /// The resonances, as people write them.
+    pub resonances: Vec<String>,
+    /// The linear frequencies, the modes in their order.
+    pub frequencies: Vec<Expr>,
+    /// The shape of each mode: the coordinates in which it moves.
+    pub shapes: Vec<Vec<Expr>>,
+    /// The reference frequencies, which obey the resonances exactly.
+    pub references: Vec<Expr>,
+    /// `sigma_j`, reference frequency less linear frequency, where they differ.
+    pub detunings: Vec<Definition>,
+    /// `a_j`, the amplitude of the first harmonic of each mode.
+    pub amplitudes: Vec<Symbol>,
+    /// `phi_j`, the phase of each mode.
+    pub phases: Vec<Symbol>,
+    /// The slow phases, whole combinations of the phases; a phase that is slow by itself has its own
+    /// name.
+    pub slow_phases: Vec<(Symbol, Vec<i32>)>,
+    /// The rates of amplitudes and phases, in the slow phases.
+    pub rates: Vec<SlowRate>,
+    /// The motion of each coordinate, in `t`, amplitudes and phases.
+    pub motion: Vec<Expr>,
+    /// Symbols that the formulas introduce; each may use those before it.
+    pub definitions: Vec<Definition>,
+    /// Whether coefficients are rounded to fifteen digits.
+    pub rounded: bool,
+    /// Whether terms of the equations are of a higher order, and so left out.
+    pub leaves_out: bool,
+}
+
+impl SlowMotion {
+    /// `a_j'` and `phi_j'` as expressions.
+    ///
+    /// # Errors
+    /// A step of algebra that fails.
+    pub fn rate(&self, mode: usize) -> Result<[Expr; 2], crate::expr::ExprError> {
+        let phases: Vec<Symbol> = self.slow_phases.iter().map(|(name, _)| *name).collect();
+        let over = Polynomial::symbol(self.amplitudes[mode]).power(-1);
+        let over = over.unwrap_or_else(Polynomial::zero);
+        let rate = &self.rates[mode];
+        Ok([
+            expression(&rate.amplitude, &phases, &|part| Expr::from(part))?,
+            expression(&rate.phase, &phases, &|part| Expr::from(&part.product(&over)))?,
+        ])
+    }
+
+    /// A slow phase as a combination of the phases; `None` of one that is a phase.
+    pub fn meaning(&self, slow_phase: usize) -> Option<Expr> {
+        let (name, turns) = self.slow_phases.get(slow_phase)?;
+        (!self.phases.contains(name)).then(|| combination(turns, &self.phases))
+    }
+}
+
+/// Derives the slow equations of a system.
+///
+/// # Errors
+/// [`MultipleScalesError`].
+///
+/// ```
+/// # use lindstedt_modes as lindstedt;
+/// use lindstedt::multiple_scales::{CoupledSystem, MultipleScalesOptions, derive};
+///
+/// let system = CoupledSystem::parse(
+///     "u'' + 2*mu1*u' + w1^2*u - alpha1*u*v = 0; v'' + 2*mu2*v' + w2^2*v - alpha2*u^2 = 0",
+/// )?;
+/// let resonance = Some("w2 = 2*w1".to_owned());
+/// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
+/// let [rate, _] = slow.rate(0)?;
+/// assert_eq!(rate.to_string(), "-mu1*a1 + alpha1*a1*a2*sin(gamma1)/(4*w1)");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn derive(
+    system: &CoupledSystem,
+    options: &MultipleScalesOptions,
+) -> Result<SlowMotion, MultipleScalesError> {
+    if let Some(order) = options.order.filter(|order| *order > HIGHEST_ORDER) {
+        return Err(MultipleScalesError::Order(order, HIGHEST_ORDER));
+    }
+    let mut form = ModalForm::new(system)?;
+    let drives: Vec<Polynomial> =
+        system.drives.iter().map(|rate| drive_frequency(rate, &mut form)).collect();
+    let forced: Vec<bool> = (0..drives.len()).map(|drive| is_forced(system, drive)).collect();
+    let frequencies = Frequencies {
+        names: names_of_frequencies(system, &form, &drives),
+        values: form
+            .frequencies
+            .iter()
+            .map(|frequency| frequency.number)
+            .chain(system.drives.iter().map(|rate| rate.evaluate(&Default::default()).ok()))
+            .collect(),
+        modes: form.frequencies.len(),
+        degree: highest_degree(system),
+        forced: &forced,
+    };
+    let resonances: Vec<Resonance> = match &options.resonance {
+        Some(text) => frequencies.parse(text)?,
+        None => frequencies.near()?,
+    };
+    let reference = References::new(system, &mut form, &drives, &resonances)?;
+    let polar = polar_names(&form);
+    let small_order = match system.small {
+        Some(_) => 1,
+        None => order_of_balance(system, &mut form.clone(), &reference, &polar)?,
+    };
+    let order = options.order.unwrap_or(small_order);
+    if order < small_order {
+        return Err(MultipleScalesError::BelowBalance { asked: order, lowest: small_order });
+    }
+    let terms = ordered(system, &reference, small_order);
+    let leaves_out = terms.iter().flatten().any(|term| term.order > order);
+    let problem = Problem {
+
+        terms,
+        drives: reference.drives.clone(),
+        own: reference.own.clone(),
+        references: reference.references.clone(),
+        bases: reference.bases.clone(),
+        detunings: reference.detunings.clone(),
+        small_order,
+        amplitudes: polar.complex.clone(),
+        order,
+        supervision: options.supervision,
+    };
+    let expansion = problem.expand(&mut form)?;
+    let written = resonances.iter().map(|resonance| frequencies.written(resonance)).collect();
+    answer(system, &form, &reference, &polar, &problem, &expansion, written, leaves_out)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn answer(
+    system: &CoupledSystem,
+    form: &ModalForm,
+    reference: &References,
+    polar: &PolarNames,
+    problem: &Problem,
+    expansion: &Expansion,
+    resonances: Vec<String>,
+    leaves_out: bool,
+) -> Result<SlowMotion, MultipleScalesError> {
+    let round = |polynomial: &Polynomial| match form.rounded {
+        true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
+        false => polynomial.clone(),
+    };
+    let in_phases = rates(expansion, polar, |order| order > 0);
+    let basis = slow_phases(&in_phases);
+    let stem = fresh_stem("gamma", &form.names.taken);
+    let mut named = 0;
+    let slow_phases: Vec<(Symbol, Vec<i32>)> = basis
+        .iter()
+        .map(|turns| {
+            let alone = turns.iter().filter(|m| **m != 0).count() == 1;
+            let own = turns.iter().position(|m| *m == 1).filter(|_| alone);
+            let name = match own {
+                Some(mode) => polar.phases[mode],
+                None => {
+                    named += 1;
+                    Symbol::new(&format!("{stem}{named}"))
+                }
+            };
+            (name, turns.clone())
+        })
+        .collect();
+    let rounded_rates = |rate: &SlowRate| {
+        let rate = in_slow_phases(rate, &basis);
+        let waves = |waves: &super::PhaseWaves| {
+            waves
+                .iter()
+                .map(|(turns, parts)| (turns.clone(), parts.each_ref().map(round)))
+                .collect()
+        };
+        SlowRate { amplitude: waves(&rate.amplitude), phase: waves(&rate.phase) }
+    };
+    let motion = motion(problem, expansion, polar, &form.shapes, &round)?;
+    let columns = |column: usize| {
+        form.shapes.iter().map(|row| Expr::from(&round(&row[column]))).collect::<Vec<Expr>>()
+    };
+    let mut slow = SlowMotion {
+        system: system.clone(),
+        order: problem.order,
+        small_order: problem.small_order,
+        resonances,
+        frequencies: form
+            .frequencies
+            .iter()
+            .map(|frequency| Expr::from(&round(&frequency.value)))
+            .collect(),
+        shapes: (0..form.frequencies.len()).map(columns).collect(),
+        references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
+        detunings: reference.meanings.clone(),
+        amplitudes: polar.amplitudes.clone(),
+        phases: polar.phases.clone(),
+        slow_phases,
+        rates: in_phases.iter().map(rounded_rates).collect(),
+        motion,
+        definitions: vec![],
+        rounded: form.rounded,
+        leaves_out,
+    };
+    slow.definitions = used(&slow, form.names.definitions.clone())?;
+    Ok(slow)
+}
+
+/// The definitions that occur in an answer, or in others that do.
+fn used(
+    slow: &SlowMotion,
+    definitions: Vec<Definition>,
+) -> Result<Vec<Definition>, MultipleScalesError> {
+    let mut names: Vec<Symbol> = slow
+        .motion
+        .iter()
+        .chain(&slow.frequencies)
+        .chain(&slow.references)
+        .chain(slow.shapes.iter().flatten())
+        .flat_map(Expr::symbols)
+        .collect();
+    for mode in 0..slow.rates.len() {
+        names.extend(slow.rate(mode)?.iter().flat_map(Expr::symbols));
+    }
+    names.extend(slow.detunings.iter().flat_map(|detuning| detuning.meaning.symbols()));
+    let mut kept: Vec<Definition> = Vec::new();
+    for definition in definitions.into_iter().rev() {
+        if names.contains(&definition.symbol) {
+            names.extend(definition.meaning.symbols());
+            kept.push(definition);
+        }
+    }
+    kept.reverse();
+    Ok(kept)
+}
+
+/// The frequency of a drive, a single term.
+fn drive_frequency(rate: &Expr, form: &mut ModalForm) -> Polynomial {
+    let taken = form.names.taken.clone();
+    let polynomial = crate::modes::reading::polynomial(rate, &taken, &mut form.names.definitions);
+    form.names.taken.extend(form.names.definitions.iter().map(|known| known.symbol));
+    form.names.single(&polynomial, "Omega_")
+}
+
+/// Whether a drive is a force, alone.
+fn is_forced(system: &CoupledSystem, drive: usize) -> bool {
+    let mut terms = system.terms.iter().flatten();
+    terms.any(|term| term.powers.is_empty() && term.waves.iter().any(|wave| wave.drive == drive))
+}
+
+/// The greatest number of factors of a term that may drive a resonance, three at least with the
+/// squares of quadratic terms.
+fn highest_degree(system: &CoupledSystem) -> i32 {
+    let degrees = system.terms.iter().flatten().map(|term| term.degree() + term.waves.len());
+    degrees.max().map_or(3, |degree| i32::try_from(degree).unwrap_or(3).clamp(3, 5))
+}
+
+/// The names by which the frequencies may be called.
+fn names_of_frequencies(
+    system: &CoupledSystem,
+    form: &ModalForm,
+    drives: &[Polynomial],
+) -> Vec<Vec<Expr>> {
+    let modes = form.frequencies.iter().enumerate().map(|(index, frequency)| {
+        let own = Expr::from(&frequency.value);
+        let alias = alias(index + 1, &system.equations.parameters);
+        match own.as_number() {
+            Some(_) => alias.into_iter().chain([own]).collect(),
+            None => std::iter::once(own).chain(alias).collect(),
+        }
+    });
+    let drives = drives.iter().zip(&system.drives).enumerate().map(|(index, (drive, rate))| {
+        let number = if drives.len() > 1 { (index + 1).to_string() } else { String::new() };
+        let alias = Symbol::new(&format!("Omega{number}"));
+        let own = [Expr::from(drive), rate.clone()];
+        match rate.as_number() {
+            Some(_) => std::iter::once(Expr::from(alias)).chain(own).collect(),
+            None if system.equations.parameters.contains(&alias) => own.to_vec(),
+            None => own.into_iter().chain([Expr::from(alias)]).collect(),
+        }
+    });
+    modes.chain(drives).collect()
+}
+
+/// The names of amplitudes and phases.
+fn polar_names(form: &ModalForm) -> PolarNames {
+    let taken = &form.names.taken;
+    let count = form.frequencies.len();
+    let family = |stem: &str| -> Vec<Symbol> {
+        let stem = fresh_stem(stem, taken);
+        (1..=count).map(|number| Symbol::new(&format!("{stem}{number}"))).collect()
+    };
+    let (own, conjugate) = (family("B"), family("Bc"));
+    PolarNames {
+        complex: own.into_iter().zip(conjugate).map(|(own, other)| [own, other]).collect(),
+        amplitudes: family("a"),
+        phases: family("phi"),
+    }
+}
+
+/// The reference frequencies and the waves of modes and drives.
+struct References {
+    bases: Vec<Polynomial>,
+    own: Vec<WaveVector>,
+    drives: Vec<WaveVector>,
+    references: Vec<Polynomial>,
+    detunings: Vec<Polynomial>,
+    /// The names of detunings.
+    meanings: Vec<Definition>,
+}
+
+impl References {
+    fn new(
+        system: &CoupledSystem,
+        form: &mut ModalForm,
+        drives: &[Polynomial],
+        resonances: &[Resonance],
+    ) -> Result<Self, MultipleScalesError> {
+        let modes = form.frequencies.len();
+        let waves = system.terms.iter().flatten().flat_map(|term| &term.waves);
+        let denominators =
+            waves.fold(Integer::one(), |common, wave| common.lcm(wave.multiple.denom()));
+        let count = modes + drives.len();
+        let lattice = Lattice::new([modes, count], resonances, &denominators)?;
+        let value = |column: usize| match column.checked_sub(modes) {
+            Some(drive) => drives[drive].clone(),
+            None => form.frequencies[column].value.clone(),
+        };
+        let part = Polynomial::constant(ratio(1, lattice.divisor));
+        let bases: Vec<Polynomial> =
+            lattice.bases.iter().map(|base| value(*base).product(&part)).collect();
+        let frequency = |row: &WaveVector| {
+            let mut sum = Polynomial::zero();
+            for (times, base) in row.iter().zip(&bases) {
+                let times = Polynomial::constant(Rational::from_integer((*times).into()));
+                sum.accumulate(&base.product(&times));
+            }
+            sum
+        };
+        let mut found = Self {
+            own: lattice.rows[..modes].to_vec(),
+            drives: lattice.rows[modes..].to_vec(),
+            references: vec![],
+            detunings: vec![],
+            meanings: vec![],
+            bases: bases.clone(),
+        };
+        for (index, row) in lattice.rows[..modes].iter().enumerate() {
+            let reference = form.names.single(&frequency(row), &format!("nu{}", index + 1));
+            let own = &form.frequencies[index].value;
+            let mut difference = own.clone();
+            difference.negate();
+            difference.accumulate(&reference);
+            let difference = form.tidied(&difference);
+            if form.is_zero(&difference) {
+                found.detunings.push(Polynomial::zero());
+            } else {
+                let wanted = format!("sigma{}", index + 1);
+                let symbol = fresh(&wanted, &form.names.taken);
+                form.names.taken.push(symbol);
+                let round = |number: &Rational| match form.rounded {
+                    true => rounded_fraction(number, KEPT_DIGITS),
+                    false => number.clone(),
+                };
+                let meaning = Expr::from(&difference.map(round));
+                found.meanings.push(Definition { symbol, meaning });
+                found.detunings.push(Polynomial::symbol(symbol));
+            }
+            found.references.push(reference);
+        }
+        Ok(found)
+    }
+}
+
+/// The order of each term, damping and what drives a resonance counted as small as detunings.
+fn ordered(
+    system: &CoupledSystem,
+    reference: &References,
+    small_order: usize,
+) -> Vec<Vec<OrderedTerm>> {
+    let resonant = |multiple: &Rational, drive: usize| {
+        let wave: Vec<Rational> = reference.drives[drive]
+            .iter()
+            .map(|m| multiple * Rational::from_integer((*m).into()))
+            .collect();
+        reference.own.iter().any(|own| {
+            own.iter().zip(&wave).all(|(own, m)| Rational::from_integer((*own).into()) == *m)
+        })
+    };
+    let order = |term: &super::system::SmallTerm| match (term.degree(), term.written_order) {
+        (0, written) => match term.waves.as_slice() {
+            [wave] if !resonant(&wave.multiple, wave.drive) => written,
+            _ => written.max(small_order),
+        },
+        (_, written @ 1..) => written,
+        (1, 0) => small_order,
+        (degree, 0) => match system.small {
+            Some(_) => 1,
+            None => degree - 1,
+        },
+    };
+    let row = |terms: &Vec<super::system::SmallTerm>| {
+        terms.iter().map(|term| OrderedTerm { order: order(term), term: term.clone() }).collect()
+    };
+    system.terms.iter().map(row).collect()
+}
+
+/// The order at which nonlinear terms, and nonlinear terms with drives, change the amplitudes first.
+fn order_of_balance(
+    system: &CoupledSystem,
+    form: &mut ModalForm,
+    reference: &References,
+    polar: &PolarNames,
+) -> Result<usize, MultipleScalesError> {
+    /// The order without a nonlinear effect below it: that of a cubic force.
+    const USUAL: usize = 2;
+    let nonlinear =
+        |term: &OrderedTerm| term.term.degree() > 1 || (term.term.degree() == 0 && term.order == 0);
+    let terms: Vec<Vec<OrderedTerm>> = ordered(system, reference, HIGHEST_ORDER + 1)
+        .into_iter()
+        .map(|terms| terms.into_iter().filter(nonlinear).collect())
+        .collect();
+    let highest = terms.iter().flatten().map(|term| term.term.degree()).max().unwrap_or(0);
+    for order in 1..=USUAL.max(highest.saturating_sub(1)).min(4) {
+        let problem = Problem {
+            system,
+            terms: terms.clone(),
+            drives: reference.drives.clone(),
+            own: reference.own.clone(),
+            references: reference.references.clone(),
+            bases: reference.bases.clone(),
+            detunings: vec![Polynomial::zero(); reference.own.len()],
+            small_order: HIGHEST_ORDER + 1,
+            amplitudes: polar.complex.clone(),
+            order,
+            supervision: Supervision::default(),
+        };
+        let expansion = problem.expand(form)?;
+        let acts = |rate: &crate::exact::ComplexPolynomial| {
+            !form.is_zero(&rate.real) || !form.is_zero(&rate.imaginary)
+        };
+        if expansion.rates.iter().flatten().any(acts) {
+            return Ok(order);
+        }
+    }
+    Ok(USUAL)
+}

@@ -11,7 +11,7 @@ use super::slow_equations::{
 use super::{CoupledSystem, MultipleScalesError};
 use crate::decimal::rounded_fraction;
 use crate::exact::rational::{Integer, ratio};
-use crate::exact::{Polynomial, Rational};
+use crate::exact::{ComplexPolynomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
 use crate::solution::Definition;
@@ -66,6 +66,10 @@ pub struct SlowMotion {
     pub slow_phases: Vec<(Symbol, Vec<i32>)>,
     /// The rates of amplitudes and phases, in the slow phases.
     pub rates: Vec<SlowRate>,
+    /// `B_j` and its conjugate, the complex amplitudes `(a_j/2) e^(i phi_j)`.
+    pub complex_amplitudes: Vec<[Symbol; 2]>,
+    /// `B_j'`, polynomials in all complex amplitudes.
+    pub complex_rates: Vec<ComplexPolynomial>,
     /// The motion of each coordinate, in `t`, amplitudes and phases.
     pub motion: Vec<Expr>,
     /// Symbols that the formulas introduce; each may use those before it.
@@ -157,7 +161,6 @@ pub fn derive(
     let terms = ordered(system, &reference, small_order);
     let leaves_out = terms.iter().flatten().any(|term| term.order > order);
     let problem = Problem {
-
         terms,
         drives: reference.drives.clone(),
         own: reference.own.clone(),
@@ -239,6 +242,14 @@ fn answer(
         phases: polar.phases.clone(),
         slow_phases,
         rates: in_phases.iter().map(rounded_rates).collect(),
+        complex_amplitudes: polar.complex.clone(),
+        complex_rates: (0..polar.complex.len())
+            .map(|mode| {
+                let mut sum = ComplexPolynomial::zero();
+                expansion.rates.iter().for_each(|rates| sum.accumulate(&rates[mode]));
+                sum.map(&round)
+            })
+            .collect(),
         motion,
         definitions: vec![],
         rounded: form.rounded,
@@ -465,7 +476,6 @@ fn order_of_balance(
     let highest = terms.iter().flatten().map(|term| term.term.degree()).max().unwrap_or(0);
     for order in 1..=USUAL.max(highest.saturating_sub(1)).min(4) {
         let problem = Problem {
-            system,
             terms: terms.clone(),
             drives: reference.drives.clone(),
             own: reference.own.clone(),
@@ -478,9 +488,8 @@ fn order_of_balance(
             supervision: Supervision::default(),
         };
         let expansion = problem.expand(form)?;
-        let acts = |rate: &crate::exact::ComplexPolynomial| {
-            !form.is_zero(&rate.real) || !form.is_zero(&rate.imaginary)
-        };
+        let acts =
+            |rate: &ComplexPolynomial| !form.is_zero(&rate.real) || !form.is_zero(&rate.imaginary);
         if expansion.rates.iter().flatten().any(acts) {
             return Ok(order);
         }

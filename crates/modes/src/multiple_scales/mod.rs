@@ -21,6 +21,7 @@
 //! - `modal`: the linear modes, in which every divisor is a number or has a name.
 //! - `expansion`: the orders, as waves in all frequencies.
 //! - `slow_equations`: the rates of amplitudes and phases, and the motion.
+//! - `steady`: steady motions in numbers, with their stability.
 //!
 //! Cost: the products of the force in as many orders, `O(order^2)` products of waves with
 //! polynomials in the amplitudes for each factor of a term.
@@ -31,10 +32,12 @@ mod expansion;
 mod modal;
 mod resonance;
 mod slow_equations;
+mod steady;
 mod system;
 
 pub use answer::{MultipleScalesOptions, SlowMotion, derive};
 pub use error::MultipleScalesError;
 pub use resonance::{Resonance, ResonanceError};
 pub use slow_equations::{PhaseWaves, SlowRate};
+pub use steady::{SlowNumbers, SlowSteadyState};
 pub use system::CoupledSystem;

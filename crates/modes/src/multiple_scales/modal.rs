@@ -80,7 +80,31 @@ impl Names {
         if polynomial.is_zero() {
             return None;
         }
+        if let Some(inverse) = self.inverse_beside_root(polynomial) {
+            return Some(inverse);
+        }
         self.single(polynomial, wanted).power(-1)
+    }
+
+    /// `1/(p + q w) = (p - q w)/(p^2 - q^2 w^2)` of numbers p and q and a root w whose square is one;
+    /// `None` of anything else.
+    fn inverse_beside_root(&self, polynomial: &Polynomial) -> Option<Polynomial> {
+        let mut roots = polynomial.symbols().into_iter();
+        let (root, None) = (roots.next()?, roots.next()) else { return None };
+        let square = self.squares.get(&root)?.as_number()?;
+        let mut conjugate = Polynomial::zero();
+        let mut norm = Rational::zero();
+        for (monomial, number) in polynomial.terms() {
+            match monomial.exponent(root) {
+                0 => norm += number * number,
+                1 => norm -= number * number * &square,
+                _ => return None,
+            }
+            let sign =
+                if monomial.exponent(root) == 0 { Rational::one() } else { -Rational::one() };
+            conjugate.add_term(monomial.clone(), number * sign);
+        }
+        (!norm.is_zero()).then(|| conjugate.product(&Polynomial::constant(norm.recip())))
     }
 
     /// A polynomial with known squares in place of even powers.

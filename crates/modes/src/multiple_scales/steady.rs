@@ -1,0 +1,327 @@
+//! Steady motions of slow equations in numbers, with their stability.
+//!
+//! ```text
+//! B_j(t) = B_j e^(i rho_j t):   sum D_n B_j (B, conj B) = i rho_j B_j
+//! ```
+//!
+//! The rates `rho` are those that the slow phases leave open: none where a drive fixes every phase. All
+//! solutions are sought by Newton's method from many starts; in the plane of each amplitude a motion
+//! that leaves a mode at rest is no special case. A motion is stable if the eigenvalues of the
+//! linearised slow equations have negative real parts, but for the zeros of the phases that are open.
+
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex;
+use num_traits::Zero;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::SlowMotion;
+use crate::interrupt::Interrupt;
+use crate::solution::defined_values;
+use crate::symbol::Symbol;
+
+/// Slow equations with numbers for all parameters.
+#[derive(Clone, Debug)]
+pub struct SlowNumbers {
+    /// The terms of each rate: the number before it, and the powers of `B_j` and of its conjugate.
+    rates: Vec<Vec<(Complex<f64>, Vec<[i32; 2]>)>>,
+    /// A basis of the rates that the phases may have by themselves.
+    open: DMatrix<f64>,
+}
+
+/// A steady motion of slow equations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlowSteadyState {
+    /// `a_j`.
+    pub amplitudes: Vec<f64>,
+    /// `phi_j` at `t = 0`, from -pi to pi.
+    pub phases: Vec<f64>,
+    /// `phi_j'`: zero where a drive fixes the phase.
+    pub turning: Vec<f64>,
+    /// The largest real part of the eigenvalues that decide; `None` if there are none.
+    pub growth: Option<f64>,
+}
+
+impl SlowSteadyState {
+    /// Whether small disturbances die out.
+    pub fn is_stable(&self) -> bool {
+        self.growth.is_some_and(|growth| growth < 0.0)
+    }
+}
+
+impl SlowMotion {
+    /// The slow equations with the values of all parameters.
+    ///
+    /// # Errors
+    /// The first symbol without a value.
+    pub fn in_numbers(
+        &self,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<SlowNumbers, Symbol> {
+        let values = self.values(value_of)?;
+        let known = |name: Symbol| {
+            let own = values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
+            own.or_else(|| value_of(name))
+        };
+        let is_amplitude =
+            |name: &Symbol| self.complex_amplitudes.iter().flatten().any(|own| own == name);
+        let mut rates = Vec::new();
+        for rate in &self.complex_rates {
+            let mut terms = Vec::new();
+            for (part, unit) in
+                [(&rate.real, Complex::new(1.0, 0.0)), (&rate.imaginary, Complex::new(0.0, 1.0))]
+            {
+                for (monomial, number) in part.terms() {
+                    let mut factor = crate::exact::rational::to_f64(number);
+                    for (name, exponent) in monomial.factors() {
+                        if !is_amplitude(name) {
+                            factor *= known(*name).ok_or(*name)?.powi(*exponent);
+                        }
+                    }
+                    let powers = self.complex_amplitudes.iter();
+                    let powers =
+                        powers.map(|pair| pair.map(|name| monomial.exponent(name))).collect();
+                    terms.push((unit * factor, powers));
+                }
+            }
+            rates.push(terms);
+        }
+        let count = rates.len();
+        let lattice = DMatrix::from_fn(count, count, |row, column| {
+            self.slow_phases.get(row).map_or(0.0, |(_, turns)| f64::from(turns[column]))
+        });
+        let bound = self.slow_phases.len();
+        let decomposed = lattice.svd(false, true);
+        let open = match decomposed.v_t {
+            Some(rows) => {
+                let mut order: Vec<usize> = (0..count).collect();
+                order.sort_by(|one, other| {
+                    decomposed.singular_values[*other].total_cmp(&decomposed.singular_values[*one])
+                });
+                let kept: Vec<usize> = order[bound.min(count)..].to_vec();
+                DMatrix::from_fn(kept.len(), count, |row, column| rows[(kept[row], column)])
+            }
+            None => DMatrix::zeros(0, count),
+        };
+        Ok(SlowNumbers { rates, open })
+    }
+
+    /// The values of what the formulas name, detunings among it.
+    ///
+    /// # Errors
+    /// The first symbol without a value.
+    pub fn values(
+        &self,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<Vec<(Symbol, f64)>, Symbol> {
+        let pi = Symbol::new("pi");
+        let value_of =
+            |name: Symbol| value_of(name).or_else(|| (name == pi).then_some(std::f64::consts::PI));
+        let all: Vec<_> = self.definitions.iter().chain(&self.detunings).cloned().collect();
+        defined_values(&all, &value_of)
+    }
+}
+
+impl SlowNumbers {
+    /// `B_j'` at these complex amplitudes.
+    pub fn rates(&self, amplitudes: &[Complex<f64>]) -> Vec<Complex<f64>> {
+        let one = |terms: &Vec<(Complex<f64>, Vec<[i32; 2]>)>| {
+            terms.iter().map(|(factor, powers)| factor * product(amplitudes, powers)).sum()
+        };
+        self.rates.iter().map(one).collect()
+    }
+
+    /// The derivatives of the rates with respect to each amplitude and its conjugate.
+    fn slopes(&self, amplitudes: &[Complex<f64>]) -> Vec<Vec<[Complex<f64>; 2]>> {
+        let count = amplitudes.len();
+        let one = |terms: &Vec<(Complex<f64>, Vec<[i32; 2]>)>| {
+            let mut row = vec![[Complex::zero(); 2]; count];
+            for (factor, powers) in terms {
+                for (mode, entry) in row.iter_mut().enumerate() {
+                    for (which, slope) in entry.iter_mut().enumerate() {
+                        let exponent = powers[mode][which];
+                        if exponent != 0 {
+                            let mut lower = powers.clone();
+                            lower[mode][which] -= 1;
+                            *slope += factor * f64::from(exponent) * product(amplitudes, &lower);
+                        }
+                    }
+                }
+            }
+            row
+        };
+        self.rates.iter().map(one).collect()
+    }
+
+    /// `rho_j` from the rates along the basis of what is open.
+    fn turning(&self, open: &[f64]) -> Vec<f64> {
+        let along = |mode: usize| {
+            open.iter().enumerate().map(|(row, rate)| rate * self.open[(row, mode)]).sum()
+        };
+        (0..self.rates.len()).map(along).collect()
+    }
+
+    /// The residual and its derivatives with respect to real and imaginary parts, then the open rates.
+    fn equations(&self, place: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let count = self.rates.len();
+        let amplitudes: Vec<Complex<f64>> =
+            (0..count).map(|mode| Complex::new(place[2 * mode], place[2 * mode + 1])).collect();
+        let turning = self.turning(&place.as_slice()[2 * count..]);
+        let i = Complex::new(0.0, 1.0);
+        let mut residual = DVector::zeros(2 * count);
+        for (mode, rate) in self.rates(&amplitudes).into_iter().enumerate() {
+            let rest = rate - i * turning[mode] * amplitudes[mode];
+            (residual[2 * mode], residual[2 * mode + 1]) = (rest.re, rest.im);
+        }
+        let mut slopes = DMatrix::zeros(2 * count, place.len());
+        for (row, entries) in self.slopes(&amplitudes).into_iter().enumerate() {
+            for (column, [own, conjugate]) in entries.into_iter().enumerate() {
+                let mut own = own;
+                if row == column {
+                    own -= i * turning[row];
+                }
+                // d/d(re B) = d/dB + d/d(conj B), d/d(im B) = i (d/dB - d/d(conj B))
+                let parts = [own + conjugate, i * (own - conjugate)];
+                for (part, slope) in parts.into_iter().enumerate() {
+                    slopes[(2 * row, 2 * column + part)] = slope.re;
+                    slopes[(2 * row + 1, 2 * column + part)] = slope.im;
+                }
+            }
+            for open in 0..self.open.nrows() {
+                let slope = -i * self.open[(open, row)] * amplitudes[row];
+                slopes[(2 * row, 2 * count + open)] = slope.re;
+                slopes[(2 * row + 1, 2 * count + open)] = slope.im;
+            }
+        }
+        (residual, slopes)
+    }
+
+    /// The steady motions that are found, the largest first; one of those that differ in phase alone.
+    /// A family of motions without isolated members, as without damping, is left out.
+    pub fn steady_states(&self, interrupt: Interrupt) -> Vec<SlowSteadyState> {
+        /// The number of starts for each mode.
+        const STARTS: usize = 500;
+        let count = self.rates.len();
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        let mut found: Vec<SlowSteadyState> = Vec::new();
+        for start in 0..=STARTS * count {
+            if interrupt.is_requested() {
+                break;
+            }
+            let mut place = DVector::zeros(2 * count + self.open.nrows());
+            if start > 0 {
+                for mode in 0..count {
+                    let size = 10.0_f64.powf(random.random_range(-4.0..1.5));
+                    let phase = random.random_range(0.0..std::f64::consts::TAU);
+                    (place[2 * mode], place[2 * mode + 1]) =
+                        (size * phase.cos(), size * phase.sin());
+                }
+            }
+            let Some(state) = self.solved(place) else { continue };
+            let scale = state.amplitudes.iter().fold(0.0_f64, |most, a| most.max(*a));
+            let is_known = |known: &SlowSteadyState| {
+                known.is_stable() == state.is_stable()
+                    && known
+                        .amplitudes
+                        .iter()
+                        .zip(&state.amplitudes)
+                        .all(|(one, other)| (one - other).abs() <= 1e-7 * scale)
+            };
+            if !found.iter().any(is_known) {
+                found.push(state);
+            }
+        }
+        found.sort_by(|one, other| {
+            let size =
+                |state: &SlowSteadyState| state.amplitudes.iter().map(|a| a * a).sum::<f64>();
+            size(other).total_cmp(&size(one))
+        });
+        found
+    }
+
+    /// Newton's method with the shortest steps, for phases may be open.
+    fn solved(&self, mut place: DVector<f64>) -> Option<SlowSteadyState> {
+        const MOST: usize = 60;
+        const LARGEST: f64 = 1e4;
+        let count = self.rates.len();
+        for step in 0..MOST {
+            let (residual, slopes) = self.equations(&place);
+            if !residual.iter().all(|entry| entry.is_finite()) {
+                return None;
+            }
+            let decomposed = slopes.svd(true, true);
+            let largest = decomposed.singular_values.max();
+            if largest == 0.0 {
+                return None;
+            }
+            let change = decomposed.solve(&residual, 1e-13 * largest).ok()?;
+            place -= &change;
+            let size = place.rows(0, 2 * count).norm();
+            if !size.is_finite() || size > LARGEST {
+                return None;
+            }
+            if change.norm() <= 1e-13 * size.max(1e-3) && step > 0 {
+                return self.state(&place);
+            }
+            if size < 1e-12 {
+                place.rows_mut(0, 2 * count).fill(0.0);
+                let (residual, _) = self.equations(&place);
+                return (residual.norm() == 0.0).then(|| self.state(&place)).flatten();
+            }
+        }
+        None
+    }
+
+    /// A solution with its stability; `None` if it is one of a family.
+    fn state(&self, place: &DVector<f64>) -> Option<SlowSteadyState> {
+        /// Ratio to the largest eigenvalue below which one is zero.
+        const ZERO: f64 = 1e-8;
+        let count = self.rates.len();
+        let (_, slopes) = self.equations(place);
+        let singular = slopes.clone().singular_values();
+        let moving: Vec<Complex<f64>> =
+            (0..count).map(|mode| Complex::new(place[2 * mode], place[2 * mode + 1])).collect();
+        let scale = moving.iter().map(|b| b.norm()).fold(0.0, f64::max);
+        let at_rest = |b: &Complex<f64>| b.norm() <= 1e-10 * scale;
+        // Where a mode is at rest its phase says nothing, and a rate that is open may be anything.
+        if singular.min() <= 1e-10 * singular.max() && !moving.iter().any(at_rest) && scale > 0.0 {
+            return None;
+        }
+        let square = slopes.columns(0, 2 * count).into_owned();
+        let eigenvalues = square.complex_eigenvalues();
+        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let mut sorted: Vec<Complex<f64>> = eigenvalues.iter().copied().collect();
+        sorted.sort_by(|one, other| one.norm().total_cmp(&other.norm()));
+        let turning = (0..self.open.nrows())
+            .filter(|row| {
+                (0..count).any(|mode| {
+                    self.open[(*row, mode)].abs() > 1e-9 && !at_rest(&moving[mode]) && scale > 0.0
+                })
+            })
+            .count();
+        let decisive = &sorted[turning.min(sorted.len())..];
+        if largest > 0.0 && decisive.iter().any(|value| value.norm() <= ZERO * largest) {
+            // One of a family, or on the edge of stability.
+            return None;
+        }
+        let growth = decisive.iter().map(|value| value.re).max_by(f64::total_cmp);
+        let growth = growth.map(|growth| if growth.abs() <= ZERO * largest { 0.0 } else { growth });
+        let amplitude =
+            |b: &Complex<f64>| if at_rest(b) || scale == 0.0 { 0.0 } else { 2.0 * b.norm() };
+        Some(SlowSteadyState {
+            amplitudes: moving.iter().map(amplitude).collect(),
+            phases: moving
+                .iter()
+                .map(|b| if amplitude(b) == 0.0 { 0.0 } else { b.arg() })
+                .collect(),
+            turning: self.turning(&place.as_slice()[2 * count..]),
+            growth,
+        })
+    }
+}
+
+/// The product of powers of amplitudes and their conjugates.
+fn product(amplitudes: &[Complex<f64>], powers: &[[i32; 2]]) -> Complex<f64> {
+    let factors = amplitudes.iter().zip(powers);
+    factors.map(|(b, [own, conjugate])| b.powi(*own) * b.conj().powi(*conjugate)).product()
+}

@@ -72,7 +72,7 @@ pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]
 pub use lindstedt_impact::{impact, optimize};
 #[doc(inline)]
-pub use lindstedt_modes::modes;
+pub use lindstedt_modes::{modes, multiple_scales};
 #[doc(inline)]
 pub use lindstedt_numeric::{genetic, numeric};
 #[doc(inline)]

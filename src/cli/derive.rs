@@ -45,10 +45,10 @@ pub struct EquationArguments {
     pub(super) order: Option<Order>,
     /// What the amplitude measures
     #[arg(long, value_parser = convention())]
-    amplitude: Option<AmplitudeConvention>,
+    pub(super) amplitude: Option<AmplitudeConvention>,
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
-    small: Option<String>,
+    pub(super) small: Option<String>,
     /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or
     /// an unstable one between two wells for motions over both
     #[arg(long, value_name = "NAME=VALUE,...")]
@@ -64,10 +64,11 @@ pub struct EquationArguments {
     /// smallest that attracts
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     cycle: Option<u32>,
-    /// Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the one nearest to
-    /// the values, or 1:1
-    #[arg(long, value_name = "P:Q", value_parser = ratio)]
-    resonance: Option<(u32, u32)>,
+    /// Which resonance: of a driven equation Omega:omega0, 1:3 say, without it the one nearest to the
+    /// values, or 1:1; of coupled equations relations between frequencies, "omega2 = 2*omega1,
+    /// Omega = omega2", or none, without it those that the numbers are near
+    #[arg(long, value_name = "P:Q")]
+    pub(super) resonance: Option<String>,
     /// The frequency without the motion, of lindstedt-poincare: orders up to 2000, in less time
     #[arg(long)]
     omega_only: bool,
@@ -87,7 +88,7 @@ pub struct DeriveArguments {
     /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a
     /// program as a comment
     #[arg(long)]
-    steps: bool,
+    pub(super) steps: bool,
     /// Which normal mode of coupled equations, 1 for the slowest; without it all of them
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     pub(super) mode: Option<u32>,
@@ -98,21 +99,32 @@ pub struct DeriveArguments {
 impl EquationArguments {
     /// Refuses options that the modes of coupled equations do not have.
     fn check_of_modes(&self) -> Result<(), Failure> {
-        let given = [
-            ("--small", self.small.is_some()),
-            ("--about", self.about.is_some()),
-            ("--taylor", self.taylor.is_some()),
-            ("--hbar", self.hbar.is_some()),
-            ("--cycle", self.cycle.is_some()),
-            ("--resonance", self.resonance.is_some()),
-            ("--omega-only", self.omega_only),
-        ];
-        match given.iter().find(|(_, given)| *given) {
-            Some((option, _)) => Err(Failure::Usage(format!(
+        let of_slow_equations =
+            [("--small", self.small.is_some()), ("--resonance", self.resonance.is_some())];
+        let given = of_slow_equations.into_iter().find(|(_, given)| *given);
+        if let Some((option, _)) = given {
+            return Err(Failure::Usage(format!(
+                "{option}: of coupled equations it belongs to --method multiple-scales"
+            )));
+        }
+        match self.of_one_coordinate() {
+            Some(option) => Err(Failure::Usage(format!(
                 "{option}: it is of one coordinate; the modes of coupled equations take --mode, --order, --amplitude and --at"
             ))),
             None => Ok(()),
         }
+    }
+
+    /// An option that is given and belongs to a single coordinate.
+    pub(super) fn of_one_coordinate(&self) -> Option<&'static str> {
+        let given = [
+            ("--about", self.about.is_some()),
+            ("--taylor", self.taylor.is_some()),
+            ("--hbar", self.hbar.is_some()),
+            ("--cycle", self.cycle.is_some()),
+            ("--omega-only", self.omega_only),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
     }
 }
 
@@ -288,6 +300,9 @@ impl Work for DeriveArguments {
 fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.question.problem)?;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
+        if super::slow_equations::is_asked(arguments, &equations, &problem) {
+            return super::slow_equations::run(arguments, equations, &problem);
+        }
         arguments.question.check_of_modes()?;
         if arguments.steps {
             return Err(Failure::Usage(
@@ -648,6 +663,10 @@ fn options(
         },
     };
     let small = arguments.small.as_deref().or(formula.small).map(str::to_owned);
+    let resonance = arguments.resonance.as_deref().map(|text| {
+        ratio(text).map_err(|reason| Failure::Usage(format!("--resonance {text}: {reason}")))
+    });
+    let resonance = resonance.transpose()?;
     Ok(Options {
         method,
         order,
@@ -657,7 +676,7 @@ fn options(
         degrees,
         hbar,
         cycle: arguments.cycle,
-        resonance: arguments.resonance,
+        resonance,
         frequency_alone: arguments.omega_only,
         supervision: session::supervision(),
     })

@@ -32,6 +32,7 @@ mod session;
 mod shard;
 mod shell;
 mod simulate;
+mod slow_equations;
 mod stability;
 mod suggestions;
 mod trajectory;

@@ -169,7 +169,7 @@ fn refused(error: &ModeError, text: Option<&str>) -> Failure {
 }
 
 /// The place of a term in the equations as they were typed, or of the first derivative in it.
-fn located(term: &Expr, text: &str) -> Option<[String; 2]> {
+pub(super) fn located(term: &Expr, text: &str) -> Option<[String; 2]> {
     let derivatives = term.symbols().into_iter().filter(|name| name.primes() > 0);
     let mut names =
         std::iter::once(term.to_string()).chain(derivatives.map(|name| name.to_string()));

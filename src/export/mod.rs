@@ -23,6 +23,7 @@ pub mod optimization;
 pub mod primary;
 pub mod response;
 pub mod simulation;
+pub mod slow_equations;
 pub mod stability;
 pub(crate) mod steps;
 pub mod text;

@@ -11,6 +11,7 @@ use crate::expr::Expr;
 use crate::solution::{Modulation, Response, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
+use crate::values::Values;
 use crate::verify::{JudgedState, Verdict, Verification};
 
 /// The document of a driven motion.
@@ -161,15 +162,15 @@ fn detuning(solution: &Solution) -> Option<Symbol> {
     Some(resonance.detuning.symbol)
 }
 
-/// The values at which a formula was judged, in running text.
-fn values_in_words(verification: &Verification) -> String {
-    let at = verification.at.iter();
+/// Values in running text: ` at A = 1, eps = 2`.
+pub(super) fn values_in_words(at: &Values) -> String {
+    let at = at.iter();
     let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
     if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) }
 }
 
 fn judged_in_time<'a>(verification: &Verification) -> Vec<Block<'a>> {
-    let at = values_in_words(verification);
+    let at = values_in_words(&verification.at);
     let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
     blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
     let percent = |part: Option<f64>| part.map_or("without a number".to_owned(), size_in_percent);
@@ -187,7 +188,7 @@ fn judged_in_time<'a>(verification: &Verification) -> Vec<Block<'a>> {
 }
 
 fn judged<'a>(verification: &Verification, solution: &Solution) -> Vec<Block<'a>> {
-    let at = values_in_words(verification);
+    let at = values_in_words(&verification.at);
     let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
     if verification.steady_states.is_empty() {
         blocks.push(Block::Note(

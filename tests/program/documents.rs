@@ -13,7 +13,7 @@ use lindstedt::export::json::{
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
     MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
     PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
-    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -94,6 +94,7 @@ fn reads_back(document: &Value) {
     let written = match kind.expect("a known kind") {
         DocumentKind::Solution => again::<SolutionDocument>(document),
         DocumentKind::Modes => again::<ModesDocument>(document),
+        DocumentKind::SlowEquations => again::<SlowEquationsDocument>(document),
         DocumentKind::Comparison => again::<ComparisonDocument>(document),
         DocumentKind::Impact => again::<ImpactDocument>(document),
         DocumentKind::ImpactComparison => again::<ImpactComparisonDocument>(document),

@@ -13,7 +13,7 @@ use super::{
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
     MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
     PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
-    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -24,6 +24,7 @@ impl DocumentKind {
         let mut schema = match self {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
             Self::Modes => generator.into_root_schema_for::<ModesDocument>(),
+            Self::SlowEquations => generator.into_root_schema_for::<SlowEquationsDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
             Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),

@@ -37,6 +37,7 @@ pub mod response;
 mod schema;
 pub mod shard;
 pub mod simulation;
+mod slow_equations;
 pub mod solution;
 pub mod stability;
 pub mod sweep;
@@ -70,6 +71,10 @@ pub use response::{ResponseDocument, response};
 pub use schema::DocumentKind;
 pub use shard::{PointDocument, StudyDocument};
 pub use simulation::{SimulationDocument, simulation};
+pub use slow_equations::{
+    SlowEquationsDocument, SlowModeDocument, SlowSteadyDocument, SteadyRelationDocument,
+    TransientDocument, slow_equations,
+};
 pub use solution::{SolutionDocument, solution};
 pub use stability::{StabilityDocument, stability};
 pub use sweep::{SweepDocument, sweep};

@@ -9,6 +9,8 @@ pub enum DocumentKind {
     Solution,
     /// `derive` of coupled equations.
     Modes,
+    /// `derive --method multiple-scales` of coupled equations.
+    SlowEquations,
     /// `compare`.
     Comparison,
     /// `impact`.
@@ -57,9 +59,10 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Solution,
         Self::Modes,
+        Self::SlowEquations,
         Self::Comparison,
         Self::Impact,
         Self::ImpactComparison,
@@ -89,6 +92,9 @@ impl DocumentKind {
         match self {
             Self::Solution => ["lindstedt/solution/1", include_str!("schemas/solution.json")],
             Self::Modes => ["lindstedt/modes/1", include_str!("schemas/modes.json")],
+            Self::SlowEquations => {
+                ["lindstedt/slow-equations/1", include_str!("schemas/slow-equations.json")]
+            }
             Self::Comparison => ["lindstedt/comparison/1", include_str!("schemas/comparison.json")],
             Self::Impact => ["lindstedt/impact/1", include_str!("schemas/impact.json")],
             Self::ImpactComparison => {

@@ -1,5 +1,7 @@
 //! The slow equations of a system, and the motion they belong to.
 
+use std::collections::BTreeMap;
+
 use num_traits::{One, Zero};
 
 use super::expansion::{Expansion, OrderedTerm, Problem, WaveVector};
@@ -34,6 +36,9 @@ pub struct MultipleScalesOptions {
     /// The resonances, such as `omega2 = 2*omega1, Omega = omega2`, or `none`; without them those
     /// that are near, where the frequencies are numbers.
     pub resonance: Option<String>,
+    /// Values of parameters, by which resonances are found where none are asked for; the formulas keep
+    /// the letters.
+    pub values: BTreeMap<Symbol, f64>,
     /// Interrupt and progress.
     pub supervision: Supervision,
 }
@@ -55,6 +60,8 @@ pub struct SlowMotion {
     pub shapes: Vec<Vec<Expr>>,
     /// The reference frequencies, which obey the resonances exactly.
     pub references: Vec<Expr>,
+    /// The frequency of which all in the motion are multiples, if there is one.
+    pub base: Option<Expr>,
     /// `sigma_j`, reference frequency less linear frequency, where they differ.
     pub detunings: Vec<Definition>,
     /// `a_j`, the amplitude of the first harmonic of each mode.
@@ -131,14 +138,17 @@ pub fn derive(
     let mut form = ModalForm::new(system)?;
     let drives: Vec<Polynomial> =
         system.drives.iter().map(|rate| drive_frequency(rate, &mut form)).collect();
+    let known = known_values(&form, &options.values);
     let forced: Vec<bool> = (0..drives.len()).map(|drive| is_forced(system, drive)).collect();
     let frequencies = Frequencies {
         names: names_of_frequencies(system, &form, &drives),
         values: form
             .frequencies
             .iter()
-            .map(|frequency| frequency.number)
-            .chain(system.drives.iter().map(|rate| rate.evaluate(&Default::default()).ok()))
+            .map(|frequency| {
+                frequency.number.or_else(|| Expr::from(&frequency.value).evaluate(&known).ok())
+            })
+            .chain(system.drives.iter().map(|rate| rate.evaluate(&known).ok()))
             .collect(),
         modes: form.frequencies.len(),
         degree: highest_degree(system),
@@ -237,6 +247,10 @@ fn answer(
             .collect(),
         shapes: (0..form.frequencies.len()).map(columns).collect(),
         references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
+        base: match reference.bases.as_slice() {
+            [base] => Some(Expr::from(&round(base))),
+            _ => None,
+        },
         detunings: reference.meanings.clone(),
         amplitudes: polar.amplitudes.clone(),
         phases: polar.phases.clone(),
@@ -285,6 +299,18 @@ fn used(
     }
     kept.reverse();
     Ok(kept)
+}
+
+/// The values that are given, and those of the definitions that follow from them.
+fn known_values(form: &ModalForm, given: &BTreeMap<Symbol, f64>) -> BTreeMap<Symbol, f64> {
+    let mut known = given.clone();
+    known.insert(Symbol::new("pi"), std::f64::consts::PI);
+    for definition in &form.names.definitions {
+        if let Ok(value) = definition.meaning.evaluate(&known) {
+            known.insert(definition.symbol, value);
+        }
+    }
+    known
 }
 
 /// The frequency of a drive, a single term.

@@ -21,6 +21,7 @@
 //! - `modal`: the linear modes, in which every divisor is a number or has a name.
 //! - `expansion`: the orders, as waves in all frequencies.
 //! - `slow_equations`: the rates of amplitudes and phases, and the motion.
+//! - `relations`: steady motions in closed form, their phases eliminated.
 //! - `steady`: steady motions in numbers, with their stability.
 //!
 //! Cost: the products of the force in as many orders, `O(order^2)` products of waves with
@@ -30,6 +31,7 @@ mod answer;
 mod error;
 mod expansion;
 mod modal;
+mod relations;
 mod resonance;
 mod slow_equations;
 mod steady;
@@ -37,6 +39,7 @@ mod system;
 
 pub use answer::{MultipleScalesOptions, SlowMotion, derive};
 pub use error::MultipleScalesError;
+pub use relations::SteadyRelation;
 pub use resonance::{Resonance, ResonanceError};
 pub use slow_equations::{PhaseWaves, SlowRate};
 pub use steady::{SlowNumbers, SlowSteadyState};

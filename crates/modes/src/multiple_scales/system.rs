@@ -176,8 +176,45 @@ impl CoupledSystem {
             }
             system.terms.push(terms);
         }
+        system.order_rows();
         system.check_gyroscopic()?;
         Ok(system)
+    }
+
+    /// Puts each equation into the row of a coordinate whose acceleration is in it, where the
+    /// equations stand in another order.
+    fn order_rows(&mut self) {
+        let count = self.mass.len();
+        if (0..count).all(|row| !self.mass[row][row].is_zero()) {
+            return;
+        }
+        let mut row_of: Vec<Option<usize>> = vec![None; count];
+        for row in 0..count {
+            self.give_row(row, &mut row_of, &mut vec![false; count]);
+        }
+        let Some(rows) = row_of.into_iter().collect::<Option<Vec<usize>>>() else { return };
+        self.mass = rows.iter().map(|row| self.mass[*row].clone()).collect();
+        self.stiffness = rows.iter().map(|row| self.stiffness[*row].clone()).collect();
+        self.terms = rows.iter().map(|row| self.terms[*row].clone()).collect();
+    }
+
+    /// Gives a row to a coordinate, moving others if it has to.
+    fn give_row(&self, row: usize, row_of: &mut Vec<Option<usize>>, seen: &mut Vec<bool>) -> bool {
+        for coordinate in 0..row_of.len() {
+            if self.mass[row][coordinate].is_zero() || seen[coordinate] {
+                continue;
+            }
+            seen[coordinate] = true;
+            let free = match row_of[coordinate] {
+                None => true,
+                Some(other) => self.give_row(other, row_of, seen),
+            };
+            if free {
+                row_of[coordinate] = Some(row);
+                return true;
+            }
+        }
+        false
     }
 
     /// Returns the system with values in place of parameters.
@@ -197,6 +234,13 @@ impl CoupledSystem {
         let rest = self.rest.iter().map(|place| place.substitute_all(values));
         let small = self.small.filter(|name| equations.parameters.contains(name));
         Ok(Self { rest: rest.collect::<Result<_, ExprError>>()?, ..Self::new(equations, small)? })
+    }
+
+    /// The symbol that a typed name means: one of the equations, which may be kept
+    /// [apart](Symbol::apart) from that of an answer.
+    pub fn resolve(&self, name: Symbol) -> Symbol {
+        let own = self.equations.parameters.iter().find(|own| own.name() == name.name());
+        own.copied().unwrap_or(name)
     }
 
     /// The names of the equations: coordinates, parameters, constants, time.

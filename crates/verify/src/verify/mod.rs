@@ -33,6 +33,7 @@ mod normal_mode;
 mod orbit;
 mod reach;
 mod slope;
+mod slow_equations;
 mod slow_motion;
 mod smaller;
 mod transient;
@@ -44,6 +45,9 @@ pub use driven::JudgedState;
 pub use error::VerificationError;
 pub use motions::{Motions, TimedState, motions, true_motion};
 pub use normal_mode::{JudgedMode, judge_mode};
+pub use slow_equations::{
+    JudgedSlowMotion, JudgedSteadyMotion, JudgedTransient, judge_slow_motion,
+};
 pub use transient::Followed;
 pub use validity::{AmplitudeReach, Range};
 pub use values::{checked, needed_values};

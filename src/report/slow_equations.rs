@@ -1,0 +1,257 @@
+//! Slow equations of several coordinates: rates, motion, steady motions, verdicts.
+
+use std::borrow::Cow;
+
+use super::driven::values_in_words;
+use super::{Block, Document, Heading, size_in_percent};
+use crate::decimal::{decimal, significant};
+use crate::derivation::DerivationLine;
+use crate::expr::{Expr, ExprError};
+use crate::multiple_scales::SlowMotion;
+use crate::verify::{JudgedSlowMotion, JudgedSteadyMotion};
+
+/// Slow equations to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct SlowReport<'a> {
+    /// The slow equations.
+    pub slow: &'a SlowMotion,
+    /// What they say at values, beside the true motions; `None` without values.
+    pub judged: Option<&'a JudgedSlowMotion>,
+}
+
+/// The document of slow equations.
+///
+/// # Errors
+/// A step of algebra that fails.
+///
+/// ```
+/// use lindstedt::multiple_scales::{CoupledSystem, MultipleScalesOptions, derive};
+/// use lindstedt::report::{SlowReport, slow_equations};
+///
+/// let system = CoupledSystem::parse("x'' + x - x*y = 0; y'' + w2^2*y - x^2 = 0")?;
+/// let resonance = Some("w2 = 2*omega1".to_owned());
+/// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
+/// let report = SlowReport { slow: &slow, judged: None };
+/// let text = lindstedt::export::text::document(&slow_equations(&report)?, 100);
+/// assert!(text.contains("a1'    = a1*a2*sin(gamma1)/4"), "{text}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn slow_equations<'a>(report: &SlowReport<'a>) -> Result<Document<'a>, ExprError> {
+    let slow = report.slow;
+    let equations = slow.system.equations.equations.iter();
+    let mut question: Vec<Block> =
+        equations.map(|(left, right)| line(left.clone(), right.clone())).collect();
+    let places = slow.system.equations.coordinates.iter().zip(&slow.system.rest);
+    let moved = places.filter(|(_, place)| !place.is_zero());
+    question.extend(moved.map(|(name, place)| {
+        Block::Note(format!("{name} is counted from its place of rest, {place}"))
+    }));
+    let mut sections = vec![question, vec![title(slow)]];
+    sections.push(linear_modes(slow));
+    let mut rates = vec![Block::Heading("Motion and slow equations".to_owned())];
+    for (name, motion) in slow.system.equations.coordinates.iter().zip(&slow.motion) {
+        rates.push(line(Expr::from(*name), motion.clone()));
+    }
+    for mode in 0..slow.rates.len() {
+        let [amplitude, phase] = slow.rate(mode)?;
+        rates.push(line(Expr::from(slow.amplitudes[mode].derivative()), amplitude));
+        rates.push(line(Expr::from(slow.phases[mode].derivative()), phase));
+    }
+    for (index, (name, _)) in slow.slow_phases.iter().enumerate() {
+        rates.extend(slow.meaning(index).map(|meaning| line(Expr::from(*name), meaning)));
+    }
+    rates.extend(slow.detunings.iter().map(Block::Definition));
+    rates.extend(slow.definitions.iter().map(Block::Definition));
+    sections.push(rates);
+    sections.extend(relations(slow));
+    sections.extend(report.judged.map(|judged| beside_true_motions(slow, judged)));
+    sections.push(validity(slow));
+    Ok(Document { sections })
+}
+
+fn line<'a>(left: Expr, right: Expr) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
+}
+
+/// Names in a row.
+fn listed<T: ToString>(names: impl IntoIterator<Item = T>) -> String {
+    names.into_iter().map(|name| name.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn title<'a>(slow: &SlowMotion) -> Block<'a> {
+    Block::Title {
+        words: format!("Multiple scales to order {} in {}", slow.order, small(slow)),
+        amplitude: format!(
+            "{} = amplitudes of the first harmonics of the modes",
+            listed(&slow.amplitudes)
+        ),
+    }
+}
+
+/// The small parameter, in words.
+fn small(slow: &SlowMotion) -> String {
+    slow.system.small.map_or_else(|| "the amplitudes".to_owned(), |name| name.to_string())
+}
+
+fn linear_modes<'a>(slow: &SlowMotion) -> Vec<Block<'a>> {
+    let mut blocks = Vec::new();
+    let names: Vec<String> =
+        slow.system.equations.coordinates.iter().map(ToString::to_string).collect();
+    for (index, (frequency, shape)) in slow.frequencies.iter().zip(&slow.shapes).enumerate() {
+        let alone = shape.iter().filter(|entry| !entry.is_zero()).count() == 1;
+        let shape = match alone {
+            true => {
+                let moving = shape.iter().position(|entry| !entry.is_zero()).unwrap_or(0);
+                format!("{} alone", names[moving])
+            }
+            false => format!(
+                "{} = {}",
+                names.join(" : "),
+                shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(" : ")
+            ),
+        };
+        blocks.push(Block::Note(format!(
+            "mode {}: linear frequency {frequency}, {shape}",
+            index + 1
+        )));
+    }
+    blocks.push(Block::Note(match slow.resonances.as_slice() {
+        [] => "no resonance between the frequencies".to_owned(),
+        resonances => format!("near the resonance {}", resonances.join(", ")),
+    }));
+    blocks
+}
+
+/// The closed relations of steady motions.
+fn relations<'a>(slow: &SlowMotion) -> Option<Vec<Block<'a>>> {
+    let found = slow.steady_relations();
+    if found.is_empty() {
+        return None;
+    }
+    let mut blocks = vec![Block::Heading("Steady motions, the phases eliminated".to_owned())];
+    let mut last: Option<Vec<usize>> = None;
+    for relation in found {
+        if last.as_ref() != Some(&relation.at_rest) {
+            blocks.push(Block::Note(match relation.at_rest.as_slice() {
+                [] => "with every mode moving".to_owned(),
+                modes => format!("with {} = 0", listed(modes.iter().map(|m| slow.amplitudes[*m]))),
+            }));
+            last = Some(relation.at_rest.clone());
+        }
+        blocks.push(match relation.solved {
+            Some((name, square)) => line(Expr::from(name) * Expr::from(name), square),
+            None => line(Expr::zero(), Expr::from(&relation.relation)),
+        });
+    }
+    Some(blocks)
+}
+
+/// What the slow equations say at values, beside the true motions.
+fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<Block<'a>> {
+    let within = size_in_percent(judged.tolerance);
+    let verdict = judged
+        .verdict
+        .map(|verdict| ("verdict", format!("{} (error <= {within})", verdict.name())));
+    if let Some(transient) = &judged.transient {
+        let mut facts = vec![
+            ("until", decimal(transient.until)),
+            (
+                "largest deviation",
+                format!("{} of the largest displacement", size_in_percent(transient.error)),
+            ),
+        ];
+        facts.extend(verdict);
+        return vec![
+            Block::Heading(format!(
+                "Motion from the given amplitudes{}",
+                values_in_words(&judged.at)
+            )),
+            Block::Facts(facts),
+        ];
+    }
+    let mut blocks = vec![Block::Heading(format!("Steady motions{}", values_in_words(&judged.at)))];
+    if judged.steady.is_empty() {
+        blocks.push(Block::Note(
+            "no isolated steady motion: without damping or drive there are families of them; give amplitudes, such as a1=0.1, for a motion"
+                .to_owned(),
+        ));
+        return blocks;
+    }
+    let names = slow.amplitudes.iter().chain(&slow.phases);
+    let head: Vec<Heading> = names
+        .map(|name| Heading::from(name.name()))
+        .chain(["stable", "true motion"].map(Heading::from))
+        .collect();
+    let rows = judged.steady.iter().map(|motion| {
+        let numbers = motion.state.amplitudes.iter().chain(&motion.state.phases);
+        let stable = match motion.state.growth {
+            Some(growth) if growth < 0.0 => "yes",
+            Some(growth) if growth > 0.0 => "no",
+            _ => "-",
+        };
+        numbers
+            .map(|number| decimal(*number))
+            .chain([stable.to_owned(), beside_truth(motion)])
+            .collect::<Vec<String>>()
+    });
+    blocks.push(Block::Table { head, rows: rows.collect() });
+    let turning =
+        judged.steady.iter().any(|motion| motion.state.turning.iter().any(|rate| *rate != 0.0));
+    if turning {
+        blocks.push(Block::Note(
+            "phases that no drive fixes go on turning; those listed are of one moment".to_owned(),
+        ));
+    }
+    blocks.extend(verdict.map(|verdict| Block::Facts(vec![verdict])));
+    blocks
+}
+
+/// The true motion beside a steady one, in words.
+fn beside_truth(motion: &JudgedSteadyMotion) -> String {
+    match (motion.compared, motion.error) {
+        (false, _) => "-".to_owned(),
+        (true, None) => "not found near it".to_owned(),
+        (true, Some(error)) => {
+            let stable = match motion.truly_stable {
+                Some(true) => ", stable",
+                Some(false) => ", unstable",
+                None => "",
+            };
+            format!("{} off{stable}", size_in_percent(error))
+        }
+    }
+}
+
+fn validity(slow: &SlowMotion) -> Vec<Block<'static>> {
+    let mut notes = vec![Block::Heading("Validity".to_owned())];
+    notes.push(Block::Note(match slow.system.small {
+        Some(name) => format!(
+            "truncated after {name}^{}; terms without {name} that have to be small, damping and detunings among them, count as its first power",
+            slow.order
+        ),
+        None => format!(
+            "truncated after order {}: a term of degree d counts d - 1; damping, detunings and drives at a resonance count {}",
+            slow.order, slow.small_order
+        ),
+    }));
+    if slow.leaves_out {
+        notes.push(Block::Note(format!(
+            "terms of the equations are of a higher order and left out: --order {} has the next ones",
+            slow.order + 1
+        )));
+    }
+    let acts = !slow.slow_phases.is_empty();
+    if !slow.resonances.is_empty() && !acts {
+        notes.push(Block::Note(format!(
+            "to this order the resonance {} does not act: no phase stands in the slow equations",
+            slow.resonances.join(", ")
+        )));
+    }
+    if slow.rounded {
+        notes.push(Block::Note(format!(
+            "coefficients are rounded to {} digits: a linear frequency has no closed form",
+            significant(15.0, 2)
+        )));
+    }
+    notes
+}

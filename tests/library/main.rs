@@ -50,6 +50,7 @@ mod self_excited;
 mod sensitivity;
 mod series_properties;
 mod simulate;
+mod slow_equations;
 mod spurious;
 mod starts;
 mod steps;

@@ -1,0 +1,350 @@
+//! Slow equations of several coordinates, put back into the equations of motion, and held to published
+//! laws and to the method for one coordinate.
+//!
+//! - Saturation at 1:2: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 6.5.
+//! - Death of two van der Pol oscillators: D. G. Aronson, G. B. Ermentrout, N. Kopell, *Physica D* 41
+//!   (1990) 403.
+//! - Two equal cubic oscillators: A. F. Vakakis, R. H. Rand, *Int. J. Non-Linear Mech.* 27 (1992) 861.
+
+use std::collections::BTreeMap;
+
+use lindstedt::expr::{CompiledList, Expr, parse_expression};
+use lindstedt::method::{Options, solve};
+use lindstedt::multiple_scales::{
+    CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion, derive,
+};
+use lindstedt::solution::Method;
+use lindstedt::verify::judge_slow_motion;
+use lindstedt::{Oscillator, Symbol, Verdict};
+
+fn options(order: Option<usize>, resonance: &str) -> MultipleScalesOptions {
+    let resonance = (!resonance.is_empty()).then(|| resonance.to_owned());
+    MultipleScalesOptions { order, resonance, ..MultipleScalesOptions::default() }
+}
+
+fn slow(equations: &str, resonance: &str, order: Option<usize>) -> SlowMotion {
+    let system =
+        CoupledSystem::parse(equations).unwrap_or_else(|error| panic!("{equations}: {error}"));
+    derive(&system, &options(order, resonance))
+        .unwrap_or_else(|error| panic!("{equations}: {error}"))
+}
+
+/// The expression that a text stands for.
+fn expression(text: &str) -> Expr {
+    parse_expression(text).expect("an expression")
+}
+
+/// Whether two expressions agree where their letters have some values.
+fn agree(one: &Expr, other: &Expr) -> bool {
+    let names = one.symbols().into_iter().chain(other.symbols());
+    let values: BTreeMap<Symbol, f64> = names
+        .enumerate()
+        .map(|(index, name)| (name, 0.3 + 0.37 * (index as f64 + 1.0).sqrt()))
+        .collect();
+    let [one, other] =
+        [one, other].map(|expression| expression.evaluate(&values).expect("a value"));
+    (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
+}
+
+/// What a formula leaves of the equations at some times and phases, as a part of the amplitude, where
+/// amplitudes are `delta` times these.
+fn left_over(slow: &SlowMotion, amplitudes: &[f64], values: &[(&str, f64)], delta: f64) -> f64 {
+    let t = Symbol::new("t");
+    let own: Vec<[Symbol; 2]> =
+        slow.amplitudes.iter().zip(&slow.phases).map(|(a, phase)| [*a, *phase]).collect();
+    let rates: Vec<[Expr; 2]> = (0..own.len())
+        .map(|mode| {
+            let meanings: BTreeMap<Symbol, Expr> = (0..slow.slow_phases.len())
+                .filter_map(|index| Some((slow.slow_phases[index].0, slow.meaning(index)?)))
+                .collect();
+            let rates = slow.rate(mode).expect("rates");
+            rates.map(|rate| rate.substitute_all(&meanings).expect("a rate"))
+        })
+        .collect();
+    let along = |motion: &Expr| -> Expr {
+        let mut sum = motion.differentiate(t).expect("a derivative");
+        for (names, rates) in own.iter().zip(&rates) {
+            for (name, rate) in names.iter().zip(rates) {
+                sum = sum + motion.differentiate(*name).expect("a derivative") * rate.clone();
+            }
+        }
+        sum
+    };
+    let equations = &slow.system.equations;
+    let mut moving = BTreeMap::new();
+    for (name, motion) in equations.coordinates.iter().zip(&slow.motion) {
+        let velocity = along(motion);
+        moving.insert(name.derivative().derivative(), along(&velocity));
+        moving.insert(name.derivative(), velocity);
+        moving.insert(*name, motion.clone());
+    }
+    let residuals: Vec<Expr> = equations
+        .equations
+        .iter()
+        .map(|(left, right)| (left - right).substitute_all(&moving).expect("a residual"))
+        .collect();
+    let mut numbers: BTreeMap<Symbol, f64> =
+        values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
+    let defined = slow.values(&|name| numbers.get(&name).copied()).expect("values");
+    numbers.extend(defined);
+    let names: Vec<Symbol> =
+        numbers.keys().copied().chain([t]).chain(own.iter().flatten().copied()).collect();
+    let compiled = CompiledList::new(&residuals, &names).expect("compiled");
+    let mut largest = 0.0_f64;
+    for sample in 0..40 {
+        let turn = f64::from(sample);
+        let arguments: Vec<f64> = numbers
+            .values()
+            .copied()
+            .chain([1.7 * turn])
+            .chain(
+                amplitudes
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(mode, a)| [delta * a, 0.9 * turn * (mode as f64 + 1.3).sqrt()]),
+            )
+            .collect();
+        let mut found = vec![0.0; residuals.len()];
+        compiled.call(&arguments, &mut vec![], &mut found);
+        largest = found.iter().fold(largest, |largest, value| largest.max(value.abs()));
+    }
+    largest / delta
+}
+
+/// The exponent of what is left over, which is the order and one.
+fn exponent(
+    slow: &SlowMotion,
+    amplitudes: &[f64],
+    values: impl Fn(f64) -> Vec<(&'static str, f64)>,
+    scale: impl Fn(f64) -> f64,
+) -> f64 {
+    // Small enough for the next order to decide, large enough for rounding not to.
+    let delta = if slow.order > 3 { 0.05 } else { 0.01 };
+    let [large, small] =
+        [delta, delta / 2.0].map(|delta| left_over(slow, amplitudes, &values(delta), scale(delta)));
+    (large / small).log2()
+}
+
+#[test]
+fn what_is_left_of_the_equations_is_of_the_next_order() {
+    // 1:2, driven at the second mode; damping, detunings and the force are small with the amplitude.
+    let pair = "u'' + 2*mu*u' + w1^2*u - b*u*v + k*u^3 = 0; v'' + 2*mu*v' + w2^2*v - c*u^2 + u'*v' = F*cos(Omega*t)";
+    for order in [1, 2, 3] {
+        let found = slow(pair, "w2 = 2*w1, Omega = w2", Some(order));
+        let values = |delta: f64| {
+            vec![
+                ("mu", 0.3 * delta),
+                ("w1", 1.0),
+                ("w2", 2.0 - 0.7 * delta),
+                ("b", 0.4),
+                ("c", 0.7),
+                ("k", 0.9),
+                ("F", 0.8 * delta * delta),
+                ("Omega", 2.0 + 0.4 * delta),
+            ]
+        };
+        let found = exponent(&found, &[0.7, 1.1], values, |delta| delta);
+        assert!((found - order as f64 - 1.0).abs() < 0.1, "1:2 to order {order}: {found}");
+    }
+    // 1:3 with cubic forces and coupled masses; damping counts as the square of the amplitude.
+    let third = "x'' + y''/5 + 2*mu*x' + x + x^3 + b*x^2*y = 0; y'' + x''/5 + W*y + b*x^3/3 + y^3/2 = F*cos(Omega*t)";
+    for order in [2, 3, 4] {
+        let found = slow(third, "omega2 = 3*omega1, Omega = omega1", Some(order));
+        let values = |delta: f64| {
+            let small = delta * delta;
+            vec![
+                ("mu", 0.3 * small),
+                ("b", 0.6),
+                ("W", 8.0 + 0.2 * small),
+                ("F", 0.5 * delta * small),
+                ("Omega", 0.98 + 0.1 * small),
+            ]
+        };
+        // omega2 = 3 omega1 at this W, to which Omega is adjusted.
+        let near = |delta: f64| {
+            let mut values = values(delta);
+            let [w, omega] = resonant_pair();
+            values[2].1 = w + 0.2 * delta * delta;
+            values[4].1 = omega + 0.1 * delta * delta;
+            values
+        };
+        let found = exponent(&found, &[0.7, 0.5], near, |delta| delta);
+        // Odd powers alone: the order that is left over is the next even one.
+        let expected = if order % 2 == 0 { order + 2 } else { order + 1 };
+        assert!((found - expected as f64).abs() < 0.15, "1:3 to order {order}: {found}");
+    }
+    // A small parameter: two van der Pol oscillators that are coupled by their velocities.
+    let cycles = "x'' + x - eps*(1 - x^2)*x' = eps*k*(y' - x'); y'' + w^2*y - eps*(1 - y^2)*y' = eps*k*(x' - y')";
+    for order in [1, 2] {
+        let found = slow(cycles, "w = omega1", Some(order));
+        let values = |eps: f64| vec![("eps", eps), ("k", 0.7), ("w", 1.0 + 0.4 * eps)];
+        let found = exponent(&found, &[1.7, 1.3], values, |_| 1.0);
+        assert!((found - order as f64 - 1.0).abs() < 0.1, "1:1 to order {order}: {found}");
+    }
+    // A parametric resonance of the sum, and a force far from resonance that drives a superharmonic one.
+    let sum = "x'' + 2*mu*x' + x + h*y*cos(Omega*t) + x^3 = 0; y'' + 2*mu*y' + 3*y + h*x*cos(Omega*t) + x*y^2 = 0";
+    let found = slow(sum, "Omega = omega1 + omega2", Some(2));
+    let values = |delta: f64| {
+        let small = delta * delta;
+        vec![("mu", 0.3 * small), ("h", 0.8 * small), ("Omega", 1.0 + 3.0_f64.sqrt() + 0.3 * small)]
+    };
+    let left = exponent(&found, &[0.7, 0.5], values, |delta| delta);
+    assert!((left - 4.0).abs() < 0.15, "sum: {left}");
+    let hard = "x'' + x + x*y = F*cos(Omega*t); y'' + 5*y + x^2 = 0";
+    let found = slow(hard, "2*Omega = omega2", Some(1));
+    let values =
+        |delta: f64| vec![("F", 0.6 * delta), ("Omega", 5.0_f64.sqrt() / 2.0 + 0.2 * delta)];
+    let left = exponent(&found, &[0.7, 0.5], values, |delta| delta);
+    assert!((left - 2.0).abs() < 0.1, "superharmonic: {left}");
+}
+
+/// W and omega1 of the second pair at which its frequencies are as 1 to 3.
+fn resonant_pair() -> [f64; 2] {
+    // det [[1 - s, -s/5], [-s/5, W - s]] = 0, s = omega^2: 0.96 s^2 - (1 + W) s + W = 0, roots s and 9 s.
+    // 10 s = (1 + W)/0.96, 9 s^2 = W/0.96.
+    let f = |s: f64| 9.0 * s * s * 0.96 - (10.0 * s * 0.96 - 1.0);
+    let (mut low, mut high) = (0.9, 1.0);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if f(low) * f(middle) <= 0.0 { high = middle } else { low = middle }
+    }
+    let s = 0.5 * (low + high);
+    [10.0 * s * 0.96 - 1.0, s.sqrt()]
+}
+
+#[test]
+fn two_that_are_not_coupled_are_each_what_one_is_alone() {
+    let pair = slow("x'' + w^2*x + b*x^2 + c*x^3 + x*x'^2 = 0; z'' + 7*z = 0", "none", Some(2));
+    let alone =
+        Oscillator::parse("x'' + w^2*x + b*x^2 + c*x^3 + x*x'^2 = 0").expect("an oscillator");
+    let options =
+        Options { method: Some(Method::MultipleScales), order: Some(2), ..Options::default() };
+    let law = solve(&alone, &options).expect("a law").law;
+    let frequency = Expr::from(law.frequency().expect("a frequency"));
+    let [amplitude, phase] = pair.rate(0).expect("rates");
+    assert!(amplitude.is_zero());
+    let a1 = [(Symbol::new("a1"), Expr::symbol("a"))].into();
+    let ours = phase.substitute_all(&a1).expect("a rate") + Expr::symbol("w");
+    assert!(agree(&ours, &frequency), "{ours} for {frequency}");
+}
+
+#[test]
+fn the_second_mode_saturates_whatever_the_force() {
+    let pair = "u'' + 2*mu1*u' + w1^2*u = alpha1*u*v; v'' + 2*mu2*v' + w2^2*v = alpha2*u^2 + F*cos(Omega*t)";
+    let found = slow(pair, "w2 = 2*w1, Omega = w2", None);
+    let relations = found.steady_relations();
+    let moving = relations.iter().find(|relation| relation.at_rest.is_empty()).expect("a relation");
+    let (name, square) = moving.solved.clone().expect("one amplitude");
+    assert_eq!(name.name(), "a2");
+    // At exact resonance a2 = 4 w1 mu1/alpha1.
+    let exact = [(Symbol::new("sigma1"), Expr::zero()), (Symbol::new("Omega"), expression("2*w1"))];
+    let square = square.substitute_all(&exact.into()).expect("a square");
+    assert!(agree(&square, &expression("(4*w1*mu1/alpha1)^2")), "{square}");
+    // In numbers, beside the true motion: 0.10019 for F = 0.008.
+    let judged = judge_slow_motion(
+        &found,
+        &"mu1 = 1/100, mu2 = 1/100, w1 = 1, w2 = 2, alpha1 = 2/5, alpha2 = 3/10, F = 1/125, Omega = 2"
+            .parse()
+            .expect("values"),
+        0.01,
+    )
+    .expect("judged");
+    let stable: Vec<_> = judged.steady.iter().filter(|motion| motion.state.is_stable()).collect();
+    let [motion] = stable.as_slice() else { panic!("{judged:?}") };
+    assert!((motion.state.amplitudes[1] - 0.1).abs() < 1e-12);
+    assert_eq!((judged.verdict, motion.truly_stable), (Some(Verdict::Pass), Some(true)));
+    let at_rest = judged.steady.iter().find(|motion| motion.state.amplitudes[0] == 0.0);
+    assert!(at_rest.is_some_and(|motion| !motion.state.is_stable()));
+}
+
+#[test]
+fn coupled_cycles_die_beyond_the_published_distance() {
+    let cycles = "x'' + x - eps*(1 - x^2)*x' = eps*k*(y' - x'); y'' + w^2*y - eps*(1 - y^2)*y' = eps*k*(x' - y')";
+    let found = slow(cycles, "w = omega1", None);
+    // abs(w1 - w2) > eps sqrt(2 k - 1), for k > 1.
+    let edge = 0.05 * 3.0_f64.sqrt();
+    for (apart, dies) in [(edge * 1.001, true), (edge * 0.999, false)] {
+        let values: BTreeMap<&str, f64> = [("eps", 0.05), ("k", 2.0), ("w", 1.0 + apart)].into();
+        let numbers = found.in_numbers(&|name| values.get(name.name()).copied()).expect("values");
+        let states = numbers.steady_states(Default::default());
+        let rest = states.iter().find(|state| state.amplitudes == [0.0, 0.0]).expect("rest");
+        assert_eq!(rest.is_stable(), dies, "{apart}: {states:?}");
+    }
+}
+
+#[test]
+fn the_mode_out_of_phase_branches_where_it_was_published() {
+    // phi1' - phi2' along a1 = a + u, a2 = a - u, phi1 - phi2 = pi + g: whether u and g stay small.
+    let pair = "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0";
+    let found = slow(pair, "omega1 = omega2", None);
+    let [a1, _] = found.rate(0).expect("rates");
+    let [a2, _] = found.rate(1).expect("rates");
+    let [phi1, phi2] = [0, 1].map(|mode| found.rate(mode).expect("rates")[1].clone());
+    let at = |expression: &Expr, coupling: f64, u: f64, g: f64| {
+        let values = [
+            ("a1", 0.3 + u),
+            ("a2", 0.3 - u),
+            ("K", coupling),
+            ("gamma1", std::f64::consts::PI + g),
+        ];
+        let values = values.map(|(name, value)| (Symbol::new(name), value)).into();
+        expression.evaluate(&values).expect("a rate")
+    };
+    // u' = p g, g' = q u: the mode is stable where p q < 0.
+    let product = |coupling: f64| {
+        let small = 1e-5;
+        let p = (at(&a1, coupling, 0.0, small) - at(&a2, coupling, 0.0, small)) / (2.0 * small);
+        let q = (at(&phi1, coupling, small, 0.0) - at(&phi2, coupling, small, 0.0)) / small;
+        p * q
+    };
+    assert!(product(0.251) < 0.0 && product(0.249) > 0.0, "{} {}", product(0.251), product(0.249));
+}
+
+#[test]
+fn transients_are_followed_at_both_orders() {
+    let pair = "x'' + x - x*y = 0; y'' + 4*y - x^2 = 0";
+    let error = |order: usize| {
+        let found = slow(pair, "", Some(order));
+        let at = "a1 = 1/40, a2 = 1/200".parse().expect("values");
+        let judged = judge_slow_motion(&found, &at, 0.01).expect("judged");
+        judged.transient.expect("a transient").error
+    };
+    let [first, second] = [1, 2].map(error);
+    assert!(second < 1e-4 && first > 100.0 * second, "{first} and {second}");
+}
+
+#[test]
+fn refusals_name_what_is_in_the_way() {
+    let refused = |equations: &str, resonance: &str, order: Option<usize>| {
+        let system = match CoupledSystem::parse(equations) {
+            Ok(system) => system,
+            Err(error) => return error,
+        };
+        derive(&system, &options(order, resonance)).expect_err(equations)
+    };
+    let gyroscope = refused("x'' + x - g*y' = 0; y'' + y + g*x' + x^3 = 0", "", None);
+    assert!(matches!(gyroscope, MultipleScalesError::Gyroscopic(_)), "{gyroscope}");
+    let open = refused("x'' + x + x^3 = F*cos(W*t); y'' + 2*y + x*y = 0", "", None);
+    assert!(open.help().is_some_and(|help| help.contains("W = omega1")), "{open:?}");
+    let far = refused("x'' + x + x*y = 0; y'' + 2*y + x^2 = 0", "omega2 = 3*omega1", None);
+    assert!(far.to_string().contains("far"), "{far}");
+    let form = refused("x'' + x + x*y = 0; y'' + 2*y + x^2 = 0", "omega2 = 3*omega9", None);
+    assert!(form.to_string().contains("omega9"), "{form}");
+    let missed = refused("x'' + x + x*y = 0; y'' + 4*y + x^2 = 0", "none", None);
+    assert!(matches!(missed, MultipleScalesError::Divisor { mode: 1, .. }), "{missed}");
+    let low = refused("x'' + x + x^3 + y^3 = 0; y'' + 2*y = 0", "none", Some(1));
+    assert!(matches!(low, MultipleScalesError::BelowBalance { asked: 1, lowest: 2 }), "{low}");
+    let jump = refused("x'' + x + sgn(x') = 0; y'' + 2*y + x^2 = 0", "", None);
+    assert!(
+        matches!(jump, MultipleScalesError::Taylor(_) | MultipleScalesError::Term(_)),
+        "{jump}"
+    );
+    let twice = refused(
+        "x'' + x + x*y = 0; y'' + 4*y + x^2 = 0",
+        "omega2 = 2*omega1, 2*omega2 = 4*omega1",
+        None,
+    );
+    assert!(twice.to_string().contains("follows"), "{twice}");
+    let alone = refused("x'' + x + x^3 = 0; y'' = x", "", None);
+    assert!(alone.to_string().contains("omega = 0"), "{alone}");
+}

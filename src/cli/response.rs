@@ -5,6 +5,10 @@ use std::path::Path;
 use crate::coupled::CoupledEquations;
 use crate::export::{self, json};
 use crate::expr::Expr;
+use crate::multiple_scales::{
+    CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion,
+    derive as derive_slow_equations,
+};
 use crate::problem::{Order, Problem, ReadingCommand};
 use crate::response::{
     Equations, EquationsError, MOST_HARMONICS, ResponseError, ResponseRequest, respond,
@@ -75,10 +79,11 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let equations = equations(&problem)?;
     let method = method(arguments.method.as_deref().or(problem.method.as_deref()))?;
-    if method != Method::HarmonicBalance && equations.oscillator().is_none() {
+    if method == Method::Averaging && equations.oscillator().is_none() {
         return Err(Failure::Usage(format!(
-            "--method {}: slow equations are those of one coordinate; the steady states of coupled equations are found by shooting: leave it out",
-            method.name()
+            "--method {}: of coupled equations the slow equations are those of --method {}",
+            method.name(),
+            Method::MultipleScales.name()
         )));
     }
     let order = match (arguments.order, problem.order) {
@@ -118,8 +123,15 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         interrupt,
         progress,
     };
+    let mut coupled = None;
     let slow = match (method, question.equations.oscillator()) {
-        (Method::HarmonicBalance, _) | (_, None) => None,
+        (Method::HarmonicBalance, _) => None,
+        (_, None) => {
+            let slow = slow_motion(&question, order)?;
+            question.periods = slow.periods.unwrap_or(question.periods);
+            coupled = Some(slow);
+            None
+        }
         (method, Some(oscillator)) => {
             let asked = arguments.periods.or(problem.periods);
             let solution = slow_equations(oscillator, method, order, asked)?;
@@ -138,6 +150,10 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         .map_err(refused)?;
     if let Some(solution) = slow {
         response = response.with_slow_equations(solution);
+    }
+    if let Some(slow) = coupled {
+        response = with_progress("of this comparison", || response.with_slow_motion(slow))
+            .map_err(|name| Failure::because(format!("no value of {name}")))?;
     }
     let answer = Answer {
         document: &report::response(&response),
@@ -275,6 +291,44 @@ fn slow_equations(
     likeliest
         .map_or_else(|| at(Some((periods.unwrap_or(1), 1))), Ok)
         .map_err(|refusal| refused_term(oscillator, &refusal))
+}
+
+/// The slow equations of coupled equations at the resonance of a drive that is near in the range,
+/// sought from its middle outwards.
+fn slow_motion(question: &ResponseRequest, order: Option<u32>) -> Result<SlowMotion, Failure> {
+    /// The places in the range, as parts of it.
+    const PLACES: [f64; 9] = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
+    let refused =
+        |error: MultipleScalesError| Failure::refused(&error, error.help()).of_kind(&error);
+    let Equations::Coupled(equations) = &question.equations else {
+        return Err(Failure::because(
+            "slow equations of several coordinates are of several".to_owned(),
+        ));
+    };
+    let system = CoupledSystem::new(equations.clone(), None).map_err(refused)?;
+    let [low, high] = question.range;
+    let mut last = None;
+    for part in PLACES {
+        let mut values = question.values.numbers();
+        values.insert(question.parameter, low + part * (high - low));
+        let options = MultipleScalesOptions {
+            order: order.map(|order| order as usize),
+            values,
+            ..MultipleScalesOptions::default()
+        };
+        match derive_slow_equations(&system, &options) {
+            Ok(slow) if slow.is_driven_throughout() => return Ok(slow),
+            Ok(_) => {}
+            Err(error) => last = Some(error),
+        }
+    }
+    Err(match last {
+        Some(error) => refused(error),
+        None => Failure::because(
+            "no value in the range is near a resonance at which the drive acts on every mode: `lindstedt derive --method multiple-scales --resonance ...` has the slow equations of others"
+                .to_owned(),
+        ),
+    })
 }
 
 /// The number of drive periods in a period of the motion of these slow equations; `None` if its

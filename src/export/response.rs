@@ -387,7 +387,12 @@ fn curves<'a>(
     draw("unstable", of_stability(false), CurveStyle::UNSTABLE);
     draw("stable", of_stability(true), CurveStyle::DIFFERENCE);
     let states = response.slow.iter().flat_map(|slow| &slow.states);
-    let states = states.map(|state| (state.parameter, state.amplitude)).collect();
+    let states = states
+        .map(|state| {
+            let peak = state.peak.unwrap_or(state.amplitude);
+            (state.parameter, height.value(state.amplitude, peak, f64::NAN))
+        })
+        .collect();
     draw(slow_title, vec![states], CurveStyle::SLOW);
     let simulated = response.simulated.iter().map(|found| {
         let height = height.value(found.amplitude, found.peak, found.frequency);
@@ -427,7 +432,7 @@ pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
         (false, 1) => &[Ordinate::Amplitude],
         _ => &[Ordinate::Peak],
     };
-    let title = response.slow.as_ref().map(|slow| slow.solution.title());
+    let title = response.slow.as_ref().map(|slow| slow.equations.title());
     let title = title.unwrap_or_default();
     // Each panel has a title, the words at its axes and its curves.
     let mut drawn: Vec<Drawing> = heights

@@ -11,8 +11,9 @@ use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
-use crate::response::slow::SlowResponse;
+use crate::response::slow::{SlowEquations, SlowResponse};
 use crate::response::{Branch, Elsewhere, MOST_HARMONICS, ResponseDiagram, SteadyMotion};
+use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -438,10 +439,9 @@ fn backbone(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
 }
 
 /// The slow equations, their steady motions, and the differences of these from the branches.
-fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Block<'static>> {
-    let name = response.question.parameter.name();
-    let solution = &slow.solution;
-    let mut blocks = vec![Block::Heading(format!("by slow equations: {}", solution.title()))];
+/// The slow equations of a single coordinate, and their relation of steady motions.
+fn slow_equations_of_one(solution: &Solution) -> Vec<Block<'static>> {
+    let mut blocks = Vec::new();
     let line =
         |left: Expr, right: Expr| Block::Line(Cow::Owned(DerivationLine::equation(left, right)));
     if let Some(modulation) = &solution.modulation {
@@ -459,20 +459,37 @@ fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Blo
     {
         blocks.push(line(Expr::zero(), Expr::from(relation)));
     }
+    blocks
+}
+
+fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Block<'static>> {
+    let name = response.question.parameter.name();
+    let mut blocks = vec![Block::Heading(format!("by slow equations: {}", slow.equations.title()))];
+    match &slow.equations {
+        SlowEquations::One(solution) => blocks.extend(slow_equations_of_one(solution)),
+        SlowEquations::Coupled(slow) => {
+            blocks.extend(super::slow_equations::rates(slow).unwrap_or_default());
+        }
+    }
     let count = slow.states.len();
     let steps = ROWS.min(count).max(2) - 1;
     let row = |step: usize| {
         let state = slow.states.get(step * (count.max(1) - 1) / steps)?;
         let stable = if state.stable { "yes" } else { "no" };
-        let numbers = [state.parameter, state.amplitude, state.phase].map(decimal);
+        let second = state.peak.unwrap_or(state.amplitude);
+        let third = if state.peak.is_some() { state.amplitude } else { state.phase };
+        let numbers = [state.parameter, second, third].map(decimal);
         Some(numbers.into_iter().chain([stable.to_owned()]).collect())
     };
-    blocks.push(Block::table([name, "amplitude", "phase", "stable"], (0..=steps).filter_map(row)));
+    let coupled = matches!(slow.equations, SlowEquations::Coupled(_));
+    let size = if coupled { "peak" } else { "amplitude" };
+    let third = if coupled { "first harmonic" } else { "phase" };
+    blocks.push(Block::table([name, size, third, "stable"], (0..=steps).filter_map(row)));
     let mut facts = vec![(
         "largest error",
         match (slow.error, slow.worst) {
             (Some(error), Some(worst)) => format!(
-                "{} of the amplitude, at {name} = {}, of {} stable points of the branches",
+                "{} of the {size}, at {name} = {}, of {} stable points of the branches",
                 significant(error, 2),
                 significant(worst, 4),
                 slow.points

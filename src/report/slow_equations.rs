@@ -52,21 +52,28 @@ pub fn slow_equations<'a>(report: &SlowReport<'a>) -> Result<Document<'a>, ExprE
     for (name, motion) in slow.system.equations.coordinates.iter().zip(&slow.motion) {
         rates.push(line(Expr::from(*name), motion.clone()));
     }
-    for mode in 0..slow.rates.len() {
-        let [amplitude, phase] = slow.rate(mode)?;
-        rates.push(line(Expr::from(slow.amplitudes[mode].derivative()), amplitude));
-        rates.push(line(Expr::from(slow.phases[mode].derivative()), phase));
-    }
-    for (index, (name, _)) in slow.slow_phases.iter().enumerate() {
-        rates.extend(slow.meaning(index).map(|meaning| line(Expr::from(*name), meaning)));
-    }
-    rates.extend(slow.detunings.iter().map(Block::Definition));
-    rates.extend(slow.definitions.iter().map(Block::Definition));
+    rates.extend(self::rates(slow)?);
     sections.push(rates);
     sections.extend(relations(slow));
     sections.extend(report.judged.map(|judged| beside_true_motions(slow, judged)));
     sections.push(validity(slow));
     Ok(Document { sections })
+}
+
+/// The rates of amplitudes and phases, and what they name.
+pub(super) fn rates(slow: &SlowMotion) -> Result<Vec<Block<'static>>, ExprError> {
+    let mut blocks = Vec::new();
+    for mode in 0..slow.rates.len() {
+        let [amplitude, phase] = slow.rate(mode)?;
+        blocks.push(line(Expr::from(slow.amplitudes[mode].derivative()), amplitude));
+        blocks.push(line(Expr::from(slow.phases[mode].derivative()), phase));
+    }
+    for (index, (name, _)) in slow.slow_phases.iter().enumerate() {
+        blocks.extend(slow.meaning(index).map(|meaning| line(Expr::from(*name), meaning)));
+    }
+    let definitions = slow.detunings.iter().chain(&slow.definitions);
+    blocks.extend(definitions.map(|known| line(Expr::from(known.symbol), known.meaning.clone())));
+    Ok(blocks)
 }
 
 fn line<'a>(left: Expr, right: Expr) -> Block<'a> {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::DocumentKind;
 use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::{listed_quantity, motion_frequency};
-use crate::response::slow::SlowResponse;
+use crate::response::slow::{SlowEquations, SlowResponse};
 use crate::response::{self, CoordinateMotion, ResponseDiagram};
 #[cfg(feature = "schema")]
 use crate::verify::Verdict;
@@ -145,10 +145,14 @@ pub struct SlowDocument {
     pub method: String,
     /// Its order.
     pub order: u32,
-    /// The rate of the amplitude, a formula.
+    /// The rate of the amplitude, a formula; empty of coupled equations.
     pub amplitude_rate: String,
-    /// The rate of the phase, a formula.
+    /// The rate of the phase, a formula; empty of coupled equations.
     pub phase_rate: String,
+    /// The rates of amplitude and phase of each mode of coupled equations, formulas. Left out of one
+    /// coordinate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<[String; 2]>,
     /// What stands for what in them.
     pub definitions: Map<String>,
     /// The steady motions, by the parameter.
@@ -173,17 +177,37 @@ pub struct SlowDocument {
 }
 
 fn slow(slow: &SlowResponse) -> SlowDocument {
-    let solution = &slow.solution;
-    let rates = solution.modulation.as_ref().map(|modulation| {
-        [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string)
-    });
-    let [amplitude_rate, phase_rate] = rates.unwrap_or_default();
+    let (method, order, rates, definitions) = match &slow.equations {
+        SlowEquations::One(solution) => {
+            let rates = solution.modulation.as_ref().map(|modulation| {
+                [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string)
+            });
+            let definitions = meanings(&solution.definitions);
+            (solution.method, solution.order, rates.into_iter().collect(), definitions)
+        }
+        SlowEquations::Coupled(slow) => {
+            let rates: Vec<[String; 2]> = (0..slow.rates.len())
+                .filter_map(|mode| Some(slow.rate(mode).ok()?.map(|rate| rate.to_string())))
+                .collect();
+            let all: Vec<_> = slow.definitions.iter().chain(&slow.detunings).cloned().collect();
+            let mut definitions = meanings(&all);
+            for (index, (name, _)) in slow.slow_phases.iter().enumerate() {
+                let meaning = slow.meaning(index).map(|meaning| meaning.to_string());
+                definitions.extend(meaning.map(|meaning| (name.to_string(), meaning)));
+            }
+            let order = u32::try_from(slow.order).unwrap_or(u32::MAX);
+            (crate::solution::Method::MultipleScales, order, rates, definitions)
+        }
+    };
+    let of_one = || rates.first().cloned().filter(|_| rates.len() == 1).unwrap_or_default();
+    let [amplitude_rate, phase_rate] = of_one();
     SlowDocument {
-        method: solution.method.name().to_owned(),
-        order: solution.order,
+        method: method.name().to_owned(),
+        order,
         amplitude_rate,
         phase_rate,
-        definitions: meanings(&solution.definitions),
+        modes: if rates.len() > 1 { rates } else { vec![] },
+        definitions,
         states: slow.states.clone(),
         largest_error: slow.error,
         missing: slow.missing,

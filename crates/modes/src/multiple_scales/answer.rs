@@ -44,7 +44,7 @@ pub struct MultipleScalesOptions {
 }
 
 /// The slow equations of a system.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SlowMotion {
     /// The system.
     pub system: CoupledSystem,
@@ -62,6 +62,8 @@ pub struct SlowMotion {
     pub references: Vec<Expr>,
     /// The frequency of which all in the motion are multiples, if there is one.
     pub base: Option<Expr>,
+    /// The number of drive periods in a period of that frequency, where a single drive has it.
+    pub periods: Option<usize>,
     /// `sigma_j`, reference frequency less linear frequency, where they differ.
     pub detunings: Vec<Definition>,
     /// `a_j`, the amplitude of the first harmonic of each mode.
@@ -88,6 +90,16 @@ pub struct SlowMotion {
 }
 
 impl SlowMotion {
+    /// The method and its order.
+    pub fn title(&self) -> String {
+        format!("Multiple scales to order {}", self.order)
+    }
+
+    /// Whether drives fix every phase, so that steady motions are periodic with the drive.
+    pub fn is_driven_throughout(&self) -> bool {
+        self.periods.is_some() && self.slow_phases.len() == self.phases.len()
+    }
+
     /// `a_j'` and `phi_j'` as expressions.
     ///
     /// # Errors
@@ -249,6 +261,13 @@ fn answer(
         references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
         base: match reference.bases.as_slice() {
             [base] => Some(Expr::from(&round(base))),
+            _ => None,
+        },
+        periods: match reference.drives.as_slice() {
+            [wave] => <[i32; 1]>::try_from(wave.clone())
+                .ok()
+                .and_then(|[periods]| usize::try_from(periods).ok())
+                .filter(|periods| *periods > 0),
             _ => None,
         },
         detunings: reference.meanings.clone(),

@@ -201,15 +201,35 @@ impl SlowNumbers {
     pub fn steady_states(&self, interrupt: Interrupt) -> Vec<SlowSteadyState> {
         /// The number of starts for each mode.
         const STARTS: usize = 500;
+        self.steady_states_near(&[], STARTS * self.rates.len(), interrupt)
+    }
+
+    /// The steady motions that are found from these, from rest, and from a number of random starts.
+    pub fn steady_states_near(
+        &self,
+        known: &[SlowSteadyState],
+        starts: usize,
+        interrupt: Interrupt,
+    ) -> Vec<SlowSteadyState> {
         let count = self.rates.len();
         let mut random = ChaCha8Rng::seed_from_u64(0);
         let mut found: Vec<SlowSteadyState> = Vec::new();
-        for start in 0..=STARTS * count {
+        for start in 0..=known.len() + starts {
             if interrupt.is_requested() {
                 break;
             }
             let mut place = DVector::zeros(2 * count + self.open.nrows());
-            if start > 0 {
+            if let Some(state) = start.checked_sub(1).and_then(|index| known.get(index)) {
+                for (mode, (a, phase)) in state.amplitudes.iter().zip(&state.phases).enumerate() {
+                    (place[2 * mode], place[2 * mode + 1]) =
+                        (0.5 * a * phase.cos(), 0.5 * a * phase.sin());
+                }
+                for row in 0..self.open.nrows() {
+                    let along = state.turning.iter().enumerate();
+                    place[2 * count + row] =
+                        along.map(|(mode, rate)| rate * self.open[(row, mode)]).sum();
+                }
+            } else if start > 0 {
                 for mode in 0..count {
                     let size = 10.0_f64.powf(random.random_range(-4.0..1.5));
                     let phase = random.random_range(0.0..std::f64::consts::TAU);

@@ -4,8 +4,13 @@
 //! as that of multiple scales. Out: its steady motions over the range, and their errors at the
 //! stable points of the branches, whose true motions are known.
 
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+
 use super::bifurcation::BifurcationKind;
 use super::{ResponseDiagram, ResponseRequest, SteadyMotion};
+use crate::expr::{CompiledList, Expr};
+use crate::multiple_scales::{SlowMotion, SlowNumbers, SlowSteadyState};
 use crate::solution::Solution;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
@@ -27,8 +32,8 @@ const VALUES: u32 = 240;
 /// Steady motions by slow equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowResponse {
-    /// The solution with the slow equations and their method.
-    pub solution: Box<Solution>,
+    /// The slow equations and their method.
+    pub equations: SlowEquations,
     /// The steady motions, by the parameter, the largest first.
     pub states: Vec<SlowState>,
     /// The largest error of the amplitude at the stable points of the branches, over the amplitude
@@ -49,6 +54,147 @@ pub struct SlowResponse {
     pub beside: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     pub verdict: Verdict,
+}
+
+/// Slow equations of one coordinate or of several.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SlowEquations {
+    /// The solution of one coordinate that has them.
+    One(Box<Solution>),
+    /// Those of the modes of coupled equations.
+    Coupled(Box<SlowMotion>),
+}
+
+impl SlowEquations {
+    /// The method and its order.
+    pub fn title(&self) -> String {
+        match self {
+            Self::One(solution) => solution.title(),
+            Self::Coupled(slow) => slow.title(),
+        }
+    }
+}
+
+/// Stable points of branches beside the stable motions of slow equations.
+#[derive(Default)]
+struct Compared {
+    error: Option<f64>,
+    worst: Option<f64>,
+    missing: usize,
+    points: usize,
+    beside: usize,
+    tolerance: f64,
+}
+
+impl Compared {
+    fn response(self, equations: SlowEquations, states: Vec<SlowState>) -> SlowResponse {
+        SlowResponse {
+            equations,
+            states,
+            verdict: Verdict::from_passed(
+                MISSING * self.missing <= self.points
+                    && self.error.is_some_and(|error| error <= self.tolerance),
+            ),
+            error: self.error,
+            worst: self.worst,
+            missing: self.missing,
+            spurious: None,
+            points: self.points,
+            beside: self.beside,
+        }
+    }
+}
+
+/// The quantity that a response of coupled equations lists, by slow equations.
+struct ListedQuantity {
+    /// The quantity at the time, the amplitudes and phases, and the values of all letters.
+    quantity: CompiledList,
+    letters: Vec<Symbol>,
+    values: BTreeMap<Symbol, f64>,
+    parameter: Symbol,
+    /// The frequency of the drive over the number of its periods in a period of the motion.
+    base: Expr,
+}
+
+impl ListedQuantity {
+    fn new(question: &ResponseRequest, slow: &SlowMotion) -> Result<Self, Symbol> {
+        let t = Symbol::new("t");
+        let coordinates = &slow.system.equations.coordinates;
+        let motion: BTreeMap<Symbol, Expr> =
+            coordinates.iter().copied().zip(slow.motion.iter().cloned()).collect();
+        let first = coordinates.first().copied().unwrap_or(t);
+        let of = question.of.clone().unwrap_or_else(|| Expr::from(first));
+        let quantity = of.substitute_all(&motion).map_err(|_| first)?;
+        let values = question.values.numbers();
+        let named = slow.definitions.iter().chain(&slow.detunings).map(|known| known.symbol);
+        let letters: Vec<Symbol> = values
+            .keys()
+            .copied()
+            .chain([question.parameter])
+            .chain(named)
+            .chain([Symbol::new("pi")])
+            .collect();
+        let arguments: Vec<Symbol> = std::iter::once(t)
+            .chain(slow.amplitudes.iter().chain(&slow.phases).copied())
+            .chain(letters.iter().copied())
+            .collect();
+        let quantity = CompiledList::new(&[quantity], &arguments).map_err(|_| first)?;
+        let base = slow.base.clone().ok_or(first)?;
+        Ok(Self { quantity, letters, values, parameter: question.parameter, base })
+    }
+
+    fn value_of(&self, name: Symbol, parameter: f64) -> Option<f64> {
+        match name == self.parameter {
+            true => Some(parameter),
+            false => self.values.get(&name).copied(),
+        }
+    }
+
+    fn numbers(&self, slow: &SlowMotion, parameter: f64) -> Result<SlowNumbers, Symbol> {
+        slow.in_numbers(&|name| self.value_of(name, parameter))
+    }
+
+    /// A steady motion in the quantity: amplitude and phase of its first harmonic, and its peak.
+    fn state(
+        &self,
+        slow: &SlowMotion,
+        parameter: f64,
+        state: &SlowSteadyState,
+    ) -> Result<SlowState, Symbol> {
+        const POINTS: usize = 128;
+        let defined = slow.values(&|name| self.value_of(name, parameter))?;
+        let value = |name: &Symbol| {
+            let defined = defined.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
+            let pi = (name.name() == "pi").then_some(PI);
+            defined.or_else(|| self.value_of(*name, parameter)).or(pi).ok_or(*name)
+        };
+        let letters: Vec<f64> = self.letters.iter().map(value).collect::<Result<_, _>>()?;
+        let known = self.letters.iter().copied().zip(letters.iter().copied()).collect();
+        let base = self.base.evaluate(&known).map_err(|_| self.parameter)?;
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut cosine, mut sine) = (0.0, 0.0);
+        let mut arguments: Vec<f64> = std::iter::once(0.0)
+            .chain(state.amplitudes.iter().chain(&state.phases).copied())
+            .chain(letters)
+            .collect();
+        let mut stack = Vec::new();
+        for point in 0..POINTS {
+            let theta = TAU * point as f64 / POINTS as f64;
+            arguments[0] = theta / base;
+            let mut found = [f64::NAN];
+            self.quantity.call(&arguments, &mut stack, &mut found);
+            (lowest, highest) = (lowest.min(found[0]), highest.max(found[0]));
+            cosine += 2.0 * found[0] * theta.cos() / POINTS as f64;
+            sine += 2.0 * found[0] * theta.sin() / POINTS as f64;
+        }
+        Ok(SlowState {
+            parameter,
+            amplitude: f64::hypot(cosine, sine),
+            phase: sine.atan2(cosine),
+            stable: state.is_stable(),
+            peak: Some(0.5 * (highest - lowest)),
+        })
+    }
 }
 
 /// Spurious steady motions, which only the truncation of the slow equations has.
@@ -81,6 +227,10 @@ pub struct SlowState {
     pub phase: f64,
     /// Whether small disturbances die out, by the slow equations.
     pub stable: bool,
+    /// Half of the way from the lowest to the highest point, of coupled equations; left out of one
+    /// coordinate.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub peak: Option<f64>,
 }
 
 /// The steady motions by these slow equations at one value of the parameter.
@@ -122,50 +272,102 @@ impl ResponseDiagram {
                 amplitude: state.amplitude,
                 phase: state.phase,
                 stable: state.is_stable(),
+                peak: None,
             }));
             spurious.extend(found.spurious);
         }
-        let (mut error, mut worst, mut missing, mut count, mut beside) =
-            (None::<f64>, None, 0, 0, 0);
-        let points = || self.branches.iter().flat_map(|branch| &branch.points);
-        // At rest an amplitude is zero up to rounding.
-        let smallest = NOTHING * points().map(|point| point.amplitude).fold(0.0, f64::max);
-        for point in points().filter(|point| point.stable == Some(true)) {
-            if self.is_beside_branch_point(point) {
-                beside += 1;
-                continue;
-            }
-            count += 1;
-            let stable = motions_at(question, &solution, point.parameter).states.into_iter();
-            let apart = stable
-                .filter(SteadyState::is_stable)
-                .map(|state| (state.amplitude - point.amplitude).abs())
-                .min_by(f64::total_cmp);
-            let relative =
-                apart.map(|apart| apart / point.amplitude.max(smallest.max(f64::MIN_POSITIVE)));
-            let Some(relative) = relative.filter(|relative| *relative <= OTHER) else {
-                missing += 1;
-                continue;
-            };
-            if error.is_none_or(|error| relative > error) {
-                (error, worst) = (Some(relative), Some(point.parameter));
-            }
-        }
+        let near = |parameter: f64| -> Vec<f64> {
+            let found = motions_at(question, &solution, parameter).states.into_iter();
+            found.filter(SteadyState::is_stable).map(|state| state.amplitude).collect()
+        };
+        let compared = self.compared(&near, &|point| point.amplitude);
+        let spurious = Spurious::from_states(&spurious);
         self.slow = Some(SlowResponse {
-            solution: Box::new(solution),
-            states,
-            verdict: Verdict::from_passed(
-                MISSING * missing <= count
-                    && error.is_some_and(|error| error <= question.tolerance),
-            ),
-            error,
-            worst,
-            missing,
-            spurious: Spurious::from_states(&spurious),
-            points: count,
-            beside,
+            spurious,
+            ..compared.response(SlowEquations::One(Box::new(solution)), states)
         });
         self
+    }
+
+    /// Returns this response of coupled equations with the steady motions of these slow equations
+    /// added, compared in half of the way from the lowest to the highest point.
+    ///
+    /// # Errors
+    /// The first symbol without a value, or a quantity that has none.
+    pub fn with_slow_motion(mut self, slow: SlowMotion) -> Result<Self, Symbol> {
+        /// Random starts at the first value, and at each of the others, for each mode.
+        const FIRST: usize = 500;
+        const OTHERS: usize = 20;
+        let question = &self.question;
+        let listed = ListedQuantity::new(question, &slow)?;
+        let [low, high] = question.range;
+        let mut known: Vec<(f64, Vec<SlowSteadyState>)> = Vec::new();
+        let mut states = Vec::new();
+        for index in 0..=VALUES {
+            if question.interrupt.is_requested() {
+                break;
+            }
+            let parameter = low + (high - low) * f64::from(index) / f64::from(VALUES);
+            let numbers = listed.numbers(&slow, parameter)?;
+            let last = known.last().map_or(&[][..], |(_, states)| states.as_slice());
+            let starts = if index == 0 { FIRST } else { OTHERS } * slow.amplitudes.len();
+            let found = numbers.steady_states_near(last, starts, question.interrupt);
+            for state in &found {
+                states.push(listed.state(&slow, parameter, state)?);
+            }
+            known.push((parameter, found));
+        }
+        let near = |parameter: f64| -> Vec<f64> {
+            let apart = |place: &f64| (place - parameter).abs();
+            let nearest =
+                known.iter().min_by(|(one, _), (other, _)| apart(one).total_cmp(&apart(other)));
+            let (Some((_, start)), Ok(numbers)) = (nearest, listed.numbers(&slow, parameter))
+            else {
+                return vec![];
+            };
+            let found = numbers.steady_states_near(start, 0, question.interrupt).into_iter();
+            found
+                .filter(SlowSteadyState::is_stable)
+                .filter_map(|state| listed.state(&slow, parameter, &state).ok()?.peak)
+                .collect()
+        };
+        let compared = self.compared(&near, &|point| point.peak);
+        self.slow = Some(compared.response(SlowEquations::Coupled(Box::new(slow)), states));
+        Ok(self)
+    }
+
+    /// The stable points of the branches beside the sizes of the stable motions that `near` gives at a
+    /// value of the parameter.
+    fn compared(
+        &self,
+        near: &dyn Fn(f64) -> Vec<f64>,
+        size: &dyn Fn(&SteadyMotion) -> f64,
+    ) -> Compared {
+        let mut compared = Compared { tolerance: self.question.tolerance, ..Compared::default() };
+        let points = || self.branches.iter().flat_map(|branch| &branch.points);
+        // At rest an amplitude is zero up to rounding.
+        let smallest = NOTHING * points().map(size).fold(0.0, f64::max);
+        for point in points().filter(|point| point.stable == Some(true)) {
+            if self.is_beside_branch_point(point) {
+                compared.beside += 1;
+                continue;
+            }
+            compared.points += 1;
+            let own = size(point);
+            let apart = near(point.parameter)
+                .into_iter()
+                .map(|size| (size - own).abs())
+                .min_by(f64::total_cmp);
+            let relative = apart.map(|apart| apart / own.max(smallest.max(f64::MIN_POSITIVE)));
+            let Some(relative) = relative.filter(|relative| *relative <= OTHER) else {
+                compared.missing += 1;
+                continue;
+            };
+            if compared.error.is_none_or(|error| relative > error) {
+                (compared.error, compared.worst) = (Some(relative), Some(point.parameter));
+            }
+        }
+        compared
     }
 
     /// Whether a point is near a branch point, in the parameter and in the amplitude.

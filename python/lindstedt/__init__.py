@@ -52,6 +52,8 @@ if TYPE_CHECKING:
     from .law import Law as Law
     from .modes import Modes as Modes
     from .modes import modes as modes
+    from .slow import SlowEquations as SlowEquations
+    from .slow import slow_equations as slow_equations
     from .studies import Study as Study
     from .studies import collect as collect
     from .studies import missing_shards as missing_shards
@@ -62,6 +64,7 @@ PLACES = {
     "catalog": "catalogue",
     "Law": "law",
     **dict.fromkeys(("Modes", "modes"), "modes"),
+    **dict.fromkeys(("SlowEquations", "slow_equations"), "slow"),
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",
     **dict.fromkeys(("Study", "collect", "missing_shards"), "studies"),

@@ -39,6 +39,7 @@ OWN = {
     "PrimarySweep": ("motions", "PrimarySweep"),
     "Response": ("branches", "Response"),
     "Simulation": ("motions", "Simulation"),
+    "SlowEquations": ("slow", "SlowEquations"),
     "Solution": ("law", "Law"),
     "Stability": ("tabulated", "Stability"),
     "Sweep": ("motions", "Sweep"),

@@ -618,7 +618,8 @@ fn options(
     if arguments.cycle.is_some() && !entry.takes(Choice::Cycle) {
         return without("--cycle", &that_take(Choice::Cycle));
     }
-    if arguments.resonance.is_some() && !entry.takes(Choice::Resonance) {
+    let resonance = arguments.resonance.as_deref().or(formula.resonance);
+    if resonance.is_some() && !entry.takes(Choice::Resonance) {
         return without("--resonance", &that_take(Choice::Resonance));
     }
     if arguments.omega_only && !entry.takes(Choice::FrequencyAlone) {
@@ -663,10 +664,11 @@ fn options(
         },
     };
     let small = arguments.small.as_deref().or(formula.small).map(str::to_owned);
-    let resonance = arguments.resonance.as_deref().map(|text| {
-        ratio(text).map_err(|reason| Failure::Usage(format!("--resonance {text}: {reason}")))
-    });
-    let resonance = resonance.transpose()?;
+    let resonance = resonance
+        .map(|text| {
+            ratio(text).map_err(|reason| Failure::Usage(format!("--resonance {text}: {reason}")))
+        })
+        .transpose()?;
     Ok(Options {
         method,
         order,

@@ -86,6 +86,13 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
             Method::MultipleScales.name()
         )));
     }
+    let is_coupled = equations.oscillator().is_none();
+    if problem.resonance.is_some() && !(is_coupled && method == Method::MultipleScales) {
+        return Err(Failure::because(
+            "`resonance` belongs to --method multiple-scales of coupled equations: leave it out, or use `lindstedt derive`"
+                .to_owned(),
+        ));
+    }
     let order = match (arguments.order, problem.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
         (None, None) => None,
@@ -127,7 +134,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let slow = match (method, question.equations.oscillator()) {
         (Method::HarmonicBalance, _) => None,
         (_, None) => {
-            let slow = slow_motion(&question, order)?;
+            let slow = slow_motion(&question, order, problem.resonance.as_deref())?;
             question.periods = slow.periods.unwrap_or(question.periods);
             coupled = Some(slow);
             None
@@ -295,7 +302,11 @@ fn slow_equations(
 
 /// The slow equations of coupled equations at the resonance of a drive that is near in the range,
 /// sought from its middle outwards.
-fn slow_motion(question: &ResponseRequest, order: Option<u32>) -> Result<SlowMotion, Failure> {
+fn slow_motion(
+    question: &ResponseRequest,
+    order: Option<u32>,
+    resonance: Option<&str>,
+) -> Result<SlowMotion, Failure> {
     /// The places in the range, as parts of it.
     const PLACES: [f64; 9] = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
     let refused =
@@ -313,11 +324,12 @@ fn slow_motion(question: &ResponseRequest, order: Option<u32>) -> Result<SlowMot
         values.insert(question.parameter, low + part * (high - low));
         let options = MultipleScalesOptions {
             order: order.map(|order| order as usize),
+            resonance: resonance.map(str::to_owned),
             values,
             ..MultipleScalesOptions::default()
         };
         match derive_slow_equations(&system, &options) {
-            Ok(slow) if slow.is_driven_throughout() => return Ok(slow),
+            Ok(slow) if slow.is_driven() => return Ok(slow),
             Ok(_) => {}
             Err(error) => last = Some(error),
         }

@@ -84,7 +84,7 @@ pub(super) fn run(
     let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
     let options = MultipleScalesOptions {
         order,
-        resonance: question.resonance.clone(),
+        resonance: question.resonance.clone().or_else(|| problem.resonance.clone()),
         values: values.as_ref().map(Values::numbers).unwrap_or_default(),
         supervision: session::supervision(),
     };

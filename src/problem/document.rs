@@ -29,6 +29,9 @@ pub struct Problem {
     pub amplitude: Option<String>,
     /// The equilibrium to swing about: `"x = 1"`.
     pub about: Option<String>,
+    /// The resonance: `"1:3"`, Omega to omega0, of one coordinate; relations between frequencies of
+    /// coupled equations, `"omega2 = 2*omega1, Omega = omega2"`.
+    pub resonance: Option<String>,
     /// The parameter that varies, and its range: `"Omega=0.5:1.5"`.
     pub vary: Option<String>,
     /// Periods of the drive in a period of the motion.

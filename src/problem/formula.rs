@@ -16,6 +16,8 @@ pub struct FormulaProblem<'a> {
     pub about: Option<&'a str>,
     /// The small parameter.
     pub small: Option<&'a str>,
+    /// The resonance, Omega to omega0.
+    pub resonance: Option<&'a str>,
     /// The name of the method.
     pub method: Option<&'a str>,
     /// The order, or the degrees of an approximant.
@@ -48,6 +50,7 @@ impl Problem {
             equation,
             about: self.about.as_deref(),
             small: self.small.as_deref(),
+            resonance: self.resonance.as_deref(),
             method: self.method.as_deref(),
             order: self.order,
             amplitude: self.amplitude.as_deref(),

@@ -153,6 +153,9 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/modes", ".toml") {
         add(&["derive", &file.to_string_lossy()]);
     }
+    for file in files("examples/slow", ".toml") {
+        add(&["derive", &file.to_string_lossy()]);
+    }
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
     }

@@ -316,6 +316,23 @@ fn every_system_of_modes_prints_what_it_printed() {
     });
 }
 
+/// Every system of coupled equations and its slow equations, in text, LaTeX and JSON.
+#[test]
+fn every_system_of_slow_equations_prints_what_it_printed() {
+    snapshots(|| {
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/slow"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("slow-text", output(&["derive", path]));
+            insta::assert_snapshot!("slow-latex", output(&["derive", path, "--format", "latex"]));
+            let mut document: Value =
+                serde_json::from_str(&output(&["derive", path, "--format", "json"]))
+                    .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("slow-json", document);
+        });
+    });
+}
+
 /// Every equation with periodic coefficients and its transition curves, in text, LaTeX and JSON.
 #[test]
 fn every_stability_prints_what_it_printed() {

@@ -130,12 +130,12 @@ impl ModeError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Equations(error) => error.help(),
-            Self::FirstOrder(_) | Self::Damped(_) | Self::Gyroscopic(_) => Some(
+            Self::FirstOrder(_) | Self::Gyroscopic(_) => Some(
                 "`lindstedt response` finds the motions with such terms in numbers; without the term there are modes"
                     .to_owned(),
             ),
-            Self::Driven(_) => Some(
-                "`lindstedt response` finds the motions that a drive keeps up; without it there are modes".to_owned(),
+            Self::Damped(_) | Self::Driven(_) => Some(
+                "--method multiple-scales has the slow equations with such terms; without them there are modes".to_owned(),
             ),
             Self::NotAtRest(..) => Some(
                 "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
@@ -147,9 +147,12 @@ impl ModeError {
                 "give them values: --at {}",
                 letters.iter().map(|name| format!("{}=1", name.written())).collect::<Vec<_>>().join(",")
             )),
-            Self::NoStiffness { .. } | Self::EqualFrequencies { .. } | Self::InternalResonance { .. } => Some(
-                "`lindstedt response --vary omega=FROM:TO` finds the motions in numbers, the exchange of energy `lindstedt simulate`"
+            Self::EqualFrequencies { .. } | Self::InternalResonance { .. } => Some(
+                "--method multiple-scales has the slow equations of both modes; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
                     .to_owned(),
+            ),
+            Self::NoStiffness { .. } => Some(
+                "`lindstedt response --vary omega=FROM:TO` finds the motions in numbers".to_owned(),
             ),
             _ => None,
         }

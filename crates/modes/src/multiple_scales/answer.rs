@@ -10,7 +10,7 @@ use super::resonance::{Frequencies, Lattice, Resonance, alias};
 use super::slow_equations::{
     PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, slow_phases,
 };
-use super::{CoupledSystem, MultipleScalesError};
+use super::{CoupledSystem, MultipleScalesError, SlowSteadyState};
 use crate::decimal::rounded_fraction;
 use crate::exact::rational::{Integer, ratio};
 use crate::exact::{ComplexPolynomial, Polynomial, Rational};
@@ -60,10 +60,13 @@ pub struct SlowMotion {
     pub shapes: Vec<Vec<Expr>>,
     /// The reference frequencies, which obey the resonances exactly.
     pub references: Vec<Expr>,
-    /// The frequency of which all in the motion are multiples, if there is one.
+    /// The frequency of which that of the single drive is a multiple, and those of the modes that are
+    /// [locked](Self::locked) to it.
     pub base: Option<Expr>,
-    /// The number of drive periods in a period of that frequency, where a single drive has it.
+    /// The number of drive periods in a period of that frequency.
     pub periods: Option<usize>,
+    /// Whether the reference frequency of each mode is a multiple of the base.
+    pub locked: Vec<bool>,
     /// `sigma_j`, reference frequency less linear frequency, where they differ.
     pub detunings: Vec<Definition>,
     /// `a_j`, the amplitude of the first harmonic of each mode.
@@ -95,9 +98,17 @@ impl SlowMotion {
         format!("Multiple scales to order {}", self.order)
     }
 
-    /// Whether drives fix every phase, so that steady motions are periodic with the drive.
-    pub fn is_driven_throughout(&self) -> bool {
-        self.periods.is_some() && self.slow_phases.len() == self.phases.len()
+    /// Whether the drive fixes the phases of all modes that are locked to it, so that steady motions of
+    /// these alone are periodic with the drive.
+    pub fn is_driven(&self) -> bool {
+        let locked = self.locked.iter().filter(|locked| **locked).count();
+        self.base.is_some() && locked > 0 && self.slow_phases.len() == locked
+    }
+
+    /// Whether a steady motion is periodic with the drive: no other mode moves.
+    pub fn is_periodic(&self, state: &SlowSteadyState) -> bool {
+        let mut modes = self.locked.iter().zip(&state.amplitudes);
+        self.is_driven() && modes.all(|(locked, a)| *locked || *a == 0.0)
     }
 
     /// `a_j'` and `phi_j'` as expressions.
@@ -243,6 +254,19 @@ fn answer(
         };
         SlowRate { amplitude: waves(&rate.amplitude), phase: waves(&rate.phase) }
     };
+    // The base of the single drive, and the number of its periods in one of that.
+    let base = match reference.drives.as_slice() {
+        [wave] => {
+            let mut places = wave.iter().enumerate().filter(|(_, times)| **times != 0);
+            match (places.next(), places.next()) {
+                (Some((place, times)), None) => {
+                    usize::try_from(*times).ok().map(|periods| (place, periods))
+                }
+                _ => None,
+            }
+        }
+        _ => None,
+    };
     let motion = motion(problem, expansion, polar, &form.shapes, &round)?;
     let columns = |column: usize| {
         form.shapes.iter().map(|row| Expr::from(&round(&row[column]))).collect::<Vec<Expr>>()
@@ -259,17 +283,16 @@ fn answer(
             .collect(),
         shapes: (0..form.frequencies.len()).map(columns).collect(),
         references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
-        base: match reference.bases.as_slice() {
-            [base] => Some(Expr::from(&round(base))),
-            _ => None,
-        },
-        periods: match reference.drives.as_slice() {
-            [wave] => <[i32; 1]>::try_from(wave.clone())
-                .ok()
-                .and_then(|[periods]| usize::try_from(periods).ok())
-                .filter(|periods| *periods > 0),
-            _ => None,
-        },
+        base: base.map(|(place, _)| Expr::from(&round(&reference.bases[place]))),
+        periods: base.map(|(_, periods)| periods),
+        locked: reference
+            .own
+            .iter()
+            .map(|row| {
+                let mut others = row.iter().enumerate().filter(|(_, times)| **times != 0);
+                base.is_some_and(|(place, _)| others.all(|(other, _)| other == place))
+            })
+            .collect(),
         detunings: reference.meanings.clone(),
         amplitudes: polar.amplitudes.clone(),
         phases: polar.phases.clone(),
@@ -425,26 +448,27 @@ impl References {
             None => form.frequencies[column].value.clone(),
         };
         let part = Polynomial::constant(ratio(1, lattice.divisor));
-        let bases: Vec<Polynomial> =
+        let mut bases: Vec<Polynomial> =
             lattice.bases.iter().map(|base| value(*base).product(&part)).collect();
-        let frequency = |row: &WaveVector| {
-            let mut sum = Polynomial::zero();
-            for (times, base) in row.iter().zip(&bases) {
-                let times = Polynomial::constant(Rational::from_integer((*times).into()));
-                sum.accumulate(&base.product(&times));
+        let mut rows = lattice.rows.clone();
+        let mut references = Vec::new();
+        for index in 0..modes {
+            let frequency = sum_of_bases(&rows[index], &bases);
+            let reference = form.names.single(&frequency, &format!("nu{}", index + 1));
+            if frequency.single_term().is_none() {
+                put_in_place_of_a_base(index, &reference, &mut rows, &mut bases);
             }
-            sum
-        };
+            references.push(reference);
+        }
         let mut found = Self {
-            own: lattice.rows[..modes].to_vec(),
-            drives: lattice.rows[modes..].to_vec(),
+            own: rows[..modes].to_vec(),
+            drives: rows[modes..].to_vec(),
             references: vec![],
             detunings: vec![],
             meanings: vec![],
-            bases: bases.clone(),
+            bases,
         };
-        for (index, row) in lattice.rows[..modes].iter().enumerate() {
-            let reference = form.names.single(&frequency(row), &format!("nu{}", index + 1));
+        for (index, reference) in references.into_iter().enumerate() {
             let own = &form.frequencies[index].value;
             let mut difference = own.clone();
             difference.negate();
@@ -467,6 +491,36 @@ impl References {
             found.references.push(reference);
         }
         Ok(found)
+    }
+}
+
+/// The frequency with this row.
+fn sum_of_bases(row: &WaveVector, bases: &[Polynomial]) -> Polynomial {
+    let mut sum = Polynomial::zero();
+    for (times, base) in row.iter().zip(bases) {
+        let times = Polynomial::constant(Rational::from_integer((*times).into()));
+        sum.accumulate(&base.product(&times));
+    }
+    sum
+}
+
+/// Makes a frequency with a name a base, in the place of one that it contains once: sums such as
+/// `Omega - omega1` do not stand in the formulas then.
+fn put_in_place_of_a_base(
+    index: usize,
+    reference: &Polynomial,
+    rows: &mut [WaveVector],
+    bases: &mut [Polynomial],
+) {
+    let own = rows[index].clone();
+    let Some(place) = (0..own.len()).rev().find(|place| own[*place].abs() == 1) else { return };
+    bases[place] = reference.clone();
+    for row in rows {
+        let times = row[place] * own[place];
+        for (entry, own) in row.iter_mut().zip(&own) {
+            *entry -= times * own;
+        }
+        row[place] = times;
     }
 }
 

@@ -7,8 +7,8 @@
 //!
 //! A mode whose equations have one combination alpha of phases that is not known yet gives a relation,
 //! and its cosine and sine stand in the equations of the others. Saturation is such a relation: it
-//! has a single amplitude in it, and that of another mode. Relations are sought for all modes moving,
-//! and for each mode at rest that may be so.
+//! has a single amplitude in it, and that of another mode. Relations are sought with all modes moving
+//! that are locked to the drive, and with each of them at rest that may be so.
 
 use std::collections::BTreeMap;
 
@@ -43,12 +43,15 @@ impl SlowMotion {
     /// open, or where equations have several new combinations of phases at once.
     pub fn steady_relations(&self) -> Vec<SteadyRelation> {
         let count = self.amplitudes.len();
-        if self.slow_phases.len() != count || self.system.drives.is_empty() {
+        if !self.is_driven() {
             return vec![];
         }
-        let resting = (0..count).map(|mode| vec![mode]);
+        let free: Vec<usize> = (0..count).filter(|mode| !self.locked[*mode]).collect();
+        let resting = (0..count)
+            .filter(|mode| self.locked[*mode])
+            .map(|mode| free.iter().copied().chain([mode]).collect());
         let mut found = Vec::new();
-        for at_rest in std::iter::once(vec![]).chain(resting) {
+        for at_rest in std::iter::once(free.clone()).chain(resting) {
             if at_rest.len() < count && self.may_rest(&at_rest) {
                 found.extend(self.relations(&at_rest));
             }

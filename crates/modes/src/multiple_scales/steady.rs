@@ -9,6 +9,7 @@
 //! that leaves a mode at rest is no special case. A motion is stable if the eigenvalues of the
 //! linearised slow equations have negative real parts, but for the zeros of the phases that are open.
 
+use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 use num_traits::Zero;
@@ -90,19 +91,13 @@ impl SlowMotion {
         let lattice = DMatrix::from_fn(count, count, |row, column| {
             self.slow_phases.get(row).map_or(0.0, |(_, turns)| f64::from(turns[column]))
         });
-        let bound = self.slow_phases.len();
-        let decomposed = lattice.svd(false, true);
-        let open = match decomposed.v_t {
-            Some(rows) => {
-                let mut order: Vec<usize> = (0..count).collect();
-                order.sort_by(|one, other| {
-                    decomposed.singular_values[*other].total_cmp(&decomposed.singular_values[*one])
-                });
-                let kept: Vec<usize> = order[bound.min(count)..].to_vec();
-                DMatrix::from_fn(kept.len(), count, |row, column| rows[(kept[row], column)])
-            }
-            None => DMatrix::zeros(0, count),
-        };
+        // Whole numbers: what is not zero is one at least.
+        let decomposed = (lattice.transpose() * &lattice).symmetric_eigen();
+        let kept: Vec<usize> =
+            (0..count).filter(|index| decomposed.eigenvalues[*index] < 1e-6).collect();
+        let open = DMatrix::from_fn(kept.len(), count, |row, column| {
+            decomposed.eigenvectors[(column, kept[row])]
+        });
         Ok(SlowNumbers { rates, open })
     }
 
@@ -269,12 +264,9 @@ impl SlowNumbers {
             if !residual.iter().all(|entry| entry.is_finite()) {
                 return None;
             }
-            let decomposed = slopes.svd(true, true);
-            let largest = decomposed.singular_values.max();
-            if largest == 0.0 {
-                return None;
-            }
-            let change = decomposed.solve(&residual, 1e-13 * largest).ok()?;
+            // The shortest of the steps that a rate which is open leaves.
+            let square = &slopes * slopes.transpose();
+            let change = slopes.transpose() * square.lu().solve(&residual)?;
             place -= &change;
             let size = place.rows(0, 2 * count).norm();
             if !size.is_finite() || size > LARGEST {
@@ -298,17 +290,17 @@ impl SlowNumbers {
         const ZERO: f64 = 1e-8;
         let count = self.rates.len();
         let (_, slopes) = self.equations(place);
-        let singular = slopes.clone().singular_values();
+        let squares = (&slopes * slopes.transpose()).symmetric_eigenvalues();
         let moving: Vec<Complex<f64>> =
             (0..count).map(|mode| Complex::new(place[2 * mode], place[2 * mode + 1])).collect();
         let scale = moving.iter().map(|b| b.norm()).fold(0.0, f64::max);
         let at_rest = |b: &Complex<f64>| b.norm() <= 1e-10 * scale;
         // Where a mode is at rest its phase says nothing, and a rate that is open may be anything.
-        if singular.min() <= 1e-10 * singular.max() && !moving.iter().any(at_rest) && scale > 0.0 {
+        if squares.min() <= 1e-14 * squares.max() && !moving.iter().any(at_rest) && scale > 0.0 {
             return None;
         }
         let square = slopes.columns(0, 2 * count).into_owned();
-        let eigenvalues = square.complex_eigenvalues();
+        let eigenvalues = Schur::try_new(square, f64::EPSILON, 1000)?.complex_eigenvalues();
         let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
         let mut sorted: Vec<Complex<f64>> = eigenvalues.iter().copied().collect();
         sorted.sort_by(|one, other| one.norm().total_cmp(&other.norm()));
@@ -334,7 +326,12 @@ impl SlowNumbers {
                 .iter()
                 .map(|b| if amplitude(b) == 0.0 { 0.0 } else { b.arg() })
                 .collect(),
-            turning: self.turning(&place.as_slice()[2 * count..]),
+            turning: self
+                .turning(&place.as_slice()[2 * count..])
+                .into_iter()
+                .zip(&moving)
+                .map(|(rate, b)| if amplitude(b) == 0.0 { 0.0 } else { rate })
+                .collect(),
             growth,
         })
     }

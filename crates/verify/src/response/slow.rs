@@ -312,7 +312,7 @@ impl ResponseDiagram {
             let last = known.last().map_or(&[][..], |(_, states)| states.as_slice());
             let starts = if index == 0 { FIRST } else { OTHERS } * slow.amplitudes.len();
             let found = numbers.steady_states_near(last, starts, question.interrupt);
-            for state in &found {
+            for state in found.iter().filter(|state| slow.is_periodic(state)) {
                 states.push(listed.state(&slow, parameter, state)?);
             }
             known.push((parameter, found));
@@ -327,7 +327,7 @@ impl ResponseDiagram {
             };
             let found = numbers.steady_states_near(start, 0, question.interrupt).into_iter();
             found
-                .filter(SlowSteadyState::is_stable)
+                .filter(|state| state.is_stable() && slow.is_periodic(state))
                 .filter_map(|state| listed.state(&slow, parameter, &state).ok()?.peak)
                 .collect()
         };

@@ -202,10 +202,9 @@ impl<'a> TrueMotion<'a> {
 
     /// A steady motion beside the true one, which is sought from its start.
     fn judged(&self, state: SlowSteadyState) -> JudgedSteadyMotion {
-        let fixed = state.turning.iter().all(|rate| *rate == 0.0);
         let still = state.amplitudes.iter().all(|a| *a == 0.0);
-        let driven = !self.slow.system.drives.is_empty();
-        let Some(base) = self.base.filter(|_| fixed && driven && !still) else {
+        let periodic = self.slow.is_periodic(&state);
+        let Some(base) = self.base.filter(|_| periodic && !still) else {
             return JudgedSteadyMotion { state, compared: false, error: None, truly_stable: None };
         };
         let period = TAU / base.abs();

@@ -135,14 +135,19 @@ fn relations<'a>(slow: &SlowMotion) -> Option<Vec<Block<'a>>> {
     if found.is_empty() {
         return None;
     }
-    let mut blocks = vec![Block::Heading("Steady motions, the phases eliminated".to_owned())];
+    let mut blocks = Vec::new();
     let mut last: Option<Vec<usize>> = None;
     for relation in found {
         if last.as_ref() != Some(&relation.at_rest) {
-            blocks.push(Block::Note(match relation.at_rest.as_slice() {
-                [] => "with every mode moving".to_owned(),
-                modes => format!("with {} = 0", listed(modes.iter().map(|m| slow.amplitudes[*m]))),
-            }));
+            blocks.push(Block::Title {
+                words: "Steady motions, the phases eliminated".to_owned(),
+                amplitude: match relation.at_rest.as_slice() {
+                    [] => "every mode moving".to_owned(),
+                    modes => {
+                        format!("{} = 0", listed(modes.iter().map(|m| slow.amplitudes[*m])))
+                    }
+                },
+            });
             last = Some(relation.at_rest.clone());
         }
         blocks.push(match relation.solved {

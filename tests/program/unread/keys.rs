@@ -14,7 +14,7 @@ const MECHANISM: &str =
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
 /// A key, a line that gives it, and what stands beside it.
-const LINES: [(&str, &str, &str); 97] = [
+const LINES: [(&str, &str, &str); 98] = [
     ("equation", "equation = \"x'' + sin(x) = 0\"", ""),
     ("method", "method = \"harmonic-balance\"", FORMULA),
     ("order", "order = 1", FORMULA),
@@ -23,6 +23,7 @@ const LINES: [(&str, &str, &str); 97] = [
     ("of", "of = \"x\"", FORMULA),
     ("along", "along = \"eps=0.5:1.5\"", FORMULA),
     ("small", "small = \"A\"", FORMULA),
+    ("resonance", "resonance = \"1:3\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
     ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),

@@ -50,7 +50,7 @@ pub enum ResonanceError {
         percent: String,
     },
     /// A drive or modes in letters: the resonance has to be named.
-    #[error("which resonance is meant? The frequencies {} have letters in them", .names.join(", "))]
+    #[error("which resonance is meant? Of the frequencies {} not all are numbers", .names.join(", "))]
     Open {
         /// The names of the frequencies.
         names: Vec<String>,

@@ -213,6 +213,12 @@ impl TrajectoryRequest {
         ))
     }
 
+    /// The initial value problem of coordinates and velocities with these rates, from rest at zero for 50
+    /// units of time, without an account of energy.
+    pub(crate) fn of_rates(coordinates: Vec<Symbol>, rates: Rates) -> Self {
+        Self::new(coordinates, vec![], rates, None)
+    }
+
     fn new(
         coordinates: Vec<Symbol>,
         equations: Vec<Expr>,

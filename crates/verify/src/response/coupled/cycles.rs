@@ -209,7 +209,7 @@ impl CoupledProblem<'_> {
         // exact by the search for the orbit.
         let turning = (0..m).max_by(|one, other| travel[*one].total_cmp(&travel[*other]))?;
         let place = |cell: usize| period * cell as f64 / CELLS as f64;
-        let height = |cell: usize| path.state_at(place(cell), turning).unwrap_or(f64::NAN);
+        let height = |cell: usize| path.states_at(place(cell)).map_or(f64::NAN, |states| states[turning]);
         let highest = (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
         let begin = path.states_at(place(highest))?;
         let unknowns = begin.into_iter().chain([period]).collect();

@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 use super::energy::Energy;
 use super::flow::{Flow, FlowImage};
 use crate::coupled::CoupledEquations;
-use crate::expr::{CompiledFunction, Expr, Function};
+use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::driven::{drive_frequency, in_phase};
 use crate::response::{ResponseError, ResponseRequest};
@@ -36,6 +36,8 @@ pub(super) struct Course {
     pub(super) travel: Travel,
     /// The derivative of the states after the period by those at the beginning.
     pub(super) monodromy: DMatrix<f64>,
+    /// The part of the period in which dry friction holds something.
+    pub(super) stuck: f64,
 }
 
 /// An orbit of a branch.
@@ -109,6 +111,9 @@ pub(super) struct CoupledProblem<'a> {
 /// A value of the parameter with which nothing cancels; every motion has its own.
 const ANY: f64 = 0.618_034;
 
+/// Largest number of steps of a motion by Taylor series.
+pub(super) const STEP_LIMIT: usize = 50_000;
+
 /// The smallest size used as a scale, as a fraction of the largest of its kind.
 pub(super) const SMALLEST: f64 = 0.1;
 
@@ -141,15 +146,12 @@ impl<'a> CoupledProblem<'a> {
             .iter()
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
-        if let Some(rate) = right.iter().find(|rate| has_jump(rate)) {
-            return Err(ResponseError::CoupledJump(rate.to_string()));
-        }
         let states = rates.states.clone();
         let in_time = Flow::new(&states, time, &right, parameter)?;
         let numbers = [(parameter, ANY)].into();
         let series = System::new(&states, time, &right, &numbers)
             .map_err(|error| ResponseError::Rates(error.to_string()))?
-            .solver(&[], &SystemOptions { step_limit: 50_000, ..SystemOptions::default() });
+            .solver(&[], &SystemOptions { step_limit: STEP_LIMIT, ..SystemOptions::default() });
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
@@ -345,9 +347,9 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel } =
+        let FlowImage { end, by_start, by_parameter, travel, stuck } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone() };
+        let path = Course { travel, monodromy: by_start.clone(), stuck };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -367,7 +369,11 @@ impl<'a> CoupledProblem<'a> {
         let image = self.in_time.image(start, period, parameter, &sizes)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
-        let path = Course { travel: image.travel, monodromy: image.by_start.clone() };
+        let path = Course {
+            travel: image.travel,
+            monodromy: image.by_start.clone(),
+            stuck: image.stuck,
+        };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
         for column in 0..n {
@@ -392,7 +398,7 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage { mut end, mut by_start, by_parameter, travel } =
+        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck } =
             self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
@@ -401,7 +407,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -443,7 +449,7 @@ impl<'a> CoupledProblem<'a> {
         // On the way back the velocities are the negative ones.
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
-        Some(PeriodImage { end, by_start, by_parameter, path: Course { travel, monodromy } })
+        Some(PeriodImage { end, by_start, by_parameter, path: Course { travel, monodromy, stuck: half.stuck } })
     }
 }
 
@@ -482,9 +488,4 @@ fn is_reversible(
         }
     }
     Ok(true)
-}
-
-/// Whether a rate jumps: `sgn` or `H` occurs in it.
-fn has_jump(rate: &Expr) -> bool {
-    rate.contains_function(Function::Sign) || rate.contains_function(Function::Step)
 }

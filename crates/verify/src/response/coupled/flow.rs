@@ -79,6 +79,9 @@ pub(super) struct FlowImage {
     pub(super) travel: Vec<f64>,
     /// The part of the time in which dry friction holds something.
     pub(super) stuck: f64,
+    /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
+    /// the time; independent of each other.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
 impl Flow {
@@ -129,6 +132,18 @@ impl Flow {
     /// Whether the right sides jump.
     pub(super) fn jumps(&self) -> bool {
         self.jumps.is_some()
+    }
+
+    /// Whether a state is on a surface across which the right sides jump, at time zero.
+    pub(super) fn is_on_jump(&self, state: &[f64], parameter: f64) -> bool {
+        let jumps = self.jumps.as_ref();
+        jumps.is_some_and(|jumps| sliding::is_on_surface(jumps, state, 0.0, parameter))
+    }
+
+    /// Whether nothing jumps where the rate of a coordinate is zero, or that of a velocity at its largest
+    /// value.
+    pub(super) fn has_smooth_turn(&self, states: &[Symbol], state: usize) -> bool {
+        self.jumps.as_ref().is_none_or(|jumps| jumps.has_smooth_turn(states, state))
     }
 
     /// The reason why the last motion that was not followed across jumps was not, with the argument of
@@ -281,6 +296,7 @@ impl Flow {
             let [low, high] = &run.bounds;
             return Some(FlowImage {
                 stuck: run.stuck / length,
+                places: jumps.places_on(&run.throughout),
                 ..image_of(n, &run.values, sizes, low, high)
             });
         }
@@ -340,6 +356,7 @@ fn image_of(n: usize, end: &[f64], sizes: &[f64], low: &[f64], high: &[f64]) -> 
         by_parameter: DVector::from_iterator(n, (0..n).map(|i| varied(i, n))),
         travel: low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).collect(),
         stuck: 0.0,
+        places: vec![],
     }
 }
 

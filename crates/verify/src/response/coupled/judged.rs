@@ -211,6 +211,8 @@ impl CoupledProblem<'_> {
         let mut matrix =
             DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - full[(i, j)] * sizes[j] / sizes[i]);
         let step = match self.kind {
+            // Where dry friction holds a place it is that of the orbit, whatever it is.
+            Kind::Driven(_) if !orbit.kept.places.is_empty() => least_squares(matrix, &missed)?,
             Kind::Driven(_) => matrix.lu().solve(&missed)?,
             Kind::SelfExcited | Kind::Free => {
                 // The period is free as well, and so is the place on the orbit; the frequency of a

@@ -12,6 +12,7 @@
 //! Munoz-Almaraz and others, *Physica D* 181 (2003) 1). Without a drive a motion may begin anywhere
 //! on itself: it begins where the rate of one state is zero, at a turn of it.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -19,6 +20,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::energy::Energy;
 use super::flow::{Flow, FlowImage};
+use super::surfaces::largest;
 use crate::coupled::CoupledEquations;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
@@ -38,6 +40,9 @@ pub(super) struct Course {
     pub(super) monodromy: DMatrix<f64>,
     /// The part of the period in which dry friction holds something.
     pub(super) stuck: f64,
+    /// The factors of the states of sums that stay what they are, because dry friction holds them all the
+    /// time: of such a motion there is one for each place where it holds them.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
 /// An orbit of a branch.
@@ -104,6 +109,8 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
     pub(super) shown: CompiledFunction,
+    /// Whether a motion was met in which dry friction holds everything.
+    pub(super) rests: Cell<bool>,
     /// The energy of a free motion without damping, and the place of rest from which it is counted.
     pub(super) energy: Option<(Energy, Vec<f64>)>,
 }
@@ -191,6 +198,7 @@ impl<'a> CoupledProblem<'a> {
         let mut problem = Self {
             question,
             energy: None,
+            rests: Cell::new(false),
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
@@ -285,6 +293,19 @@ impl<'a> CoupledProblem<'a> {
         DVector::from_vec(sizes)
     }
 
+    /// Whether nothing moves on an orbit, because dry friction holds everything: no motion.
+    pub(super) fn is_at_rest(&self, orbit: &Orbit, scale: &[f64]) -> bool {
+        const NOTHING: f64 = 1e-9;
+        let extent = |all: &[f64]| {
+            all.iter().take(self.coordinates).map(|value| value.abs()).fold(0.0, f64::max)
+        };
+        let size = extent(scale).max(extent(orbit.unknowns.as_slice()));
+        let rests =
+            orbit.kept.stuck > 1.0 - NOTHING && extent(&orbit.kept.travel) <= NOTHING * size;
+        self.rests.set(self.rests.get() || rests);
+        rests
+    }
+
     /// Calls a function with the equations of orbits; `scale` is the travel of the largest known
     /// motion.
     pub(super) fn with_orbits<T>(
@@ -347,10 +368,10 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel, stuck } =
+        let FlowImage { end, by_start, by_parameter, travel, stuck, places } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), stuck };
-        Some(PeriodImage { end, by_start, by_parameter, path })
+        let path = Course { travel, monodromy: by_start.clone(), stuck, places };
+        Some(with_places(PeriodImage { end, by_start, by_parameter, path }, start))
     }
 
     fn cycle_image(
@@ -373,6 +394,7 @@ impl<'a> CoupledProblem<'a> {
             travel: image.travel,
             monodromy: image.by_start.clone(),
             stuck: image.stuck,
+            places: image.places,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
@@ -380,12 +402,13 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = begin.by_state[(state, column)] / size;
         }
         by_start[(n, n)] = 1.0;
-        Some(PeriodImage {
+        let image = PeriodImage {
             end: image.end.push(period + begin.rates[state] / size),
             by_start,
             by_parameter: image.by_parameter.push(begin.by_parameter[state] / size),
             path,
-        })
+        };
+        Some(with_places(image, start))
     }
 
     fn free_image(
@@ -398,7 +421,7 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck } =
+        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck, places } =
             self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
@@ -407,7 +430,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -449,8 +472,25 @@ impl<'a> CoupledProblem<'a> {
         // On the way back the velocities are the negative ones.
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
-        Some(PeriodImage { end, by_start, by_parameter, path: Course { travel, monodromy, stuck: half.stuck } })
+        let path = Course { travel, monodromy, stuck: half.stuck, places: half.places };
+        Some(PeriodImage { end, by_start, by_parameter, path })
     }
+}
+
+/// The image of a motion with an equation in place of one that says nothing, c y - c y = 0, for each sum
+/// c y that dry friction holds: it does not change from the guess, as if the motion came back to it.
+fn with_places(mut image: PeriodImage<Course>, start: &[f64]) -> PeriodImage<Course> {
+    for factors in &image.path.places {
+        let row = largest(factors);
+        image.end[row] = start[row];
+        image.by_parameter[row] = 0.0;
+        image.by_start.row_mut(row).fill(0.0);
+        image.by_start[(row, row)] = 1.0;
+        for (column, factor) in factors.iter().enumerate() {
+            image.by_start[(row, column)] -= factor;
+        }
+    }
+    image
 }
 
 /// The right sides in the phase of a motion of frequency `base`.

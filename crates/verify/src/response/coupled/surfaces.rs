@@ -12,10 +12,12 @@
 //!
 //! In: right sides as expressions. Out: f, g and u with their derivatives, compiled.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
+use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, CompiledList, Expr, Function, Node};
 use crate::response::ResponseError;
 use crate::series::guard::Guards;
@@ -27,6 +29,8 @@ pub(super) struct Table {
     shape: (usize, usize),
     places: Vec<(usize, usize)>,
     entries: CompiledList,
+    /// Memory for registers and values, which calls share.
+    memory: RefCell<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Table {
@@ -39,17 +43,23 @@ impl Table {
             }
         }
         let shape = (rows.len(), rows.first().map_or(0, Vec::len));
-        Ok(Self { shape, places, entries: CompiledList::new(&entries, arguments)? })
+        let memory = RefCell::new((vec![], vec![0.0; places.len()]));
+        Ok(Self { shape, places, entries: CompiledList::new(&entries, arguments)?, memory })
+    }
+
+    /// Calls a function with the place and the value of each entry that is not zero throughout.
+    pub(super) fn visit(&self, arguments: &[f64], mut visit: impl FnMut((usize, usize), f64)) {
+        let (registers, values) = &mut *self.memory.borrow_mut();
+        self.entries.call(arguments, registers, values);
+        for (place, value) in self.places.iter().zip(values) {
+            visit(*place, *value);
+        }
     }
 
     /// The matrix at these arguments.
     pub(super) fn at(&self, arguments: &[f64]) -> DMatrix<f64> {
-        let mut values = vec![0.0; self.places.len()];
-        self.entries.call(arguments, &mut vec![], &mut values);
         let mut matrix = DMatrix::zeros(self.shape.0, self.shape.1);
-        for (place, value) in self.places.iter().zip(values) {
-            matrix[*place] = value;
-        }
+        self.visit(arguments, |place, value| matrix[place] = value);
         matrix
     }
 }
@@ -64,6 +74,9 @@ pub(super) struct JumpSurfaces {
     pub(super) arguments: Vec<Expr>,
     /// Whether a motion can stay on each surface, because du/dt depends on its side.
     pub(super) holds: Vec<bool>,
+    /// The factors c of the states where u = d/dt (c y), so that c y stays what it is on the surface; `None`
+    /// where u is no such rate.
+    pub(super) places: Vec<Option<Vec<f64>>>,
     /// u of each surface.
     pub(super) heights: Vec<CompiledFunction>,
     /// u_y, then u_p, a row for each surface.
@@ -135,6 +148,10 @@ impl JumpSurfaces {
             let by_side = slope(rise, *name)?;
             holds.push(!by_side.is_zero() && !by_side.expand()?.is_zero());
         }
+        let mut places = Vec::new();
+        for argument in &sides.arguments {
+            places.push(place_of(argument, states)?);
+        }
         let holding: Vec<usize> = (0..count).filter(|index| holds[*index]).collect();
         for (index, rate) in rates.iter().enumerate() {
             for one in &holding {
@@ -177,8 +194,52 @@ impl JumpSurfaces {
             varied_rises: table(&rises, false, &[&with_parameter])?,
             arguments: sides.arguments,
             holds,
+            places,
         }))
     }
+
+    /// Whether nothing jumps where the rate of a coordinate is zero, or that of a velocity at its largest
+    /// value.
+    pub(super) fn has_smooth_turn(&self, states: &[Symbol], state: usize) -> bool {
+        let is_alone = |place: &[f64], state: usize| {
+            place.iter().enumerate().all(|(index, factor)| (index == state) == (*factor != 0.0))
+        };
+        let of_velocity = states.iter().position(|name| name.derivative() == states[state]);
+        self.arguments.iter().zip(&self.places).all(|(argument, place)| {
+            match (of_velocity, place) {
+                (None, None) => true,
+                (None, Some(place)) => !is_alone(place, state),
+                (Some(_), _) if !argument.contains(states[state]) => true,
+                (Some(coordinate), Some(place)) => is_alone(place, coordinate),
+                (Some(_), None) => false,
+            }
+        })
+    }
+
+    /// The sums of states that stay what they are on these surfaces, by their factors, each reduced by
+    /// those before and with its largest factor one.
+    pub(super) fn places_on(&self, surfaces: &[usize]) -> Vec<Vec<f64>> {
+        const NOTHING: f64 = 1e-9;
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        for place in surfaces.iter().filter_map(|index| self.places[*index].as_ref()) {
+            let mut left = place.clone();
+            for known in &found {
+                let factor = left[largest(known)];
+                left.iter_mut().zip(known).for_each(|(one, other)| *one -= factor * other);
+            }
+            let size = left[largest(&left)];
+            if size.abs() > NOTHING * place[largest(place)].abs() {
+                found.push(left.iter().map(|factor| factor / size).collect());
+            }
+        }
+        found
+    }
+}
+
+/// The index of the largest factor.
+pub(super) fn largest(factors: &[f64]) -> usize {
+    let size = |index: &usize| factors[*index].abs();
+    (0..factors.len()).max_by(|one, other| size(one).total_cmp(&size(other))).unwrap_or(0)
 }
 
 /// The surfaces found so far, with the names of their sides.
@@ -237,6 +298,24 @@ fn jump_of(part: &Expr) -> Option<&Expr> {
         Node::Function(Function::Sign | Function::Step, arguments) => arguments.first(),
         _ => None,
     }
+}
+
+/// The factors c of the states with u = d/dt (c y), where u is a sum of velocities with numbers for
+/// factors; `None` if it is not.
+fn place_of(argument: &Expr, states: &[Symbol]) -> Result<Option<Vec<f64>>, ResponseError> {
+    let mut factors = vec![0.0; states.len()];
+    let mut rest = argument.expand()?;
+    for (place, state) in states.iter().enumerate() {
+        let velocity = state.derivative();
+        if !rest.contains(velocity) || !states.contains(&velocity) {
+            continue;
+        }
+        let factor = rest.differentiate(velocity)?.expand()?;
+        let Some(number) = factor.as_number() else { return Ok(None) };
+        factors[place] = to_f64(number);
+        rest = rest.substitute(velocity, &Expr::zero())?.expand()?;
+    }
+    Ok(rest.is_zero().then_some(factors))
 }
 
 /// The linear function of a side with the values that an expression has on both sides.

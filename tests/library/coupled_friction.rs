@@ -6,9 +6,7 @@ use std::collections::BTreeMap;
 use lindstedt::Symbol;
 use lindstedt::coupled::CoupledEquations;
 use lindstedt::response::bifurcation::BifurcationKind;
-use lindstedt::response::{
-    ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion, respond,
-};
+use lindstedt::response::{ResponseDiagram, ResponseError, ResponseRequest, SteadyMotion, respond};
 use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::Verdict;
 
@@ -112,7 +110,8 @@ fn an_uncoupled_coordinate_beside_it_changes_nothing() {
 fn friction_between_two_masses_is_that_of_their_distance() {
     let text = "x'' + x'/20 + x + sgn(x' - y')/4 = cos(w*t)/2; y'' + y'/20 + y - sgn(x' - y')/4 = -cos(w*t)/2";
     let pair = answer(text, "w", [0.4, 1.6]);
-    let alone = answer("z'' + z'/20 + z + sgn(z')/2 = cos(w*t); y'' + y'/20 + y = 0", "w", [0.4, 1.6]);
+    let alone =
+        answer("z'' + z'/20 + z + sgn(z')/2 = cos(w*t); y'' + y'/20 + y = 0", "w", [0.4, 1.6]);
     assert!(pair.verdict == Verdict::Pass && alone.verdict == Verdict::Pass);
     for w in [0.4, 1.6] {
         let (one, other) = (at(&pair, w), at(&alone, w));
@@ -130,15 +129,36 @@ fn friction_between_two_masses_is_that_of_their_distance() {
 fn motions_and_multipliers_are_those_of_simulation() {
     for (text, range) in [
         // Friction on one of two coupled masses, on both, between them; with sticking.
-        ("x'' + x'/20 + x + sgn(x')/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0", [1.2, 1.4]),
-        ("x'' + x'/20 + x + 3*sgn(x')/10 + (x - y)/2 = cos(w*t); y'' + y'/20 + y + sgn(y')/5 + (y - x)/2 = 0", [0.6, 0.7]),
-        ("x'' + x'/20 + x + sgn(x' - y')/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y - sgn(x' - y')/5 + (y - x)/10 = 0", [0.5, 0.6]),
+        (
+            "x'' + x'/20 + x + sgn(x')/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0",
+            [1.2, 1.4],
+        ),
+        (
+            "x'' + x'/20 + x + 3*sgn(x')/10 + (x - y)/2 = cos(w*t); y'' + y'/20 + y + sgn(y')/5 + (y - x)/2 = 0",
+            [0.6, 0.7],
+        ),
+        (
+            "x'' + x'/20 + x + sgn(x' - y')/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y - sgn(x' - y')/5 + (y - x)/10 = 0",
+            [0.5, 0.6],
+        ),
         // A step of the force, one of the stiffness, a slanted one.
-        ("x'' + x'/20 + x + H(x - 1/2)/2 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0", [1.3, 1.4]),
-        ("x'' + x'/20 + x + 5*(x - 1/2)*H(x - 1/2) + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0", [1.1, 1.2]),
-        ("x'' + x'/20 + x + x^2*H(x' + y/2 - 1/10)/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0", [1.4, 1.5]),
+        (
+            "x'' + x'/20 + x + H(x - 1/2)/2 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0",
+            [1.3, 1.4],
+        ),
+        (
+            "x'' + x'/20 + x + 5*(x - 1/2)*H(x - 1/2) + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0",
+            [1.1, 1.2],
+        ),
+        (
+            "x'' + x'/20 + x + x^2*H(x' + y/2 - 1/10)/5 + (x - y)/10 = cos(w*t); y'' + y'/20 + y + (y - x)/10 = 0",
+            [1.4, 1.5],
+        ),
         // A drive that jumps in time.
-        ("x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/5 + (y - x)/10 = 0", [1.5, 1.6]),
+        (
+            "x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/5 + (y - x)/10 = 0",
+            [1.5, 1.6],
+        ),
     ] {
         let found = answer(text, "w", range);
         assert!(found.error.is_some_and(|error| error < 1e-6), "{text}: {:?}", found.error);
@@ -165,9 +185,15 @@ fn a_motion_of_one_that_sticks_has_a_multiplier_of_zero() {
     // Of three multipliers that of y is exp(-T), and one of the other two is zero.
     let [one, other] = point.multipliers.expect("multipliers");
     let of_y = (-std::f64::consts::TAU / 0.5).exp();
-    assert!((one.norm() - of_y).abs() < 1e-7 || (other.norm() - of_y).abs() < 1e-7, "{one} {other}");
+    assert!(
+        (one.norm() - of_y).abs() < 1e-7 || (other.norm() - of_y).abs() < 1e-7,
+        "{one} {other}"
+    );
     // That of x by the map of one coordinate.
-    let alone = ResponseRequest { harmonics: Some(24), ..question("x'' + x + 3*sgn(x')/5 = cos(w*t)", "w", [0.45, 0.5]) };
+    let alone = ResponseRequest {
+        harmonics: Some(24),
+        ..question("x'' + x + 3*sgn(x')/5 = cos(w*t)", "w", [0.45, 0.5])
+    };
     let alone = respond(&alone).expect("a response");
     let alone = at(&alone, 0.5);
     assert!((alone.stuck - point.stuck).abs() < 1e-6, "{} {}", alone.stuck, point.stuck);
@@ -184,7 +210,11 @@ fn more_frictions_than_velocities() {
     for w in [0.5, 0.6] {
         let point = at(&found, w);
         let end = simulated(text, ("w", w), &start(point), std::f64::consts::TAU / w);
-        let apart = start(point).iter().zip(&end).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        let apart = start(point)
+            .iter()
+            .zip(&end)
+            .map(|(one, other)| (one - other).abs())
+            .fold(0.0, f64::max);
         assert!(apart < 1e-8 && point.stuck > 0.0, "{apart} {point:?}");
     }
 }
@@ -219,24 +249,31 @@ fn belts_keep_up_cycles_of_two_masses() {
     let belt = "3*sgn(x' - v)*(1 + exp(-10*abs(x' - v))/2)/10";
     let text = format!("x'' + x'/50 + x + {belt} = 0; y'' + y'/20 + 3*y = x/10");
     let found = answer(&text, "v", [0.2, 0.4]);
-    let alone = respond(&question(&format!("x'' + x'/50 + x + {belt} = 0"), "v", [0.2, 0.4])).expect("cycles");
+    let alone = respond(&question(&format!("x'' + x'/50 + x + {belt} = 0"), "v", [0.2, 0.4]))
+        .expect("cycles");
     for v in [0.2, 0.4] {
         let stable = |found: &ResponseDiagram| -> SteadyMotion {
-            let all = points(found).filter(|point| point.parameter == v && point.stable == Some(true));
+            let all =
+                points(found).filter(|point| point.parameter == v && point.stable == Some(true));
             all.max_by(|one, other| one.peak.total_cmp(&other.peak)).expect("a cycle").clone()
         };
         let (one, other) = (stable(&found), stable(&alone));
         assert!((one.frequency / other.frequency - 1.0).abs() < 1e-5, "{one:?} {other:?}");
         assert!((one.peak - other.peak).abs() < 1e-4 && one.stuck > 0.1, "{one:?} {other:?}");
     }
-    let text = format!("x'' + x'/50 + 11*x/10 - y/10 + {belt} = 0; y'' + y'/20 - x/10 + 11*y/10 = 0");
+    let text =
+        format!("x'' + x'/50 + 11*x/10 - y/10 + {belt} = 0; y'' + y'/20 - x/10 + 11*y/10 = 0");
     let found = answer(&text, "v", [0.3, 0.4]);
     let sticking: Vec<_> = points(&found).filter(|point| point.stuck > 0.0).collect();
     assert!(sticking.len() > 10);
     for point in sticking.into_iter().step_by(9) {
         let period = std::f64::consts::TAU / point.frequency;
         let end = simulated(&text, ("v", point.parameter), &start(point), period);
-        let apart = start(point).iter().zip(&end).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        let apart = start(point)
+            .iter()
+            .zip(&end)
+            .map(|(one, other)| (one - other).abs())
+            .fold(0.0, f64::max);
         assert!(apart < 1e-7, "{apart} {point:?}");
     }
 }
@@ -245,7 +282,9 @@ fn belts_keep_up_cycles_of_two_masses() {
 #[test]
 fn a_stop_by_a_step_is_that_by_the_larger() {
     let text = |stop: &str| {
-        format!("x'' + 3*(x' - y')/100 + x - y + 100*{stop} = 0; y'' + 3*(2*y' - x')/100 + 2*y - x = cos(w*t)/10")
+        format!(
+            "x'' + 3*(x' - y')/100 + x - y + 100*{stop} = 0; y'' + 3*(2*y' - x')/100 + 2*y - x = cos(w*t)/10"
+        )
     };
     let found = answer(&text("(x - 1)*H(x - 1)"), "w", [0.73, 0.77]);
     let doublings = |found: &ResponseDiagram| -> Vec<f64> {

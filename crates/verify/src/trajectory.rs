@@ -41,8 +41,8 @@ pub use sweep::{SweptMotion, sweep};
 
 use hold::{Layout, StateEquations};
 pub(crate) use root::roots_across_corners;
-pub(crate) use surplus::of_one_size as shares_of_one_size;
 use section::OnSection;
+pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
 
 /// An initial value problem: equations, initial state and duration.

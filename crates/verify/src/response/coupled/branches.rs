@@ -1,6 +1,7 @@
 //! Branches of orbits: through starts, through crossings with known ones, each once.
 
 use nalgebra::DVector;
+use num_complex::Complex;
 
 use super::changes::changes_between;
 use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, SMALLEST, Travel};
@@ -104,7 +105,7 @@ impl CoupledProblem<'_> {
         let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
         let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
         let largest = extent(&known.scale);
-        if self.is_at_rest(&orbit, &known.scale) {
+        if self.is_at_rest(&orbit) || self.creeps(&orbit) {
             return;
         }
         if largest > 0.0 && extent(&orbit.kept.travel) > ENORMOUS * largest {
@@ -344,8 +345,11 @@ impl CoupledProblem<'_> {
         let least = (AT_REST * own).max((STEPS * step).min(0.5 * own));
         let refused = |orbit: &Orbit| {
             let extent = extent(&orbit.kept.travel);
-            self.is_at_rest(orbit, scale)
-                || extent > bound || is_cycle && extent < least || self.is_exhausted()
+            self.is_at_rest(orbit)
+                || self.creeps(orbit)
+                || extent > bound
+                || is_cycle && extent < least
+                || self.is_exhausted()
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
@@ -356,7 +360,12 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Lost => BranchEnd::Lost,
             OrbitBranchEnd::Points => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
-            OrbitBranchEnd::Refused if self.in_time.jumps() && self.rests.get() => BranchEnd::Held,
+            OrbitBranchEnd::Refused if self.rests.get() => BranchEnd::Held,
+            OrbitBranchEnd::Refused
+                if last[side].is_some_and(|point| !point.kept.places.is_empty()) =>
+            {
+                BranchEnd::Lost
+            }
             OrbitBranchEnd::Refused => match last[side] {
                 Some(point) if extent(&point.kept.travel) < 0.1 * bound => BranchEnd::Rest,
                 _ => BranchEnd::Unbounded,
@@ -364,6 +373,16 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
         });
         OrbitBranch { orbits: points, ends, mirrored: false, anchor }
+    }
+
+    /// Whether something that friction holds but for a moment is pushed on in it, a little each period: at
+    /// the edge of the places where it would be held, along which no branch is followed.
+    pub(super) fn creeps(&self, orbit: &Orbit) -> bool {
+        const NEARLY_ALL: f64 = 0.99;
+        const NEAR_ONE: f64 = 1e-4;
+        let near_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < NEAR_ONE;
+        orbit.kept.stuck > NEARLY_ALL
+            && self.multipliers(orbit).is_some_and(|all| all.iter().any(near_one))
     }
 
     /// Follows the branches that cross known ones, until there are no more.

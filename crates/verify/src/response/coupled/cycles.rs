@@ -213,9 +213,8 @@ impl CoupledProblem<'_> {
         // is largest.
         let place = |cell: usize| period * cell as f64 / CELLS as f64;
         let highest = |state: usize| {
-            let height = |cell: usize| {
-                path.states_at(place(cell)).map_or(f64::NAN, |states| states[state])
-            };
+            let height =
+                |cell: usize| path.states_at(place(cell)).map_or(f64::NAN, |states| states[state]);
             let highest =
                 (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
             Some((state, path.states_at(place(highest))?))

@@ -12,7 +12,7 @@
 //! Munoz-Almaraz and others, *Physica D* 181 (2003) 1). Without a drive a motion may begin anywhere
 //! on itself: it begins where the rate of one state is zero, at a turn of it.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -294,14 +294,8 @@ impl<'a> CoupledProblem<'a> {
     }
 
     /// Whether nothing moves on an orbit, because dry friction holds everything: no motion.
-    pub(super) fn is_at_rest(&self, orbit: &Orbit, scale: &[f64]) -> bool {
-        const NOTHING: f64 = 1e-9;
-        let extent = |all: &[f64]| {
-            all.iter().take(self.coordinates).map(|value| value.abs()).fold(0.0, f64::max)
-        };
-        let size = extent(scale).max(extent(orbit.unknowns.as_slice()));
-        let rests =
-            orbit.kept.stuck > 1.0 - NOTHING && extent(&orbit.kept.travel) <= NOTHING * size;
+    pub(super) fn is_at_rest(&self, orbit: &Orbit) -> bool {
+        let rests = orbit.kept.places.len() == self.coordinates;
         self.rests.set(self.rests.get() || rests);
         rests
     }
@@ -315,15 +309,21 @@ impl<'a> CoupledProblem<'a> {
         call: impl FnOnce(&Orbits) -> T,
     ) -> T {
         let interrupt = self.question.interrupt;
+        // Where dry friction holds motions of a branch it holds them at the same place.
+        let places = RefCell::new(Vec::new());
         let map = |start: &DVector<f64>, parameter: f64| {
             // A branch may be looked for beyond the range, where the frequency need not be positive.
             let runs = matches!(self.kind, Kind::SelfExcited) || self.frequency_at(parameter) > 0.0;
             if !runs || interrupt.is_requested() {
                 return None;
             }
+            let start_of = start.as_slice();
+            let held_at = |image| at_places(image, start_of, &mut places.borrow_mut());
             match self.kind {
-                Kind::Driven(_) => self.driven_image(start.as_slice(), parameter, scale),
-                Kind::SelfExcited => self.cycle_image(start.as_slice(), parameter, scale, anchor),
+                Kind::Driven(_) => self.driven_image(start_of, parameter, scale).map(held_at),
+                Kind::SelfExcited => {
+                    self.cycle_image(start_of, parameter, scale, anchor).map(held_at)
+                }
                 Kind::Free if anchor.from_rest => {
                     self.image_from_rest(start.as_slice(), parameter, scale)
                 }
@@ -371,7 +371,7 @@ impl<'a> CoupledProblem<'a> {
         let FlowImage { end, by_start, by_parameter, travel, stuck, places } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
         let path = Course { travel, monodromy: by_start.clone(), stuck, places };
-        Some(with_places(PeriodImage { end, by_start, by_parameter, path }, start))
+        Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
     fn cycle_image(
@@ -402,13 +402,12 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = begin.by_state[(state, column)] / size;
         }
         by_start[(n, n)] = 1.0;
-        let image = PeriodImage {
+        Some(PeriodImage {
             end: image.end.push(period + begin.rates[state] / size),
             by_start,
             by_parameter: image.by_parameter.push(begin.by_parameter[state] / size),
             path,
-        };
-        Some(with_places(image, start))
+        })
     }
 
     fn free_image(
@@ -477,12 +476,28 @@ impl<'a> CoupledProblem<'a> {
     }
 }
 
+/// A sum of states that dry friction holds, by its factors, and its value.
+type Place = (Vec<f64>, f64);
+
 /// The image of a motion with an equation in place of one that says nothing, c y - c y = 0, for each sum
-/// c y that dry friction holds: it does not change from the guess, as if the motion came back to it.
-fn with_places(mut image: PeriodImage<Course>, start: &[f64]) -> PeriodImage<Course> {
-    for factors in &image.path.places {
+/// c y that dry friction holds: as if the motion came back to the place where those before were held, or
+/// stayed where it begins, if they were not.
+fn at_places(
+    mut image: PeriodImage<Course>,
+    start: &[f64],
+    known: &mut Vec<Place>,
+) -> PeriodImage<Course> {
+    let value = |factors: &[f64]| -> f64 {
+        factors.iter().zip(start).map(|(factor, value)| factor * value).sum()
+    };
+    let is_known = known.iter().map(|(factors, _)| factors).eq(&image.path.places);
+    if !is_known {
+        let all = image.path.places.iter();
+        *known = all.map(|factors| (factors.clone(), value(factors))).collect();
+    }
+    for (factors, place) in known.iter() {
         let row = largest(factors);
-        image.end[row] = start[row];
+        image.end[row] = start[row] - (value(factors) - place);
         image.by_parameter[row] = 0.0;
         image.by_start.row_mut(row).fill(0.0);
         image.by_start[(row, row)] = 1.0;

@@ -180,9 +180,7 @@ pub(super) fn follow(
         }
         // A guess of an orbit may begin a little beside a surface.
         if run.time - from > SOON * (to - from) {
-            throughout
-                .get_or_insert_with(|| held.all())
-                .retain(|index| held.contains(*index));
+            throughout.get_or_insert_with(|| held.all()).retain(|index| held.contains(*index));
         }
         match meeting {
             None => {
@@ -338,9 +336,8 @@ impl<'a> Run<'a> {
         let sign = |height: f64| if height < 0.0 { -1.0 } else { 1.0 };
         self.sides = heights.iter().map(|height| sign(*height)).collect();
         let sizes: Vec<f64> = (0..count).map(|index| self.size_of_height(index)).collect();
-        let near: Vec<usize> = (0..count)
-            .filter(|index| heights[*index].abs() <= AT_REST * sizes[*index])
-            .collect();
+        let near: Vec<usize> =
+            (0..count).filter(|index| heights[*index].abs() <= AT_REST * sizes[*index]).collect();
         if near.is_empty() {
             return Ok(());
         }
@@ -661,7 +658,8 @@ impl<'a> Run<'a> {
         let mut slopes = all.columns(1, width).into_owned();
         if !self.held.is_empty() {
             let rows: Vec<usize> = (0..self.surfaces.states).collect();
-            slopes += self.held.columns(&all, 1 + width, &rows) * self.change_of_shares(arguments)?;
+            slopes +=
+                self.held.columns(&all, 1 + width, &rows) * self.change_of_shares(arguments)?;
         }
         Some((all, slopes))
     }
@@ -774,8 +772,7 @@ impl<'a> Run<'a> {
                 let own = if column == n { unit * normals[(rows[i], n)] } else { 0.0 };
                 of_states.sum::<f64>() + own
             });
-            let steps =
-                solved(matrix.clone(), height).ok_or(SlidingStop::Undetermined(rows[0]))?;
+            let steps = solved(matrix.clone(), height).ok_or(SlidingStop::Undetermined(rows[0]))?;
             let change = &along * steps;
             for i in 0..n {
                 self.values[n + i * width + column] -= change[i];
@@ -836,7 +833,10 @@ mod tests {
                 for row in 0..4 {
                     let slope = (above[row] - below[row]) / (2.0 * STEP);
                     let found = run.values[4 + row * 5 + column];
-                    assert!((slope - found).abs() < 1e-5, "{start:?} {row} {column}: {slope} {found}");
+                    assert!(
+                        (slope - found).abs() < 1e-5,
+                        "{start:?} {row} {column}: {slope} {found}"
+                    );
                 }
             }
         }
@@ -844,10 +844,8 @@ mod tests {
 
     #[test]
     fn two_bodies_at_rest_stay_there() {
-        let rates = [
-            "-x - sgn(x')/5 - sgn(x' - y')/10 + cos(t)/10",
-            "-y - sgn(y')/5 + sgn(x' - y')/10",
-        ];
+        let rates =
+            ["-x - sgn(x')/5 - sgn(x' - y')/10 + cos(t)/10", "-y - sgn(y')/5 + sgn(x' - y')/10"];
         let run = followed(rates, [0.0; 4], 6.0).expect("a run");
         assert_eq!((run.stuck, run.throughout.len()), (6.0, 3));
         assert!(run.values[..4].iter().all(|value| value.abs() < 1e-12), "{run:?}");

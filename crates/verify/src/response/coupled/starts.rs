@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::branches::{Known, Start};
 use super::flow::Flow;
-use super::problem::{Anchor, CoupledProblem};
+use super::problem::{Anchor, CoupledProblem, Orbit};
 use super::sliding::SlidingStop;
 use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
 
@@ -260,12 +260,11 @@ impl CoupledProblem<'_> {
             }
             let found = self.compared(&start, periods, known);
             if found.is_some() || periods.is_some() {
-                // What friction holds altogether is no motion.
+                // What friction holds altogether is no motion, and what it holds almost is none of its own.
+                let is_held = |orbit: Orbit| self.is_at_rest(&orbit) || self.creeps(&orbit);
                 let rests = self.in_time.jumps()
                     && found.is_none()
-                    && self
-                        .orbit_near(&start, &known.scale, Anchor::NONE)
-                        .is_some_and(|orbit| self.is_at_rest(&orbit, &known.scale));
+                    && self.orbit_near(&start, &known.scale, Anchor::NONE).is_some_and(is_held);
                 return if rests { None } else { Some((start, periods, found)) };
             }
             let trace = self.in_time.linearised(&end, 0.0, parameter).by_state.trace();

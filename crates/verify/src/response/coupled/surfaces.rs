@@ -166,10 +166,7 @@ impl JumpSurfaces {
         }
         let with_parameter: Vec<Symbol> = states.iter().copied().chain([parameter]).collect();
         let all: Vec<Symbol> = known.iter().chain(&names).copied().collect();
-        let table = |rows: &[Expr],
-                     own: bool,
-                     by: &[&[Symbol]]|
-         -> Result<Table, ResponseError> {
+        let table = |rows: &[Expr], own: bool, by: &[&[Symbol]]| -> Result<Table, ResponseError> {
             let row = |expression: &Expr| -> Result<Vec<Expr>, ResponseError> {
                 let mut row = if own { vec![expression.clone()] } else { vec![] };
                 for by in by {
@@ -320,8 +317,7 @@ fn place_of(argument: &Expr, states: &[Symbol]) -> Result<Option<Vec<f64>>, Resp
 
 /// The linear function of a side with the values that an expression has on both sides.
 fn linear_in(expression: Expr, side: Symbol) -> Result<Expr, ResponseError> {
-    let is_linear =
-        !expression.contains(side) || !expression.differentiate(side)?.contains(side);
+    let is_linear = !expression.contains(side) || !expression.differentiate(side)?.contains(side);
     if is_linear {
         return Ok(expression);
     }
@@ -354,7 +350,10 @@ mod tests {
 
     #[test]
     fn each_surface_is_found_once_and_told_whether_it_holds() {
-        let found = surfaces(&["-x - sgn(x' - y') - abs(x' - y')", "sgn(2*x' - 2*y') + H(y - 1)*sgn(x' - v)"]);
+        let found = surfaces(&[
+            "-x - sgn(x' - y') - abs(x' - y')",
+            "sgn(2*x' - 2*y') + H(y - 1)*sgn(x' - v)",
+        ]);
         let found = found.expect("surfaces").expect("jumps");
         assert_eq!(found.arguments.len(), 3);
         let holds: Vec<(String, bool)> =

@@ -86,7 +86,7 @@ impl CoupledProblem<'_> {
             })
         };
         let first = near(&guess, &absolute)?;
-        if !scale.is_empty() {
+        if !scale.is_empty() || self.is_at_rest(&first) {
             return Some(first);
         }
         let guess = first.unknowns.rows(0, guess.len()).into_owned();

@@ -265,14 +265,31 @@ impl<'a> CoupledProblem<'a> {
     /// `scale`: at least a tenth of the largest of its kind, positions or velocities.
     pub(super) fn state_sizes(&self, travel: &[f64], scale: &[f64]) -> Vec<f64> {
         let n = self.coordinates;
+        let least = self.least_sizes(travel);
         let own = |index: usize| {
-            let of_kind = if index < n { &travel[..n] } else { &travel[n..self.states.len()] };
+            let kind = usize::from(index >= n);
+            let of_kind = if kind == 0 { &travel[..n] } else { &travel[n..self.states.len()] };
             let largest = of_kind.iter().copied().fold(0.0, f64::max);
             let others = scale.get(index).copied().unwrap_or(0.0);
-            let size = travel[index].max(SMALLEST * largest.max(others));
+            let size = travel[index].max(SMALLEST * largest.max(others)).max(least[kind]);
             if size > 0.0 && size.is_finite() { size } else { 1.0 }
         };
         (0..self.states.len()).map(own).collect()
+    }
+
+    /// The least sizes of positions and velocities of a motion with this travel. Where dry friction holds
+    /// all that moved, velocities are rounding, and no sizes.
+    fn least_sizes(&self, travel: &[f64]) -> [f64; 2] {
+        const LEAST: f64 = 1e-3;
+        if !self.in_time.jumps() {
+            return [0.0; 2];
+        }
+        let [low, high] = self.question.range;
+        let frequency = self.frequency_at(0.5 * (low + high));
+        let frequency = if frequency > 0.0 { frequency } else { 1.0 };
+        let largest = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+        let (positions, velocities) = travel[..self.states.len()].split_at(self.coordinates);
+        [LEAST * largest(velocities) / frequency, LEAST * largest(positions) * frequency]
     }
 
     /// The sizes of all unknowns of an orbit.

@@ -405,8 +405,15 @@ fn refused(error: ResponseError) -> Failure {
             _ => "--vary omega=FROM:TO gives the nonlinear normal modes by their frequency, or add damping or a drive",
         }.to_owned()),
         ResponseError::CoupledJump(_) => Some(
-            "write k*max(x - d, 0) for a stop, and (2/pi)*atan(100*x') for friction".to_owned(),
+            "make one of them smooth: (2/pi)*atan(100*x') for sgn(x')".to_owned(),
         ),
+        ResponseError::NothingMoves { .. } => Some("a stronger drive overcomes it".to_owned()),
+        ResponseError::Chatters(argument) => Some(format!(
+            "a force that jumps where it holds a place has no next event: write tanh(100*({argument})) for the sign of this, or a stiff spring"
+        )),
+        ResponseError::UndeterminedFriction(argument) => Some(format!(
+            "make this friction smooth: (2/pi)*atan(100*({argument})) for its sign"
+        )),
         ResponseError::NotShown { known, .. } => Some(format!(
             "--of takes a coordinate, or an expression in them{}",
             match known.as_slice() {

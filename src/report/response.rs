@@ -311,9 +311,16 @@ fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static
         true => ", and elsewhere",
         false => "",
     };
+    // Of one coordinate nothing moves where all of a period is a stop.
+    let place = match longest == 1.0 {
+        true => {
+            " Where that is all of it something stays where it came to rest: it may be held at other places as well, of which no branches are listed."
+        }
+        false => "",
+    };
     Some(Block::Sentence(format!(
-        "It sticks on its way, held by friction, {}{more}: for {} % of a period at most. There the points are those of the map of a period, \
-         with the harmonics of the true motion.",
+        "It sticks on its way, held by friction, {}{more}: for {} % of a period at most.{place} There the points are those of the map of a \
+         period, with the harmonics of the true motion.",
         stretches[..stretches.len().min(MOST)].join(", "),
         significant(100.0 * longest, 3)
     )))

@@ -6,6 +6,7 @@ mod certificate;
 mod conformance;
 mod contact;
 mod corner_roots;
+mod coupled_friction;
 mod coupled_response;
 mod damped_certificate;
 mod default_method;

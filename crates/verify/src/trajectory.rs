@@ -42,6 +42,7 @@ pub use sweep::{SweptMotion, sweep};
 use hold::{Layout, StateEquations};
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
+pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
 
 /// An initial value problem: equations, initial state and duration.
@@ -211,6 +212,12 @@ impl TrajectoryRequest {
             equations.rates()?,
             Some(energy),
         ))
+    }
+
+    /// The initial value problem of coordinates and velocities with these rates, from rest at zero for 50
+    /// units of time, without an account of energy.
+    pub(crate) fn of_rates(coordinates: Vec<Symbol>, rates: Rates) -> Self {
+        Self::new(coordinates, vec![], rates, None)
     }
 
     fn new(

@@ -90,6 +90,10 @@ pub struct ResponseDocument {
     pub elsewhere: Vec<response::Elsewhere>,
     /// The judgement of all points.
     pub verification: ResponseVerification,
+    /// Whether the search for motions of coupled equations was ended because it had taken as much work as it
+    /// may: branches may be missing or end early, and bifurcations are not listed. Left out where it was not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub exhausted: bool,
     /// Whether it was followed to its end.
     pub complete: bool,
 }
@@ -324,6 +328,7 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
             unjudged: response.unjudged,
             verdict: response.verdict.name().to_owned(),
         },
+        exhausted: response.exhausted,
         complete: response.complete,
     }
 }

@@ -130,11 +130,29 @@ pub enum ResponseError {
         "nothing drives or damps the motion: it has a frequency for each energy, and `{0}` alone does not tell them apart"
     )]
     FreeParameter(Symbol),
-    /// A rate of coupled equations jumps.
+    /// A rate of coupled equations has the product of two jumps on both of which a motion can stick.
     #[error(
-        "the rate `{0}` jumps: motions of several coordinates are not followed across `sgn` and `H`"
+        "the term `{0}` is the product of two jumps on which a motion can stick: where it is on both, its rates are not determined"
     )]
     CoupledJump(String),
+    /// Friction holds all coordinates.
+    #[error("nothing moves: friction bears what drives it for {parameter} from {} to {}", decimal(.range[0]), decimal(.range[1]))]
+    NothingMoves {
+        /// The parameter.
+        parameter: Symbol,
+        /// Its range.
+        range: [f64; 2],
+    },
+    /// No motion could be followed over a period because it meets a jump without end.
+    #[error(
+        "no motion was found, because it meets the jump at `{0} = 0` ever faster, more than 2000 times in a period"
+    )]
+    Chatters(String),
+    /// No motion could be followed over a period because forces that hold it are not determined.
+    #[error(
+        "no motion was found, because the forces that hold it on `{0} = 0` and on other jumps at once are not determined"
+    )]
+    UndeterminedFriction(String),
     /// No family of free motions has frequencies in the range.
     #[error(
         "no nonlinear normal mode was found for frequencies from {} to {}: the linear modes have {}", decimal(.range[0]), decimal(.range[1]),

@@ -22,7 +22,7 @@ const MOST_SLIPS: usize = 20_000;
 
 /// The groups of shares of equal size, each share by its number with a sign, until no share is
 /// undetermined; `None` if the equations contradict each other, or there are too many.
-pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
+pub(crate) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
     let (mut shares, mut open) = solutions(matrix, right)?;
     let mut groups = Vec::new();
     while !open.is_empty() {

@@ -1,9 +1,11 @@
 //! Branches of orbits: through starts, through crossings with known ones, each once.
 
 use nalgebra::DVector;
+use num_complex::Complex;
 
 use super::changes::changes_between;
 use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, SMALLEST, Travel};
+use super::surfaces::largest;
 use crate::numeric::orbit_branch::{OrbitBranchEnd, OrbitBranchLimits};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
@@ -84,7 +86,7 @@ impl CoupledProblem<'_> {
             })
         };
         let first = near(&guess, &absolute)?;
-        if !scale.is_empty() {
+        if !scale.is_empty() || self.is_at_rest(&first) {
             return Some(first);
         }
         let guess = first.unknowns.rows(0, guess.len()).into_owned();
@@ -103,6 +105,9 @@ impl CoupledProblem<'_> {
         let extent = |travel: &[f64]| travel.iter().take(n).copied().fold(0.0, f64::max);
         let Some(orbit) = self.orbit_near(start, &known.scale, Anchor::NONE) else { return };
         let largest = extent(&known.scale);
+        if self.is_at_rest(&orbit) || self.creeps(&orbit) {
+            return;
+        }
         if largest > 0.0 && extent(&orbit.kept.travel) > ENORMOUS * largest {
             return;
         }
@@ -340,7 +345,11 @@ impl CoupledProblem<'_> {
         let least = (AT_REST * own).max((STEPS * step).min(0.5 * own));
         let refused = |orbit: &Orbit| {
             let extent = extent(&orbit.kept.travel);
-            extent > bound || is_cycle && extent < least || self.is_exhausted()
+            self.is_at_rest(orbit)
+                || self.creeps(orbit)
+                || extent > bound
+                || is_cycle && extent < least
+                || self.is_exhausted()
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
@@ -351,6 +360,12 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Lost => BranchEnd::Lost,
             OrbitBranchEnd::Points => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
+            OrbitBranchEnd::Refused if self.rests.get() => BranchEnd::Held,
+            OrbitBranchEnd::Refused
+                if last[side].is_some_and(|point| !point.kept.places.is_empty()) =>
+            {
+                BranchEnd::Lost
+            }
             OrbitBranchEnd::Refused => match last[side] {
                 Some(point) if extent(&point.kept.travel) < 0.1 * bound => BranchEnd::Rest,
                 _ => BranchEnd::Unbounded,
@@ -358,6 +373,16 @@ impl CoupledProblem<'_> {
             OrbitBranchEnd::Interrupted => BranchEnd::Interrupted,
         });
         OrbitBranch { orbits: points, ends, mirrored: false, anchor }
+    }
+
+    /// Whether something that friction holds but for a moment is pushed on in it, a little each period: at
+    /// the edge of the places where it would be held, along which no branch is followed.
+    pub(super) fn creeps(&self, orbit: &Orbit) -> bool {
+        const NEARLY_ALL: f64 = 0.99;
+        const NEAR_ONE: f64 = 1e-4;
+        let near_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < NEAR_ONE;
+        orbit.kept.stuck > NEARLY_ALL
+            && self.multipliers(orbit).is_some_and(|all| all.iter().any(near_one))
     }
 
     /// Follows the branches that cross known ones, until there are no more.
@@ -468,16 +493,27 @@ impl CoupledProblem<'_> {
         };
         // Cycles may begin anywhere on themselves: they are compared by travel and period.
         let by_travel = matches!(self.kind, Kind::SelfExcited | Kind::Free);
+        // A motion that dry friction holds at a place has its mirror image at another.
+        let signs: &[f64] = if orbit.kept.places.is_empty() { &[1.0] } else { &[1.0, -1.0] };
         for (branch, path) in known.branches.iter().enumerate() {
-            for pair in path.orbits.windows(2) {
+            let pairs = path.orbits.windows(2);
+            for (pair, sign) in pairs.flat_map(|pair| signs.iter().map(move |sign| (pair, *sign))) {
                 let [from, to] = pair else { continue };
                 let way = to.parameter() - from.parameter();
                 let part = if way == 0.0 { 0.0 } else { (parameter - from.parameter()) / way };
                 if !(-1e-9..=1.0 + 1e-9).contains(&part) {
                     continue;
                 }
-                let guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
+                let mut guess = &from.unknowns + (&to.unknowns - &from.unknowns) * part;
                 let count = guess.len() - 1;
+                // Where dry friction holds a motion it may hold it at another place.
+                for factors in &orbit.kept.places {
+                    let of_place = |state: &[f64]| -> f64 {
+                        state.iter().zip(factors).map(|(value, factor)| value * factor).sum()
+                    };
+                    let wanted = sign * of_place(orbit.start());
+                    guess[largest(factors)] += wanted - of_place(guess.as_slice());
+                }
                 let is_near = |images: &[Vec<f64>]| {
                     images.iter().any(|image| apart(&guess.as_slice()[..n], image) <= NEAR)
                 };

@@ -40,7 +40,7 @@ pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
 
 impl CoupledProblem<'_> {
     /// The multipliers of an orbit without those that are 1 for every such motion: one of a cycle,
-    /// two of a free motion.
+    /// two of a free motion; and one for each place where dry friction holds it all the time.
     pub(super) fn multipliers(&self, orbit: &Orbit) -> Option<Vec<Complex<f64>>> {
         let mut all = eigenvalues(orbit.kept.monodromy.clone())?;
         let trivial = match self.kind {
@@ -48,7 +48,7 @@ impl CoupledProblem<'_> {
             Kind::SelfExcited => 1,
             Kind::Free => 2,
         };
-        for _ in 0..trivial {
+        for _ in 0..trivial + orbit.kept.places.len() {
             let from_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm();
             let nearest = (0..all.len())
                 .min_by(|one, other| from_one(&all[*one]).total_cmp(&from_one(&all[*other])))?;

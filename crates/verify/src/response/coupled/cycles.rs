@@ -166,8 +166,11 @@ impl CoupledProblem<'_> {
         const BACK: f64 = 0.05;
         const CELLS: usize = 400;
         let (n, m) = (self.states.len(), self.coordinates);
-        // Periods of small motions about zero, or of the slowest of them.
-        let fastest = self.growth(&vec![0.0; n], parameter)?.into_iter().map(|value| value.norm());
+        // Periods of small motions about zero, or of the slowest of them; beside what friction holds there.
+        const BESIDE: f64 = 1e-6;
+        let beside = if self.in_time.jumps() { BESIDE } else { 0.0 };
+        let zero: Vec<f64> = (0..n).map(|k| beside * (2.0 * spread(0, k) - 1.0)).collect();
+        let fastest = self.growth(&zero, parameter)?.into_iter().map(|value| value.norm());
         let fastest = fastest.fold(0.0, f64::max);
         let unit = TAU / if fastest > 0.0 { fastest } else { 1.0 };
         let largest = scale.iter().take(m).copied().fold(0.0, f64::max);
@@ -206,12 +209,22 @@ impl CoupledProblem<'_> {
         };
         let period = { back }.find(is_back)?;
         // It begins where the coordinate turns that moves most: the highest of many points, made
-        // exact by the search for the orbit.
-        let turning = (0..m).max_by(|one, other| travel[*one].total_cmp(&travel[*other]))?;
+        // exact by the search for the orbit. Where friction acts at the turn it begins where a velocity
+        // is largest.
         let place = |cell: usize| period * cell as f64 / CELLS as f64;
-        let height = |cell: usize| path.state_at(place(cell), turning).unwrap_or(f64::NAN);
-        let highest = (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
-        let begin = path.states_at(place(highest))?;
+        let highest = |state: usize| {
+            let height =
+                |cell: usize| path.states_at(place(cell)).map_or(f64::NAN, |states| states[state]);
+            let highest =
+                (0..CELLS).max_by(|one, other| height(*one).total_cmp(&height(*other)))?;
+            Some((state, path.states_at(place(highest))?))
+        };
+        let mut states: Vec<usize> = (0..n).collect();
+        states.sort_by(|one, other| {
+            (one >= &m).cmp(&(other >= &m)).then(travel[*other].total_cmp(&travel[*one]))
+        });
+        let is_smooth = |state: &&usize| self.in_time.has_smooth_turn(&self.states, **state);
+        let (turning, begin) = highest(*states.iter().find(is_smooth)?)?;
         let unknowns = begin.into_iter().chain([period]).collect();
         Some((Start { parameter, unknowns }, anchor_of(turning, travel[turning], period)))
     }

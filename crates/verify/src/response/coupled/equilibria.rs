@@ -115,7 +115,9 @@ impl CoupledProblem<'_> {
                 };
                 let guess = DVector::from_iterator(n, (0..n).map(state));
                 let sizes = DVector::from_element(n + 1, 1.0);
-                found.extend(equations.orbit_at(&guess, parameter, &sizes));
+                let rest = equations.orbit_at(&guess, parameter, &sizes);
+                // Where dry friction holds a place there is rest all around it, and no linear equations.
+                found.extend(rest.filter(|rest| !self.in_time.is_on_jump(rest.start(), parameter)));
             }
         }
         let largest = found.iter().flat_map(|rest| rest.start()).map(|value| value.abs());

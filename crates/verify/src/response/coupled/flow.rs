@@ -6,6 +6,8 @@
 //! ```
 //!
 //! States and variations are counted in the sizes of the states, so that one tolerance suits all.
+//! Where the right sides jump, the motion is followed from event to event by `sliding`.
+//!
 //! In: the right sides as expressions. Out: the state after a time, its derivatives, and between
 //! which values each state was on the way. A step costs 21 evaluations of the right sides and of
 //! those derivatives that are not zero, s of them, and 21 s n products for the variations.
@@ -14,6 +16,8 @@ use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::sliding::{self, SlidingRun, SlidingStop};
+use super::surfaces::JumpSurfaces;
 use crate::expr::{CompiledList, Expr};
 use crate::numeric::ode::{IntegrationOptions, Point, end_values};
 use crate::response::ResponseError;
@@ -43,6 +47,10 @@ pub(super) struct Flow {
     slopes: Vec<(usize, usize)>,
     /// Row of each derivative by the parameter.
     by_parameter: Vec<usize>,
+    /// The surfaces across which the right sides jump.
+    jumps: Option<JumpSurfaces>,
+    /// The reason why the last motion that was not followed across jumps was not.
+    stopped: Cell<Option<SlidingStop>>,
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
     evaluations: Cell<u64>,
 }
@@ -69,6 +77,11 @@ pub(super) struct FlowImage {
     pub(super) by_parameter: DVector<f64>,
     /// Half of the way of each state from its lowest to its highest value.
     pub(super) travel: Vec<f64>,
+    /// The part of the time in which dry friction holds something.
+    pub(super) stuck: f64,
+    /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
+    /// the time; independent of each other.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
 impl Flow {
@@ -110,14 +123,75 @@ impl Flow {
             varied: CompiledList::new(&varied, &arguments)?,
             slopes,
             by_parameter,
+            jumps: JumpSurfaces::new(states, time, right, parameter)?,
+            stopped: Cell::new(None),
             evaluations: Cell::new(0),
         })
+    }
+
+    /// Whether the right sides jump.
+    pub(super) fn jumps(&self) -> bool {
+        self.jumps.is_some()
+    }
+
+    /// Whether a state is on a surface across which the right sides jump, at time zero.
+    pub(super) fn is_on_jump(&self, state: &[f64], parameter: f64) -> bool {
+        let jumps = self.jumps.as_ref();
+        jumps.is_some_and(|jumps| sliding::is_on_surface(jumps, state, 0.0, parameter))
+    }
+
+    /// Whether nothing jumps where the rate of a coordinate is zero, or that of a velocity at its largest
+    /// value.
+    pub(super) fn has_smooth_turn(&self, states: &[Symbol], state: usize) -> bool {
+        self.jumps.as_ref().is_none_or(|jumps| jumps.has_smooth_turn(states, state))
+    }
+
+    /// The reason why the last motion that was not followed across jumps was not, with the argument of
+    /// the jump.
+    pub(super) fn stopped(&self) -> Option<(SlidingStop, Expr)> {
+        let stop = self.stopped.get()?;
+        let arguments = &self.jumps.as_ref()?.arguments;
+        match stop {
+            SlidingStop::Chatter(index) | SlidingStop::Undetermined(index) => {
+                Some((stop, arguments.get(index)?.clone()))
+            }
+            SlidingStop::NoValue => None,
+        }
+    }
+
+    /// The motion across jumps between two times; `None` if it cannot be followed.
+    fn sliding(
+        &self,
+        jumps: &JumpSurfaces,
+        start: &[f64],
+        times: [f64; 2],
+        parameter: f64,
+        sizes: &[f64],
+        unit: Option<f64>,
+    ) -> Option<SlidingRun> {
+        let options = self.options(times[1] - times[0]);
+        match sliding::follow(jumps, start, times, parameter, sizes, unit, &options) {
+            Ok(run) => {
+                self.evaluations.set(self.evaluations.get() + run.evaluations);
+                Some(run)
+            }
+            Err(stop) => {
+                // What was stopped has cost something too: a run of one evaluation a step.
+                self.evaluations.set(self.evaluations.get() + STEPS as u64);
+                self.stopped.set(Some(stop));
+                None
+            }
+        }
     }
 
     /// The rates at a state.
     pub(super) fn rates_at(&self, state: &[f64], time: f64, parameter: f64) -> DVector<f64> {
         let arguments: Vec<f64> = state.iter().copied().chain([time, parameter]).collect();
         let mut rates = DVector::zeros(self.states);
+        if let Some(jumps) = &self.jumps {
+            let found = sliding::linearised(jumps, state, time, parameter);
+            return found.map_or_else(|| rates.add_scalar(f64::NAN), |(rates, _)| rates);
+        }
         self.rates.call(&arguments, &mut vec![], rates.as_mut_slice());
         rates
     }
@@ -125,6 +199,19 @@ impl Flow {
     /// The rates and their derivatives at a state.
     pub(super) fn linearised(&self, state: &[f64], time: f64, parameter: f64) -> LinearisedRates {
         let arguments: Vec<f64> = state.iter().copied().chain([time, parameter]).collect();
+        let n = self.states;
+        if let Some(jumps) = &self.jumps {
+            let (rates, slopes) = sliding::linearised(jumps, state, time, parameter)
+                .unwrap_or_else(|| {
+                    let nothing = DMatrix::from_element(n, n + 1, f64::NAN);
+                    (nothing.column(0).into_owned(), nothing)
+                });
+            return LinearisedRates {
+                rates,
+                by_state: slopes.columns(0, n).into_owned(),
+                by_parameter: slopes.column(n).into_owned(),
+            };
+        }
         let count = self.states + self.slopes.len() + self.by_parameter.len();
         let mut values = vec![0.0; count];
         self.varied.call(&arguments, &mut vec![], &mut values);
@@ -172,6 +259,10 @@ impl Flow {
         sizes: &[f64],
     ) -> Option<Vec<f64>> {
         let n = self.states;
+        if let Some(jumps) = &self.jumps {
+            let run = self.sliding(jumps, start, [from, to], parameter, sizes, None)?;
+            return Some(run.values.iter().zip(sizes).map(|(value, size)| value * size).collect());
+        }
         let memory = RefCell::new((vec![0.0; n + 2], Vec::new()));
         let rates = |time: f64, scaled: &Vec<f64>, rates: &mut Vec<f64>| {
             self.count(1);
@@ -199,6 +290,16 @@ impl Flow {
         sizes: &[f64],
     ) -> Option<FlowImage> {
         let n = self.states;
+        if let Some(jumps) = &self.jumps {
+            let unit = Some(UNIT_OF_VARIATIONS);
+            let run = self.sliding(jumps, start, [0.0, length], parameter, sizes, unit)?;
+            let [low, high] = &run.bounds;
+            return Some(FlowImage {
+                stuck: run.stuck / length,
+                places: jumps.places_on(&run.throughout),
+                ..image_of(n, &run.values, sizes, low, high)
+            });
+        }
         // A row of the variations of each state, by all states and by the parameter.
         let width = n + 1;
         let count = n + self.slopes.len() + self.by_parameter.len();
@@ -238,16 +339,24 @@ impl Flow {
             begin[n + i * width + i] = UNIT_OF_VARIATIONS;
         }
         let end = end_values(rates, Point { t: 0.0, y: begin }, length, &self.options(length))?;
-        let varied = |row: usize, column: usize| {
-            end[n + row * width + column] * (sizes[row] / UNIT_OF_VARIATIONS)
-        };
         let (low, high) = bounds.into_inner();
-        Some(FlowImage {
-            end: DVector::from_iterator(n, (0..n).map(|i| end[i] * sizes[i])),
-            by_start: DMatrix::from_fn(n, n, |i, j| varied(i, j) / sizes[j]),
-            by_parameter: DVector::from_iterator(n, (0..n).map(|i| varied(i, n))),
-            travel: low.iter().zip(&high).map(|(low, high)| 0.5 * (high - low)).collect(),
-        })
+        Some(image_of(n, &end, sizes, &low, &high))
+    }
+}
+
+/// The motion with these values at its end, states and variations in the sizes of the states, and these
+/// lowest and highest values of the states.
+fn image_of(n: usize, end: &[f64], sizes: &[f64], low: &[f64], high: &[f64]) -> FlowImage {
+    let varied = |row: usize, column: usize| {
+        end[n + row * (n + 1) + column] * (sizes[row] / UNIT_OF_VARIATIONS)
+    };
+    FlowImage {
+        end: DVector::from_iterator(n, (0..n).map(|i| end[i] * sizes[i])),
+        by_start: DMatrix::from_fn(n, n, |i, j| varied(i, j) / sizes[j]),
+        by_parameter: DVector::from_iterator(n, (0..n).map(|i| varied(i, n))),
+        travel: low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).collect(),
+        stuck: 0.0,
+        places: vec![],
     }
 }
 

@@ -12,8 +12,9 @@ use num_complex::Complex;
 
 use super::branches::{Known, OrbitBranch};
 use super::changes::{changes_between, least_squares};
-use super::problem::{CoupledProblem, Kind, Orbit};
+use super::problem::{CoupledProblem, Kind, Orbit, STEP_LIMIT};
 use crate::expr::Expr;
+use crate::mechanics::Rates;
 use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::{
@@ -21,7 +22,8 @@ use crate::response::{
     Simulated, SteadyMotion,
 };
 use crate::symbol::Symbol;
-use crate::system::{Path, PathEnd};
+use crate::system::{Integrator, Path, PathEnd};
+use crate::trajectory::{Trajectory, TrajectoryRequest};
 use crate::verify::Verdict;
 
 /// Number of samples of a period.
@@ -29,6 +31,46 @@ const SAMPLES: usize = 256;
 
 /// Number of harmonics that are kept where none is asked for.
 const HARMONICS: usize = 16;
+
+/// The motion from a state by the Taylor series of the equations as they were given.
+pub(super) enum OrbitPath {
+    /// In one run.
+    Series(Box<Path>),
+    /// Across jumps of the rates, in pieces between which dry friction holds something.
+    Events(Box<Trajectory>),
+}
+
+impl OrbitPath {
+    /// The time at which it ends.
+    pub(super) fn end(&self) -> f64 {
+        match self {
+            Self::Series(path) => path.end(),
+            Self::Events(motion) => motion.end(),
+        }
+    }
+
+    /// All states at a time; `None` outside of the motion.
+    pub(super) fn states_at(&self, time: f64) -> Option<Vec<f64>> {
+        match self {
+            Self::Series(path) => path.states_at(time),
+            Self::Events(motion) => motion.states_at(time),
+        }
+    }
+
+    /// Appends the states at times in increasing order to the columns, one for each state.
+    fn sample(&self, times: &[f64], columns: &mut [Vec<f64>]) {
+        match self {
+            Self::Series(path) => path.sample(times, &mut vec![], columns),
+            Self::Events(motion) => {
+                for states in times.iter().filter_map(|time| motion.states_at(*time)) {
+                    for (column, state) in columns.iter_mut().zip(states) {
+                        column.push(state);
+                    }
+                }
+            }
+        }
+    }
+}
 
 /// A quantity over a period: samples, and what follows from them.
 struct Wave {
@@ -38,9 +80,28 @@ struct Wave {
 
 impl CoupledProblem<'_> {
     /// The motion from a state over a time, by the Taylor series of the equations as they were
-    /// given; `None` if it cannot be followed all the way.
-    pub(super) fn by_series(&self, start: &[f64], duration: f64, parameter: f64) -> Option<Path> {
+    /// given, with what dry friction holds; `None` if it cannot be followed all the way.
+    pub(super) fn by_series(
+        &self,
+        start: &[f64],
+        duration: f64,
+        parameter: f64,
+    ) -> Option<OrbitPath> {
         let numbers = [(self.question.parameter, parameter)].into();
+        if self.in_time.jumps() {
+            let rates = Rates { states: self.states.clone(), right: self.right.clone() };
+            let coordinates = self.states[..self.coordinates].to_vec();
+            let course = TrajectoryRequest {
+                values: numbers,
+                start: start.to_vec(),
+                duration,
+                step_limit: STEP_LIMIT,
+                interrupt: self.question.interrupt,
+                ..TrajectoryRequest::of_rates(coordinates, rates)
+            };
+            let motion = course.follow_by(Integrator::Taylor).ok()?;
+            return motion.is_complete().then(|| OrbitPath::Events(Box::new(motion)));
+        }
         let path = match self.series.with_numbers(&numbers) {
             Some(solver) => solver.solve([0.0, duration], start).ok()?,
             None => {
@@ -54,7 +115,7 @@ impl CoupledProblem<'_> {
                 system.ok()?.solve([0.0, duration], start, &[], &options).ok()?
             }
         };
-        (path.reason() == PathEnd::Reached).then_some(path)
+        (path.reason() == PathEnd::Reached).then(|| OrbitPath::Series(Box::new(path)))
     }
 
     /// The highest harmonic that is kept.
@@ -65,7 +126,7 @@ impl CoupledProblem<'_> {
     /// A quantity of the coordinates over a period of a path.
     fn wave(
         &self,
-        path: Option<&Path>,
+        path: Option<&OrbitPath>,
         period: f64,
         samples: &[Vec<f64>],
         transform: &Transform,
@@ -140,7 +201,7 @@ impl CoupledProblem<'_> {
 
     /// The distance of the closed orbit from this one by a path over its period, relative to the
     /// travel; the difference of the period, relative to it, if that is larger.
-    fn error(&self, orbit: &Orbit, path: &Path, period: f64, scale: &[f64]) -> Option<f64> {
+    fn error(&self, orbit: &Orbit, path: &OrbitPath, period: f64, scale: &[f64]) -> Option<f64> {
         let (n, m) = (self.states.len(), self.coordinates);
         let start = &orbit.unknowns.as_slice()[..n];
         let end = path.states_at(period)?;
@@ -150,6 +211,8 @@ impl CoupledProblem<'_> {
         let mut matrix =
             DMatrix::from_fn(n, n, |i, j| f64::from(i == j) - full[(i, j)] * sizes[j] / sizes[i]);
         let step = match self.kind {
+            // Where dry friction holds a place it is that of the orbit, whatever it is.
+            Kind::Driven(_) if !orbit.kept.places.is_empty() => least_squares(matrix, &missed)?,
             Kind::Driven(_) => matrix.lu().solve(&missed)?,
             Kind::SelfExcited | Kind::Free => {
                 // The period is free as well, and so is the place on the orbit; the frequency of a
@@ -195,7 +258,7 @@ impl CoupledProblem<'_> {
         let times: Vec<f64> =
             (0..SAMPLES).map(|index| period * index as f64 / SAMPLES as f64).collect();
         if let Some(path) = &path {
-            path.sample(&times, &mut vec![], &mut samples);
+            path.sample(&times, &mut samples);
         }
         let path = path.filter(|_| samples.iter().all(|column| column.len() == SAMPLES));
         if path.is_none() {
@@ -244,7 +307,7 @@ impl CoupledProblem<'_> {
             start: [place, (self.shown.call(&moved) - place) / step],
             stable,
             multipliers: two,
-            stuck: 0.0,
+            stuck: orbit.kept.stuck,
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
             energy: self
@@ -311,7 +374,7 @@ impl CoupledProblem<'_> {
             },
             self_excited,
             undamped: self.undamped,
-            jumps: false,
+            jumps: self.in_time.jumps(),
             by_map: true,
             harmonics: self.harmonics(),
             branches,

@@ -12,6 +12,7 @@
 //!
 //! - `problem`: the equations with numbers for all parameters but one, and the maps of a period.
 //! - `flow`: the motion with its variations by Runge-Kutta.
+//! - `surfaces`: rates that jump, and where they do; `sliding`: the motion across jumps, with sticking.
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
 //! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
@@ -36,7 +37,9 @@ mod guesses;
 mod judged;
 mod modes;
 mod problem;
+mod sliding;
 mod starts;
+mod surfaces;
 
 use super::{ResponseDiagram, ResponseError, ResponseRequest};
 use crate::coupled::CoupledEquations;
@@ -86,8 +89,11 @@ pub(super) fn with_criticality(
     question: &ResponseRequest,
     equations: &CoupledEquations,
 ) -> ResponseDiagram {
-    // A force that jumps has no map with variations, and says nothing.
     let Ok(problem) = CoupledProblem::new(question, equations) else { return response };
+    // Nothing is said of a force that jumps.
+    if problem.in_time.jumps() {
+        return response;
+    }
     let scale = problem.scale_of(&response);
     for index in 0..response.bifurcations.len() {
         if question.interrupt.is_requested() {

@@ -12,6 +12,7 @@
 //! Munoz-Almaraz and others, *Physica D* 181 (2003) 1). Without a drive a motion may begin anywhere
 //! on itself: it begins where the rate of one state is zero, at a turn of it.
 
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -19,8 +20,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::energy::Energy;
 use super::flow::{Flow, FlowImage};
+use super::surfaces::largest;
 use crate::coupled::CoupledEquations;
-use crate::expr::{CompiledFunction, Expr, Function};
+use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::driven::{drive_frequency, in_phase};
 use crate::response::{ResponseError, ResponseRequest};
@@ -36,6 +38,11 @@ pub(super) struct Course {
     pub(super) travel: Travel,
     /// The derivative of the states after the period by those at the beginning.
     pub(super) monodromy: DMatrix<f64>,
+    /// The part of the period in which dry friction holds something.
+    pub(super) stuck: f64,
+    /// The factors of the states of sums that stay what they are, because dry friction holds them all the
+    /// time: of such a motion there is one for each place where it holds them.
+    pub(super) places: Vec<Vec<f64>>,
 }
 
 /// An orbit of a branch.
@@ -102,12 +109,17 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
     pub(super) shown: CompiledFunction,
+    /// Whether a motion was met in which dry friction holds everything.
+    pub(super) rests: Cell<bool>,
     /// The energy of a free motion without damping, and the place of rest from which it is counted.
     pub(super) energy: Option<(Energy, Vec<f64>)>,
 }
 
 /// A value of the parameter with which nothing cancels; every motion has its own.
 const ANY: f64 = 0.618_034;
+
+/// Largest number of steps of a motion by Taylor series.
+pub(super) const STEP_LIMIT: usize = 50_000;
 
 /// The smallest size used as a scale, as a fraction of the largest of its kind.
 pub(super) const SMALLEST: f64 = 0.1;
@@ -141,15 +153,12 @@ impl<'a> CoupledProblem<'a> {
             .iter()
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
-        if let Some(rate) = right.iter().find(|rate| has_jump(rate)) {
-            return Err(ResponseError::CoupledJump(rate.to_string()));
-        }
         let states = rates.states.clone();
         let in_time = Flow::new(&states, time, &right, parameter)?;
         let numbers = [(parameter, ANY)].into();
         let series = System::new(&states, time, &right, &numbers)
             .map_err(|error| ResponseError::Rates(error.to_string()))?
-            .solver(&[], &SystemOptions { step_limit: 50_000, ..SystemOptions::default() });
+            .solver(&[], &SystemOptions { step_limit: STEP_LIMIT, ..SystemOptions::default() });
         let names: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
         let (kind, in_phase) = match (driven, free) {
             (true, _) => {
@@ -189,6 +198,7 @@ impl<'a> CoupledProblem<'a> {
         let mut problem = Self {
             question,
             energy: None,
+            rests: Cell::new(false),
             smooth: !right.iter().any(Expr::contains_corner),
             kind,
             coordinates: equations.coordinates.len(),
@@ -255,14 +265,31 @@ impl<'a> CoupledProblem<'a> {
     /// `scale`: at least a tenth of the largest of its kind, positions or velocities.
     pub(super) fn state_sizes(&self, travel: &[f64], scale: &[f64]) -> Vec<f64> {
         let n = self.coordinates;
+        let least = self.least_sizes(travel);
         let own = |index: usize| {
-            let of_kind = if index < n { &travel[..n] } else { &travel[n..self.states.len()] };
+            let kind = usize::from(index >= n);
+            let of_kind = if kind == 0 { &travel[..n] } else { &travel[n..self.states.len()] };
             let largest = of_kind.iter().copied().fold(0.0, f64::max);
             let others = scale.get(index).copied().unwrap_or(0.0);
-            let size = travel[index].max(SMALLEST * largest.max(others));
+            let size = travel[index].max(SMALLEST * largest.max(others)).max(least[kind]);
             if size > 0.0 && size.is_finite() { size } else { 1.0 }
         };
         (0..self.states.len()).map(own).collect()
+    }
+
+    /// The least sizes of positions and velocities of a motion with this travel. Where dry friction holds
+    /// all that moved, velocities are rounding, and no sizes.
+    fn least_sizes(&self, travel: &[f64]) -> [f64; 2] {
+        const LEAST: f64 = 1e-3;
+        if !self.in_time.jumps() {
+            return [0.0; 2];
+        }
+        let [low, high] = self.question.range;
+        let frequency = self.frequency_at(0.5 * (low + high));
+        let frequency = if frequency > 0.0 { frequency } else { 1.0 };
+        let largest = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+        let (positions, velocities) = travel[..self.states.len()].split_at(self.coordinates);
+        [LEAST * largest(velocities) / frequency, LEAST * largest(positions) * frequency]
     }
 
     /// The sizes of all unknowns of an orbit.
@@ -283,6 +310,13 @@ impl<'a> CoupledProblem<'a> {
         DVector::from_vec(sizes)
     }
 
+    /// Whether nothing moves on an orbit, because dry friction holds everything: no motion.
+    pub(super) fn is_at_rest(&self, orbit: &Orbit) -> bool {
+        let rests = orbit.kept.places.len() == self.coordinates;
+        self.rests.set(self.rests.get() || rests);
+        rests
+    }
+
     /// Calls a function with the equations of orbits; `scale` is the travel of the largest known
     /// motion.
     pub(super) fn with_orbits<T>(
@@ -292,15 +326,21 @@ impl<'a> CoupledProblem<'a> {
         call: impl FnOnce(&Orbits) -> T,
     ) -> T {
         let interrupt = self.question.interrupt;
+        // Where dry friction holds motions of a branch it holds them at the same place.
+        let places = RefCell::new(Vec::new());
         let map = |start: &DVector<f64>, parameter: f64| {
             // A branch may be looked for beyond the range, where the frequency need not be positive.
             let runs = matches!(self.kind, Kind::SelfExcited) || self.frequency_at(parameter) > 0.0;
             if !runs || interrupt.is_requested() {
                 return None;
             }
+            let start_of = start.as_slice();
+            let held_at = |image| at_places(image, start_of, &mut places.borrow_mut());
             match self.kind {
-                Kind::Driven(_) => self.driven_image(start.as_slice(), parameter, scale),
-                Kind::SelfExcited => self.cycle_image(start.as_slice(), parameter, scale, anchor),
+                Kind::Driven(_) => self.driven_image(start_of, parameter, scale).map(held_at),
+                Kind::SelfExcited => {
+                    self.cycle_image(start_of, parameter, scale, anchor).map(held_at)
+                }
                 Kind::Free if anchor.from_rest => {
                     self.image_from_rest(start.as_slice(), parameter, scale)
                 }
@@ -345,9 +385,9 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel } =
+        let FlowImage { end, by_start, by_parameter, travel, stuck, places } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone() };
+        let path = Course { travel, monodromy: by_start.clone(), stuck, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -367,7 +407,12 @@ impl<'a> CoupledProblem<'a> {
         let image = self.in_time.image(start, period, parameter, &sizes)?;
         let begin = self.in_time.linearised(start, 0.0, parameter);
         let flow = self.in_time.rates_at(image.end.as_slice(), 0.0, parameter);
-        let path = Course { travel: image.travel, monodromy: image.by_start.clone() };
+        let path = Course {
+            travel: image.travel,
+            monodromy: image.by_start.clone(),
+            stuck: image.stuck,
+            places: image.places,
+        };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
         by_start.view_mut((0, n), (n, 1)).copy_from(&flow);
         for column in 0..n {
@@ -392,7 +437,7 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage { mut end, mut by_start, by_parameter, travel } =
+        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck, places } =
             self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
@@ -401,7 +446,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -443,8 +488,41 @@ impl<'a> CoupledProblem<'a> {
         // On the way back the velocities are the negative ones.
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
-        Some(PeriodImage { end, by_start, by_parameter, path: Course { travel, monodromy } })
+        let path = Course { travel, monodromy, stuck: half.stuck, places: half.places };
+        Some(PeriodImage { end, by_start, by_parameter, path })
     }
+}
+
+/// A sum of states that dry friction holds, by its factors, and its value.
+type Place = (Vec<f64>, f64);
+
+/// The image of a motion with an equation in place of one that says nothing, c y - c y = 0, for each sum
+/// c y that dry friction holds: as if the motion came back to the place where those before were held, or
+/// stayed where it begins, if they were not.
+fn at_places(
+    mut image: PeriodImage<Course>,
+    start: &[f64],
+    known: &mut Vec<Place>,
+) -> PeriodImage<Course> {
+    let value = |factors: &[f64]| -> f64 {
+        factors.iter().zip(start).map(|(factor, value)| factor * value).sum()
+    };
+    let is_known = known.iter().map(|(factors, _)| factors).eq(&image.path.places);
+    if !is_known {
+        let all = image.path.places.iter();
+        *known = all.map(|factors| (factors.clone(), value(factors))).collect();
+    }
+    for (factors, place) in known.iter() {
+        let row = largest(factors);
+        image.end[row] = start[row] - (value(factors) - place);
+        image.by_parameter[row] = 0.0;
+        image.by_start.row_mut(row).fill(0.0);
+        image.by_start[(row, row)] = 1.0;
+        for (column, factor) in factors.iter().enumerate() {
+            image.by_start[(row, column)] -= factor;
+        }
+    }
+    image
 }
 
 /// The right sides in the phase of a motion of frequency `base`.
@@ -482,9 +560,4 @@ fn is_reversible(
         }
     }
     Ok(true)
-}
-
-/// Whether a rate jumps: `sgn` or `H` occurs in it.
-fn has_jump(rate: &Expr) -> bool {
-    rate.contains_function(Function::Sign) || rate.contains_function(Function::Step)
 }

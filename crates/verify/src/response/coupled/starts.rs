@@ -8,7 +8,9 @@
 use std::f64::consts::TAU;
 
 use super::branches::{Known, Start};
-use super::problem::{Anchor, CoupledProblem};
+use super::flow::Flow;
+use super::problem::{Anchor, CoupledProblem, Orbit};
+use super::sliding::SlidingStop;
 use crate::response::{Elsewhere, ResponseDiagram, ResponseError, SeedSearch, Simulated};
 
 /// The extent of the search.
@@ -183,9 +185,19 @@ impl CoupledProblem<'_> {
     /// The error where no motion was found.
     pub(super) fn nothing_found(&self, tried: SeedSearch) -> ResponseError {
         let parameter = self.question.parameter;
-        match self.question.interrupt.is_requested() {
-            true => ResponseError::Interrupted { parameter, tried },
-            false => ResponseError::NoMotion {
+        if self.question.interrupt.is_requested() {
+            return ResponseError::Interrupted { parameter, tried };
+        }
+        if self.rests.get() {
+            return ResponseError::NothingMoves { parameter, range: self.question.range };
+        }
+        let stopped = self.in_phase.iter().chain([&self.in_time]).find_map(Flow::stopped);
+        match stopped {
+            Some((SlidingStop::Chatter(_), argument)) => {
+                ResponseError::Chatters(argument.to_string())
+            }
+            Some((_, argument)) => ResponseError::UndeterminedFriction(argument.to_string()),
+            None => ResponseError::NoMotion {
                 parameter,
                 at: 0.5 * (self.question.range[0] + self.question.range[1]),
                 undamped: self.undamped,
@@ -248,7 +260,12 @@ impl CoupledProblem<'_> {
             }
             let found = self.compared(&start, periods, known);
             if found.is_some() || periods.is_some() {
-                return Some((start, periods, found));
+                // What friction holds altogether is no motion, and what it holds almost is none of its own.
+                let is_held = |orbit: Orbit| self.is_at_rest(&orbit) || self.creeps(&orbit);
+                let rests = self.in_time.jumps()
+                    && found.is_none()
+                    && self.orbit_near(&start, &known.scale, Anchor::NONE).is_some_and(is_held);
+                return if rests { None } else { Some((start, periods, found)) };
             }
             let trace = self.in_time.linearised(&end, 0.0, parameter).by_state.trace();
             decayed -= trace * period * chunk as f64 / self.states.len() as f64;

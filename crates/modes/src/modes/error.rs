@@ -107,6 +107,20 @@ pub enum ModeError {
         /// The power of the amplitude.
         order: usize,
     },
+    /// A number of coordinates other than two.
+    #[error("closed forms with one harmonic are of two coordinates: there are {0}")]
+    NotTwo(usize),
+    /// A force that one harmonic does not balance.
+    #[error(
+        "`{0}` is of even degree: it moves the mean and drives the second harmonic, which a balance of one harmonic has not"
+    )]
+    EvenDegree(Expr),
+    /// A force that is no polynomial of a moderate degree.
+    #[error("closed forms with one harmonic are of forces that are polynomials up to degree {0}")]
+    NotPolynomial(u32),
+    /// The equations of the balance cannot be solved in closed form.
+    #[error("the balance of one harmonic has no closed form")]
+    NoClosedForm,
     /// An order that is too high.
     #[error("order {0} is above the limit of {1}")]
     Order(u32, u32),
@@ -121,7 +135,10 @@ impl ModeError {
     /// The term of the equations that is to blame, where one is.
     pub fn term(&self) -> Option<&Expr> {
         match self {
-            Self::Driven(term) | Self::Damped(term) | Self::Gyroscopic(term) => Some(term),
+            Self::Driven(term)
+            | Self::Damped(term)
+            | Self::Gyroscopic(term)
+            | Self::EvenDegree(term) => Some(term),
             _ => None,
         }
     }
@@ -139,6 +156,9 @@ impl ModeError {
             ),
             Self::NotAtRest(..) => Some(
                 "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
+            ),
+            Self::NotTwo(_) | Self::EvenDegree(_) | Self::NotPolynomial(_) | Self::NoClosedForm => Some(
+                "without --method the modes are series in the amplitude; `lindstedt response --vary omega=FROM:TO` finds them in numbers".to_owned(),
             ),
             Self::Taylor(_) => Some(
                 "`lindstedt response --vary omega=FROM:TO` finds the modes of such forces in numbers".to_owned(),

@@ -17,6 +17,7 @@
 //! - `inverse`: `K - k^2 lambda M` inverted for each harmonic, the resonances among them.
 //! - `expansion`: the orders of frequency and motion.
 //! - `modal_line`: the other coordinates as functions of the first.
+//! - `one_harmonic`: modes of two coordinates with one harmonic, in closed form.
 
 mod answer;
 mod error;
@@ -26,9 +27,13 @@ mod inverse;
 pub(crate) mod linear;
 pub(crate) mod matrix;
 mod modal_line;
+mod one_harmonic;
 pub(crate) mod reading;
 
 pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;
 pub use free_system::FreeSystem;
 pub use linear::NearResonance;
+pub use one_harmonic::{
+    OneHarmonicBranchPoint, OneHarmonicFamily, OneHarmonicModes, one_harmonic_modes,
+};

@@ -28,6 +28,9 @@ CALLS = {
     "cycle": lambda: ls.derive("van-der-pol"),
     "balance": lambda: ls.derive("duffing", "harmonic-balance", order=2),
     "modes": lambda: ls.modes("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", a="1/2"),
+    "one-harmonic": lambda: ls.derive(
+        "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", "harmonic-balance", A="1/2"
+    ),
     "slow-equations": lambda: ls.slow_equations(EXAMPLES / "slow" / "exchange.toml"),
     "compare": lambda: ls.compare("pendulum", A=1),
     "impact": lambda: ls.impact(EXAMPLES / "impact-paper.toml"),

@@ -22,6 +22,7 @@ mod impact;
 mod lagrange;
 mod materials;
 mod modes;
+mod one_harmonic;
 mod optimize;
 mod primary;
 mod problem;

@@ -33,10 +33,15 @@ pub(super) fn run(
         }
     }
     let method = question.method.as_deref().or(problem.method.as_deref());
+    if method == Some(Method::HarmonicBalance.name()) {
+        return super::one_harmonic::run(arguments, equations, problem);
+    }
     if let Some(name) = method.filter(|name| *name != Method::LindstedtPoincare.name()) {
         return Err(Failure::Usage(format!(
-            "--method {name}: the modes of coupled equations are derived by {}",
-            Method::LindstedtPoincare.name()
+            "--method {name}: the modes of coupled equations are derived by {}, with one harmonic by {}; their slow equations by {}",
+            Method::LindstedtPoincare.name(),
+            Method::HarmonicBalance.name(),
+            Method::MultipleScales.name()
         )));
     }
     let order = match question.order.or(problem.order) {
@@ -51,14 +56,7 @@ pub(super) fn run(
     };
     let text = problem.equation.as_deref();
     let refused = |error: ModeError| refused(&error, text);
-    let mechanism = problem
-        .coupled_equations(ReadingCommand::Derive)
-        .map_err(|error| Failure::refused(&error, error.help()))?;
-    let system = match mechanism {
-        Some(mechanism) => FreeSystem::of_mechanism(&mechanism),
-        None => FreeSystem::new(equations),
-    };
-    let system = system.map_err(refused)?;
+    let system = free_system(equations, problem)?;
     let amplitude = amplitude(question, problem.amplitude.as_deref())?;
     let options = ModeOptions {
         mode: arguments.mode.map(|mode| mode as usize),
@@ -116,6 +114,24 @@ pub(super) fn run(
     })
 }
 
+/// The system of a problem, about its place of rest.
+///
+/// # Errors
+/// Equations that are not of such a system.
+pub(super) fn free_system(
+    equations: CoupledEquations,
+    problem: &Problem,
+) -> Result<FreeSystem, Failure> {
+    let mechanism = problem
+        .coupled_equations(ReadingCommand::Derive)
+        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let system = match mechanism {
+        Some(mechanism) => FreeSystem::of_mechanism(&mechanism),
+        None => FreeSystem::new(equations),
+    };
+    system.map_err(|error| refused(&error, problem.equation.as_deref()))
+}
+
 /// The modes; where letters leave no closed form and values are given, those of the equations with
 /// the numbers in them, and the values that are left.
 fn with_numbers(
@@ -159,7 +175,7 @@ fn judged(
 }
 
 /// A refusal, with the term that it names shown in the equations.
-fn refused(error: &ModeError, text: Option<&str>) -> Failure {
+pub(super) fn refused(error: &ModeError, text: Option<&str>) -> Failure {
     let term = error.term();
     let shown = term.zip(text).and_then(|(term, text)| located(term, text));
     let shown = shown.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));

@@ -18,6 +18,7 @@ mod impact_comparison;
 mod materials;
 mod mechanism;
 mod modes;
+mod one_harmonic;
 mod optimization;
 mod primary;
 mod response;
@@ -42,6 +43,7 @@ pub use impact_comparison::impact_comparison;
 pub use materials::{material_sentences, materials};
 pub use mechanism::{mechanism, paper_equations};
 pub use modes::{ModesReport, modes};
+pub use one_harmonic::{OneHarmonicReport, one_harmonic};
 pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]

@@ -11,9 +11,10 @@ use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
     ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
-    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
-    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OneHarmonicDocument,
+    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
+    SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -94,6 +95,7 @@ fn reads_back(document: &Value) {
     let written = match kind.expect("a known kind") {
         DocumentKind::Solution => again::<SolutionDocument>(document),
         DocumentKind::Modes => again::<ModesDocument>(document),
+        DocumentKind::OneHarmonic => again::<OneHarmonicDocument>(document),
         DocumentKind::SlowEquations => again::<SlowEquationsDocument>(document),
         DocumentKind::Comparison => again::<ComparisonDocument>(document),
         DocumentKind::Impact => again::<ImpactDocument>(document),
@@ -153,6 +155,8 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/modes", ".toml") {
         add(&["derive", &file.to_string_lossy()]);
     }
+    let cubic = "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0";
+    add(&["derive", cubic, "--method", "harmonic-balance", "--at", "K=1/8,A=1/2"]);
     for file in files("examples/slow", ".toml") {
         add(&["derive", &file.to_string_lossy()]);
     }

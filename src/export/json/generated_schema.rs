@@ -11,9 +11,10 @@ use super::{
     AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
     ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OptimizationDocument,
-    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument,
-    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OneHarmonicDocument,
+    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
+    SweepDocument,
 };
 use crate::solution::Method;
 
@@ -24,6 +25,7 @@ impl DocumentKind {
         let mut schema = match self {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
             Self::Modes => generator.into_root_schema_for::<ModesDocument>(),
+            Self::OneHarmonic => generator.into_root_schema_for::<OneHarmonicDocument>(),
             Self::SlowEquations => generator.into_root_schema_for::<SlowEquationsDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
             Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),

@@ -30,6 +30,7 @@ pub mod materials;
 pub mod modes;
 pub mod motion;
 pub mod number;
+mod one_harmonic;
 pub mod optimization;
 pub mod points;
 pub mod primary;
@@ -65,6 +66,10 @@ pub use materials::{MaterialsDocument, materials};
 pub use modes::{ModesDocument, modes};
 pub use motion::{MotionDocument, MotionSweepDocument, motion, motion_sweep};
 pub use number::{Constant, Map, Polynomial, Term};
+pub use one_harmonic::{
+    OneHarmonicBranchDocument, OneHarmonicDocument, OneHarmonicFamilyDocument,
+    OneHarmonicMotionDocument, one_harmonic,
+};
 pub use optimization::{OptimizationDocument, optimization};
 pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep};
 pub use response::{ResponseDocument, response};

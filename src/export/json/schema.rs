@@ -9,6 +9,8 @@ pub enum DocumentKind {
     Solution,
     /// `derive` of coupled equations.
     Modes,
+    /// `derive --method harmonic-balance` of coupled equations.
+    OneHarmonic,
     /// `derive --method multiple-scales` of coupled equations.
     SlowEquations,
     /// `compare`.
@@ -59,9 +61,10 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Solution,
         Self::Modes,
+        Self::OneHarmonic,
         Self::SlowEquations,
         Self::Comparison,
         Self::Impact,
@@ -92,6 +95,9 @@ impl DocumentKind {
         match self {
             Self::Solution => ["lindstedt/solution/1", include_str!("schemas/solution.json")],
             Self::Modes => ["lindstedt/modes/1", include_str!("schemas/modes.json")],
+            Self::OneHarmonic => {
+                ["lindstedt/one-harmonic/1", include_str!("schemas/one-harmonic.json")]
+            }
             Self::SlowEquations => {
                 ["lindstedt/slow-equations/1", include_str!("schemas/slow-equations.json")]
             }

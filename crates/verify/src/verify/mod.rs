@@ -30,6 +30,7 @@ mod in_time;
 mod largest;
 mod motions;
 mod normal_mode;
+mod one_harmonic;
 mod orbit;
 mod reach;
 mod slope;
@@ -45,6 +46,7 @@ pub use driven::JudgedState;
 pub use error::VerificationError;
 pub use motions::{Motions, TimedState, motions, true_motion};
 pub use normal_mode::{JudgedMode, judge_mode};
+pub use one_harmonic::{JudgedOneHarmonic, OneHarmonicMotion, judge_one_harmonic};
 pub use slow_equations::{
     JudgedSlowMotion, JudgedSteadyMotion, JudgedTransient, judge_slow_motion,
 };

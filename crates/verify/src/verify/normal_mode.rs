@@ -159,7 +159,7 @@ fn slope(errors: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// The values as numbers.
-fn checked(
+pub(super) fn checked(
     system: &FreeSystem,
     amplitude: Symbol,
     at: &Values,
@@ -210,7 +210,7 @@ fn formula_at(
 }
 
 /// The equations with numbers, and the definition of the amplitude.
-struct TrueMode {
+pub(super) struct TrueMode {
     solver: Solver,
     /// v.
     shape: Vec<f64>,
@@ -219,6 +219,17 @@ struct TrueMode {
     linear_frequency: f64,
     along: usize,
     amplitude: AmplitudeConvention,
+}
+
+/// The equations with numbers.
+fn solver(
+    system: &FreeSystem,
+    values: &BTreeMap<Symbol, f64>,
+) -> Result<Solver, VerificationError> {
+    let rates = &system.equations.rates;
+    Ok(System::new(&rates.states, Symbol::new("t"), &rates.right, values)
+        .map_err(|error| VerificationError::NoSystem(error.to_string()))?
+        .solver(&[], &SystemOptions { step_limit: 20_000, ..SystemOptions::default() }))
 }
 
 impl TrueMode {
@@ -241,18 +252,40 @@ impl TrueMode {
             entries.iter().map(number).collect()
         };
         let (shape, projection) = (all(&mode.linear.shape)?, all(&mode.linear.modal)?);
-        let rates = &system.equations.rates;
-        let solver = System::new(&rates.states, Symbol::new("t"), &rates.right, &values)
-            .map_err(|error| VerificationError::NoSystem(error.to_string()))?
-            .solver(&[], &SystemOptions { step_limit: 20_000, ..SystemOptions::default() });
         Ok(Self {
-            solver,
+            solver: solver(system, &values)?,
             shape,
             projection,
             linear_frequency: number(&mode.linear.square)?.sqrt(),
             along: mode.along,
             amplitude: mode.amplitude,
         })
+    }
+
+    /// The true motions of a system whose amplitude is the start of the first coordinate.
+    pub(super) fn from_start(
+        system: &FreeSystem,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Self, VerificationError> {
+        let count = system.equations.coordinates.len();
+        let values = numbers.iter().map(|(name, value)| (*name, *value));
+        let values = values.chain([(Symbol::new("pi"), PI)]).collect();
+        Ok(Self {
+            solver: solver(system, &values)?,
+            shape: vec![0.0; count],
+            projection: vec![0.0; count],
+            linear_frequency: f64::NAN,
+            along: 0,
+            amplitude: AmplitudeConvention::Initial,
+        })
+    }
+
+    /// The frequency of the true motion near one with these starts of the coordinates and this
+    /// frequency, its first coordinate starting there; `None` if there is none.
+    pub(super) fn frequency_near(&self, start: &[f64], frequency: f64) -> Option<f64> {
+        let guess = start.iter().copied().chain([PI / frequency]);
+        let guess = DVector::from_iterator(start.len() + 1, guess);
+        Some(self.motion_near(guess, *start.first()?)?.frequency())
     }
 
     /// The motions at parts of an amplitude up to all of it, followed from the linear mode.

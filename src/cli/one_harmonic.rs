@@ -1,0 +1,81 @@
+//! `lindstedt derive --method harmonic-balance` of coupled equations: modes with one harmonic.
+
+use crate::coupled::CoupledEquations;
+use crate::export::json;
+use crate::modes::one_harmonic_modes;
+use crate::problem::{Order, Problem};
+use crate::report::{self, OneHarmonicReport};
+use crate::solution::{AmplitudeConvention, Method};
+use crate::verify::judge_one_harmonic;
+
+use super::answer::{Answer, no_such};
+use super::derive::{DeriveArguments, amplitude, as_meant, exact_values, unjudged};
+use super::modes::{free_system, refused};
+use super::{Failure, Format, Outcome, files, json_text, tolerance};
+
+/// Derives the modes with one harmonic, and judges them where values are given.
+///
+/// # Errors
+/// Options of other methods; equations that have no such modes in closed form.
+pub(super) fn run(
+    arguments: &DeriveArguments,
+    equations: CoupledEquations,
+    problem: &Problem,
+) -> Result<Outcome, Failure> {
+    let question = &arguments.question;
+    let usage = |text: String| Err(Failure::Usage(text));
+    let name = Method::HarmonicBalance.name();
+    if !matches!(question.order.or(problem.order), None | Some(Order::Power(1))) {
+        return usage(format!(
+            "--order: --method {name} of coupled equations has one harmonic, in closed form"
+        ));
+    }
+    if arguments.mode.is_some() {
+        return usage(format!(
+            "--mode says nothing to --method {name}, whose families may have several modes"
+        ));
+    }
+    let convention = amplitude(question, problem.amplitude.as_deref())?;
+    if convention == Some(AmplitudeConvention::FirstHarmonic) {
+        return usage(format!(
+            "--amplitude: with one harmonic the amplitude is that of the first coordinate, {}",
+            AmplitudeConvention::Initial.name()
+        ));
+    }
+    let system = free_system(equations, problem)?;
+    let letters = system.letters;
+    let _letters = letters.in_force();
+    let modes = one_harmonic_modes(&system)
+        .map_err(|error| refused(&error, problem.equation.as_deref()))?;
+    let values = exact_values(&question.at, problem.values_of_motion())?;
+    let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
+    let asked = values.is_some() || arguments.common.tolerance.is_some();
+    let judged = match asked {
+        true => {
+            let values = values.unwrap_or_default();
+            let judged = judge_one_harmonic(&modes, &values, tolerance(&arguments.common));
+            Some(judged.map_err(|error| unjudged(&error))?)
+        }
+        false => None,
+    };
+    let report = OneHarmonicReport { modes: &modes, judged: judged.as_ref() };
+    let answer = Answer {
+        document: &report::one_harmonic(&report),
+        width: files::width(arguments.common.output.as_deref()),
+        picture: None,
+        other: &|format| {
+            match format {
+            Format::Json => json_text(&json::one_harmonic(&report)),
+            Format::Code(_) => Err(Failure::Usage(
+                "there is no program of the modes of coupled equations: --format json has their formulas"
+                    .to_owned(),
+            )),
+            format => no_such(format),
+        }
+        },
+    };
+    Ok(Outcome {
+        verdict: judged.as_ref().map(|judged| judged.verdict),
+        ..answer.outcome(&arguments.common)?
+    })
+}

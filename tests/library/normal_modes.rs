@@ -8,10 +8,13 @@ use lindstedt::coupled::CoupledEquations;
 use lindstedt::exact::rational::to_f64;
 use lindstedt::expr::CompiledFunction;
 use lindstedt::mechanics::Mechanism;
-use lindstedt::modes::{FreeSystem, ModeError, ModeOptions, NonlinearMode, NormalModes, derive};
+use lindstedt::modes::{
+    FreeSystem, ModeError, ModeOptions, NonlinearMode, NormalModes, OneHarmonicFamily, derive,
+    one_harmonic_modes,
+};
 use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::solution::{AmplitudeConvention, defined_values};
-use lindstedt::verify::judge_mode;
+use lindstedt::verify::{judge_mode, judge_one_harmonic};
 use lindstedt::{Symbol, Verdict};
 
 const PAIR: &str = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
@@ -419,4 +422,97 @@ fn what_has_no_modes_says_why() {
         let error = found.modes[0].as_ref().err().map(ToString::to_string).unwrap_or_default();
         assert!(error.contains(words), "{equations}: {error}");
     }
+}
+
+/// The first harmonic of the equations along `x = A cos theta`, `y = r x`, by sums over a turn.
+fn unbalanced(system: &FreeSystem, values: &BTreeMap<Symbol, f64>, state: [f64; 3]) -> f64 {
+    const POINTS: usize = 64;
+    let [amplitude, ratio, frequency] = state;
+    let names = &system.equations.coordinates;
+    let mut largest = 0.0_f64;
+    for (left, right) in &system.equations.equations {
+        let mut sum = 0.0;
+        for point in 0..POINTS {
+            let theta = 2.0 * PI * point as f64 / POINTS as f64;
+            let mut at = values.clone();
+            for (name, size) in names.iter().zip([amplitude, ratio * amplitude]) {
+                let velocity = name.derivative();
+                at.insert(*name, size * theta.cos());
+                at.insert(velocity, -size * frequency * theta.sin());
+                at.insert(velocity.derivative(), -size * frequency * frequency * theta.cos());
+            }
+            sum += (left - right).evaluate(&at).expect("a force") * theta.cos();
+        }
+        largest = largest.max((2.0 * sum / POINTS as f64).abs());
+    }
+    largest / amplitude
+}
+
+#[test]
+fn one_harmonic_balances_at_every_member_of_a_family() {
+    for (equations, values) in [
+        (PAIR, vec![("A", 1.1264)]),
+        (
+            "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0",
+            vec![("A", 0.7), ("K", 0.2)],
+        ),
+        (
+            "x'' + x + x^3 + k*(x - y) = 0; y'' + y + y^3 + k*(y - x) = 0",
+            vec![("A", 1.0), ("k", 0.125)],
+        ),
+        (
+            "x'' + x + x^3 + k*(x - y) = 0; y'' + 2*y + x^2*y + k*(y - x) = 0",
+            vec![("A", 0.5), ("k", 0.3)],
+        ),
+        ("2*x'' + x'' * x^2 + x*x'^2 + 3*x - y = 0; y'' + 2*y - x = 0", vec![("A", 0.4)]),
+    ] {
+        let system = FreeSystem::parse(equations).expect(equations);
+        let modes = match one_harmonic_modes(&system) {
+            Ok(modes) => modes,
+            Err(error) => panic!("{equations}: {error}"),
+        };
+        let text: Vec<String> =
+            values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let judged = judge_one_harmonic(&modes, &text.join(", ").parse().expect("values"), 0.1);
+        let judged = judged.expect("judged");
+        assert!(judged.motions.len() >= 2, "{equations}: {judged:?}");
+        let known = values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
+        for motion in &judged.motions {
+            let left = unbalanced(&system, &known, [values[0].1, motion.ratio, motion.frequency]);
+            assert!(left < 1e-10, "{equations}: {motion:?} leaves {left}");
+        }
+    }
+}
+
+#[test]
+fn localised_modes_branch_off_where_it_was_published() {
+    // Vakakis and Rand 1992: at K = 1/4, at any amplitude.
+    let cubic =
+        FreeSystem::parse("x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0")
+            .expect("equations");
+    let modes = one_harmonic_modes(&cubic).expect("modes");
+    let similar =
+        modes.families.iter().filter(|family| matches!(family, OneHarmonicFamily::Similar { .. }));
+    assert_eq!(similar.count(), 4);
+    let [branch] = modes.branch_points.as_slice() else { panic!("{:?}", modes.branch_points) };
+    let (left, right) = &branch.at;
+    assert_eq!(
+        (branch.ratio.to_string(), left.to_string(), right.to_string()),
+        ("-1".into(), "K".into(), "1/4".into())
+    );
+    // Of numbers on both sides of it the two others are there, or not.
+    for (coupling, count) in [("K = 0.24, A = 1/2", 4), ("K = 0.26, A = 1/2", 2)] {
+        let judged =
+            judge_one_harmonic(&modes, &coupling.parse().expect("values"), 0.05).expect("judged");
+        assert_eq!(judged.motions.len(), count, "{coupling}: {judged:?}");
+    }
+    let refused = |equations: &str| {
+        one_harmonic_modes(&FreeSystem::parse(equations).expect(equations)).expect_err(equations)
+    };
+    assert!(matches!(refused("x'' + x + x^2 = 0; y'' + 2*y = 0"), ModeError::EvenDegree(_)));
+    assert!(matches!(refused("x'' + sin(x) = 0; y'' + 2*y = 0"), ModeError::NotPolynomial(_)));
+    assert!(matches!(
+        refused("x'' + x = 0; y'' + 2*y = 0; z'' + 3*z + z^3 = 0"),
+        ModeError::NotTwo(3)
+    ));
 }

@@ -98,7 +98,8 @@ fn an_uncoupled_coordinate_beside_it_changes_nothing() {
         let angle = std::f64::consts::PI / r;
         let friction = angle.sin() / (r * (1.0 + angle.cos()));
         let peak = ((1.0 - r * r).powi(-2) - (0.2 * friction).powi(2)).sqrt();
-        assert!((point.peak / peak - 1.0).abs() < 1e-9, "{r}: {} {peak}", point.peak);
+        // The highest point is found by parabolas, beside the jump of the acceleration there.
+        assert!((point.peak / peak - 1.0).abs() < 2e-6, "{r}: {} {peak}", point.peak);
         let other = (2.0 - r * r).hypot(r / 10.0).recip();
         assert!((point.coordinates[1].amplitude / other - 1.0).abs() < 1e-9, "{point:?}");
         assert_eq!(point.stable, Some(true));

@@ -158,7 +158,7 @@ fn motions_and_multipliers_are_those_of_simulation() {
         ),
         // A drive that jumps in time.
         (
-            "x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/5 + (y - x)/10 = 0",
+            "x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/50 + (y - x)/10 = 0",
             [1.5, 1.6],
         ),
     ] {

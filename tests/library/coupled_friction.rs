@@ -72,14 +72,15 @@ fn largest_multiplier(equations: &str, parameter: &str, point: &SteadyMotion) ->
             above.iter().zip(&below).map(|(one, other)| (one - other) / (2.0 * STEP)).collect()
         })
         .collect();
-    // The size of M^k v, k-th root.
+    // The mean growth of M^k v once only the largest are left.
     let (mut vector, mut grown) = (vec![1.0, 0.7, -0.4, 0.3], 0.0);
-    const TURNS: i32 = 400;
-    for _ in 0..TURNS {
+    const BEFORE: i32 = 400;
+    const TURNS: i32 = 4000;
+    for turn in 0..BEFORE + TURNS {
         let next: Vec<f64> =
             (0..4).map(|row| (0..4).map(|k| columns[k][row] * vector[k]).sum()).collect();
         let size = next.iter().map(|value: &f64| value * value).sum::<f64>().sqrt();
-        grown += f64::ln(size);
+        grown += if turn < BEFORE { 0.0 } else { f64::ln(size) };
         vector = next.into_iter().map(|value| value / size).collect();
     }
     (grown / f64::from(TURNS)).exp()
@@ -98,7 +99,8 @@ fn an_uncoupled_coordinate_beside_it_changes_nothing() {
         let angle = std::f64::consts::PI / r;
         let friction = angle.sin() / (r * (1.0 + angle.cos()));
         let peak = ((1.0 - r * r).powi(-2) - (0.2 * friction).powi(2)).sqrt();
-        assert!((point.peak / peak - 1.0).abs() < 1e-9, "{r}: {} {peak}", point.peak);
+        // The highest point is found by parabolas, beside the jump of the acceleration there.
+        assert!((point.peak / peak - 1.0).abs() < 2e-6, "{r}: {} {peak}", point.peak);
         let other = (2.0 - r * r).hypot(r / 10.0).recip();
         assert!((point.coordinates[1].amplitude / other - 1.0).abs() < 1e-9, "{point:?}");
         assert_eq!(point.stable, Some(true));
@@ -156,21 +158,24 @@ fn motions_and_multipliers_are_those_of_simulation() {
         ),
         // A drive that jumps in time.
         (
-            "x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/5 + (y - x)/10 = 0",
+            "x'' + x'/20 + x + x^3/10 + (x - y)/10 = sgn(sin(w*t)); y'' + y'/20 + y + sgn(y')/50 + (y - x)/10 = 0",
             [1.5, 1.6],
         ),
     ] {
         let found = answer(text, "w", range);
         assert!(found.error.is_some_and(|error| error < 1e-6), "{text}: {:?}", found.error);
-        for w in range {
-            let point = at(&found, w);
+        let is_end = |point: &&SteadyMotion| range.contains(&point.parameter);
+        let ends: Vec<_> = points(&found).filter(is_end).collect();
+        assert!(ends.len() > 1, "{text}");
+        for point in ends {
+            let w = point.parameter;
             let (from, period) = (start(point), std::f64::consts::TAU / w);
             let end = simulated(text, ("w", w), &from, period);
             let apart = from.iter().zip(&end).map(|(one, other)| (one - other).abs());
             assert!(apart.fold(0.0, f64::max) < 1e-8, "{text}: {from:?} {end:?}");
             let [multiplier, _] = point.multipliers.expect("multipliers");
             let expected = largest_multiplier(text, "w", point);
-            assert!((multiplier.norm() - expected).abs() < 2e-3, "{text}: {multiplier} {expected}");
+            assert!((multiplier.norm() - expected).abs() < 1e-3, "{text}: {multiplier} {expected}");
         }
     }
 }

@@ -520,6 +520,9 @@ class Response(Answer):
         simulated: Simulations that were let go beside stable points and have settled.
         elsewhere: Simulations that have settled on something that is not among the branches.
         verification: The judgement of all points.
+        exhausted: Whether the search for motions of coupled equations was ended because it had
+            taken as much work as it may: branches may be missing or end early, and bifurcations
+            are not listed. Left out where it was not.
         complete: Whether it was followed to its end.
     """
 
@@ -550,6 +553,7 @@ class Response(Answer):
     simulated: tuple[SimulatedPoint, ...]
     elsewhere: tuple[ElsewherePoint, ...]
     verification: ResponseVerification
+    exhausted: bool | None
     complete: bool
 
 
@@ -581,6 +585,7 @@ Response.FIELDS = (
     ("simulated", "simulated", several(SimulatedPoint.from_json)),
     ("elsewhere", "elsewhere", several(ElsewherePoint.from_json)),
     ("verification", "verification", ResponseVerification.from_json),
+    ("exhausted", "exhausted", None),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'of', 'ripple', 'stable_motions'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'of', 'ripple', 'stable_motions'])

@@ -14,7 +14,7 @@ use lindstedt::modes::{
 };
 use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::solution::{AmplitudeConvention, defined_values};
-use lindstedt::verify::{judge_mode, judge_one_harmonic};
+use lindstedt::verify::{VerificationError, judge_mode, judge_one_harmonic};
 use lindstedt::{Symbol, Verdict};
 
 const PAIR: &str = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
@@ -217,9 +217,18 @@ fn random_systems_err_as_their_order_promises() {
         let equations = equations.join("; ");
         let found = modes_of(&equations, &to_order(2));
         for mode in found.modes.iter().flatten() {
-            let values = "a = 1/10".parse().expect("a value");
+            // The amplitude is that of the first coordinate, which may be the one that moves least.
+            let largest = mode.linear.shape.iter().filter_map(|entry| entry.as_number());
+            let largest = largest.map(|entry| to_f64(&entry).abs()).fold(1.0, f64::max);
+            let values = format!("a = 1/{}", (10.0 * largest).ceil()).parse().expect("a value");
             let judged = judge_mode(&found.system, mode, &values, 0.01);
-            let judged = judged.unwrap_or_else(|error| panic!("{equations}: {error}"));
+            let judged = match judged {
+                Ok(judged) => judged,
+                // Beside an internal resonance, which is said, the motion may turn back at a smaller
+                // amplitude.
+                Err(VerificationError::NoMode { .. }) if !mode.near.is_empty() => continue,
+                Err(error) => panic!("{equations}: {error}"),
+            };
             // omega^2 is even in the amplitude of the first harmonic; near a resonance the next terms
             // are large, and the exponent is seen at smaller amplitudes only.
             if let Some(slope) = judged.slope {

@@ -120,9 +120,10 @@ impl PrimaryRun<'_> {
             let (time, end, point) = flight.first_event(barriers, slip, piece);
             let work = self.work_between(time, |t| flight.point(t).state);
             let [viscous, friction, dashpot, force] = work;
-            let change = self.case.energy(point.state) - before;
-            let astray = change + viscous + friction + dashpot - force;
-            (astray.abs() <= MOST_ASTRAY * before.abs()).then_some((time, end, point, work))
+            let after = self.case.energy(point.state);
+            let astray = after - before + viscous + friction + dashpot - force;
+            (astray.abs() <= MOST_ASTRAY * (before.max(after) + force.abs()))
+                .then_some((time, end, point, work))
         });
         let Some((time, end, point, work)) = balanced else {
             return Ok(false);

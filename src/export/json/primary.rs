@@ -49,14 +49,11 @@ pub struct PrimaryDocument {
     pub locked: Alone,
     /// How the motion was found: by `integration`, or as a `chain` of closed forms.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ROUTES)))]
-    #[serde(default = "integration")]
     pub route: String,
     /// The number of phases of a chain that were integrated for want of a closed form; null where
     /// the motion was integrated.
-    #[serde(default)]
     pub integrated_phases: Option<usize>,
     /// The motion of a chain by integration; null where the motion was integrated.
-    #[serde(default)]
     pub judge: Option<PrimaryJudge>,
     /// Why the run ended.
     pub stopped: String,
@@ -75,11 +72,6 @@ pub struct PrimaryJudge {
     pub long_run: f64,
     /// The number of impacts.
     pub impacts: usize,
-}
-
-/// The route of a document that does not say it.
-fn integration() -> String {
-    Integrator::Taylor.route().to_owned()
 }
 
 /// The numbers of main mass and pendulum, dimensionless.

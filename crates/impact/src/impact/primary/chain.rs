@@ -125,10 +125,13 @@ impl PrimaryRun<'_> {
             (astray.abs() <= MOST_ASTRAY * (before.max(after) + force.abs()))
                 .then_some((time, end, point, work))
         });
-        let Some((time, end, point, work)) = balanced else {
+        let Some((time, end, mut point, work)) = balanced else {
             return Ok(false);
         };
         self.add_work(work);
+        if end == FlightEnd::Rest {
+            point.state.velocity = 0.0;
+        }
         self.record_turns(time, self.state, point.state, |t| flight.point(t).state);
         self.state = point.state;
         self.advance(time, PrimarySegment::ClosedFlight(Box::new(*start)));

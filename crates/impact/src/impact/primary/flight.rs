@@ -5,17 +5,17 @@
 //! x'' + (R + 1) y'' + delta y' + kappa y = f sin(eta t) + N_y,     N_y = (x - sin x)''
 //! x - sin x = (X^4/384) x + (1/6 - X^2/96) x^3,   1 - cos x = X^4/192 + (1/2 - X^2/24) x^2     for |x| <= X
 //! z = sum of C_k exp(lambda_k t)           lambda_k: both modes, 0 for dry friction in direction d, +-i eta for the force
-//! q_j' = s_j q_j + phi_j N/m_j,            N = sum of N_k exp(Lambda_k t), Lambda_k the sums of three of lambda_k
-//! q_j = exp(S_j t) (b_j + w_j t + ...) + sum of n_jk exp(Lambda_k t)/(Lambda_k - S_j)
-//! S_j = s_j + the part of phi_j N/m_j in proportion to q_j, over q_j
+//! q_j' = s_j q_j + phi_j N/m_j,            N = sum of N_k exp(Lambda_k t) along the motion without N
+//! q_j = exp(s_j t) (b_j + w_j t + ...) + sum of n_jk exp(Lambda_k t)/(Lambda_k - s_j)
 //! ```
 //!
-//! S_j is the frequency of the amplitude, as 1 - A^2/16 for the pendulum alone; the difference
-//! to s_j is taken off N, so that the sum is exact to third order for any S_j. Where a sum of three
-//! exponents is S_j itself the answer grows as t, and is w_j. The terms of fifth order of sine and
-//! cosine are economised by Chebyshev's polynomials: of x^5/120 a sixteenth of its largest value is
-//! left. What is left out else is of second order in (S_j - s_j) t: a flight is divided into pieces
-//! of a third of the faster swing.
+//! Lambda_k are the sums of three of lambda_k, and lambda_k themselves. Where one of them is s_j itself
+//! the answer grows as t, and is w_j: so the frequency falls with the amplitude, as 1 - A^2/16 for the
+//! pendulum alone. The terms of fifth order of sine and cosine are economised by Chebyshev's
+//! polynomials: of x^5/120 a sixteenth of its largest value is left. What is left out else is the answer
+//! to the change of N by the answer to N, of fifth order in x and of fourth in t: a flight is divided
+//! into pieces of a third of the faster swing or less, each of which begins with the state that the last
+//! one left.
 //!
 //! The first event is found by steps that no event can be within: with a distance d that closes
 //! with speed w, and |d''| <= B, it is not before 2 d/(w + sqrt(w^2 + 2 B d)). Near an event that is
@@ -65,9 +65,9 @@ impl Wave {
     }
 }
 
-/// A mode in a flight: 2 Re(phi exp(S t) (b + w t + v t^2)).
+/// A mode in a flight: 2 Re(phi exp(s t) (b + w t + v t^2)).
 #[derive(Clone, Copy, Debug, Default)]
-struct ShiftedMode {
+struct FlightMode {
     exponent: Complex<f64>,
     shape: [Complex<f64>; 2],
     /// b, w, v.
@@ -89,7 +89,7 @@ pub(super) struct FlightStart {
 /// A piece of a flight; times count from its beginning.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClosedFlight {
-    modes: [ShiftedMode; 2],
+    modes: [FlightMode; 2],
     /// eta.
     frequency: f64,
     /// The greatest angle for which sine and cosine are economised.
@@ -148,12 +148,11 @@ impl Economised {
     }
 }
 
-/// The terms of the trial motion: exponents, coefficients of x and y, and of y''.
+/// The terms of the motion without N: exponents, coefficients of x and of y''.
 struct TrialMotion {
     economised: Economised,
     exponents: [Complex<f64>; EXPONENTS],
     x: [Complex<f64>; EXPONENTS],
-    y: [Complex<f64>; EXPONENTS],
     accelerations: [Complex<f64>; EXPONENTS],
 }
 
@@ -194,7 +193,6 @@ impl ClosedFlight {
             economised: Economised::new(0.0),
             exponents: [ZERO; EXPONENTS],
             x: [ZERO; EXPONENTS],
-            y: [ZERO; EXPONENTS],
             accelerations: [ZERO; EXPONENTS],
         };
         let mut present = [0, 1, 2, 3, 0, 0, 0];
@@ -217,8 +215,9 @@ impl ClosedFlight {
             for (place, sign) in [(FORCE, 1.0), (CONJUGATE[FORCE], -1.0)] {
                 let turned = |value: Complex<f64>| Complex::new(value.re, sign * value.im);
                 trial.exponents[place] = exponent * sign;
-                [trial.x[place], trial.y[place]] = answer.map(turned);
-                trial.accelerations[place] = exponent * exponent * trial.y[place];
+                let [x, y] = answer.map(turned);
+                trial.x[place] = x;
+                trial.accelerations[place] = exponent * exponent * y;
                 present[count] = place;
                 count += 1;
             }
@@ -241,55 +240,32 @@ impl ClosedFlight {
             + forces.friction.abs()
             + 2.0 * size(trial.x[FORCE]);
         let widest = widest.min(farthest);
-        if !(widest <= WIDEST) {
+        if widest > WIDEST {
             return false;
         }
         trial.economised = Economised::new(widest);
-        let set_modes = |trial: &mut TrialMotion, exponents: [Complex<f64>; 2]| {
-            for (index, (mode, amplitude)) in modes.modes.iter().zip(amplitudes).enumerate() {
-                let [x, y] = mode.shape.map(|shape| shape * amplitude);
-                let acceleration = exponents[index] * exponents[index] * y;
-                for (place, turn) in [(2 * index, false), (2 * index + 1, true)] {
-                    let turned = |value: Complex<f64>| if turn { value.conj() } else { value };
-                    trial.exponents[place] = turned(exponents[index]);
-                    trial.x[place] = turned(x);
-                    trial.y[place] = turned(y);
-                    trial.accelerations[place] = turned(acceleration);
-                }
-            }
-        };
         let roots = modes.modes.map(|mode| mode.root);
-        set_modes(&mut trial, roots);
+        for (index, (mode, amplitude)) in modes.modes.iter().zip(amplitudes).enumerate() {
+            let [x, y] = mode.shape.map(|shape| shape * amplitude);
+            let acceleration = mode.root * mode.root * y;
+            for (place, turn) in [(2 * index, false), (2 * index + 1, true)] {
+                let turned = |value: Complex<f64>| if turn { value.conj() } else { value };
+                trial.exponents[place] = turned(mode.root);
+                trial.x[place] = turned(x);
+                trial.accelerations[place] = turned(acceleration);
+            }
+        }
         let projected = |index: usize, [x, y]: [Complex<f64>; 2]| {
             let [p, q] = modes.modes[index].projection;
             p * x + q * y
         };
-        let shifts: [Complex<f64>; 2] = [0, 1].map(|index| {
-            let own = 2 * index;
-            let mut force = projected(index, trial.cubic([own, own, own + 1], 3.0))
-                + projected(index, trial.linear(own));
-            for other in [2 - own, CONSTANT, FORCE] {
-                if present[..count].contains(&other) {
-                    let orders = if other == CONSTANT { 3.0 } else { 6.0 };
-                    force += projected(index, trial.cubic([own, other, CONJUGATE[other]], orders));
-                }
-            }
-            // An amplitude that is nearly zero has no frequency of its own.
-            match amplitudes[index].norm_sqr() > 1e-100 {
-                true => force / amplitudes[index],
-                false => ZERO,
-            }
-        });
-        let exponents = [0, 1].map(|index| roots[index] + shifts[index]);
-        set_modes(&mut trial, exponents);
-        let mut polynomials =
-            [0, 1].map(|index| [amplitudes[index], -shifts[index] * amplitudes[index], ZERO]);
+        let mut polynomials = amplitudes.map(|amplitude| [amplitude, ZERO, ZERO]);
         // The answer of both modes to a force N exp(Lambda t): its coefficients of x and y.
         let mut answer = |sum: Complex<f64>, force: [Complex<f64>; 2]| {
             let mut found = [ZERO; 2];
             for (index, mode) in modes.modes.iter().enumerate() {
                 let strength = projected(index, force);
-                let apart = sum - exponents[index];
+                let apart = sum - roots[index];
                 let polynomial = &mut polynomials[index];
                 if apart.norm_sqr() < RESONANT * RESONANT {
                     polynomial[1] += strength;
@@ -343,8 +319,8 @@ impl ClosedFlight {
                 }
             }
         }
-        self.modes = [0, 1].map(|index| ShiftedMode {
-            exponent: exponents[index],
+        self.modes = [0, 1].map(|index| FlightMode {
+            exponent: roots[index],
             shape: modes.modes[index].shape,
             polynomial: polynomials[index],
         });
@@ -369,7 +345,7 @@ impl ClosedFlight {
             let [b, w, v] = mode.polynomial.map(size);
             let root = size(mode.exponent);
             growth = growth.max(mode.exponent.re);
-            // The derivatives of the polynomial and of exp(S t).
+            // The derivatives of the polynomial and of exp(s t).
             let [zeroth, first, second] = [b + (w + v * time) * time, w + 2.0 * v * time, 2.0 * v];
             let own = match is_third {
                 true => root * (root * (root * zeroth + 3.0 * first) + 3.0 * second),
@@ -566,8 +542,8 @@ mod tests {
         for (mass, ratio) in CASES {
             let error = |size: f64| {
                 let mut own = case(mass, ratio, 0.02, [size, -0.5 * size, 0.3 * size, size]);
-                own.primary.force = 0.2 * mass * size;
-                own.primary.frequency = 1.3;
+                own.primary.force = 0.05 * mass * size;
+                own.primary.frequency = 1.9;
                 let truth = simulate_primary(own, &settings).expect("a motion");
                 let truth = truth.state_at(1.0).expect("a state");
                 let state = flight(&own, 0.0).point(1.0).state;

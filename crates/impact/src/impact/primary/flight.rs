@@ -541,8 +541,8 @@ mod tests {
         let settings = PrimarySettings { duration: 1.0, ..PrimarySettings::default() };
         for (mass, ratio) in CASES {
             let error = |size: f64| {
-                let mut own = case(mass, ratio, 0.02, [size, -0.5 * size, 0.3 * size, size]);
-                own.primary.force = 0.05 * mass * size;
+                let mut own = case(mass, ratio, 0.02, [size, -0.5 * size, 0.1 * size, 0.2 * size]);
+                own.primary.force = 0.02 * mass * size;
                 own.primary.frequency = 1.9;
                 let truth = simulate_primary(own, &settings).expect("a motion");
                 let truth = truth.state_at(1.0).expect("a state");

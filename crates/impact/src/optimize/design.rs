@@ -2,7 +2,7 @@
 //!
 //! The motion is the chain of closed forms, a few microseconds; if it has none, as for a heavily
 //! damped swing, it is integrated. A pendulum that a main mass carries is followed together with
-//! it, likewise, in some hundred microseconds or more.
+//! it, likewise, in a millisecond or two.
 
 use super::question::OptimizationProblem;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};

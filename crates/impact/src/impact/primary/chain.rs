@@ -5,7 +5,7 @@
 //! pendulum or a hard barrier carries it, it is a [`RestingPendulum`]. Each begins with the state
 //! that the last one left. Where no closed form is good enough the phase is integrated, and counted:
 //! swings beyond 1.6 rad, pieces whose energy does not balance, contacts that are deep, soft and
-//! pressed, or stopped by friction, and those that are left without force.
+//! pressed, or stopped by friction.
 
 use super::bounce::{ClosedBounce, push, relative_mass};
 use super::flight::{ClosedFlight, FlightEnd, FlightForces, FlightStart};

@@ -17,6 +17,8 @@
 //! impacts, the energy balance, and the rest time of the main mass, with those of the same main
 //! mass without damper and with the damper locked, which are linear and known in closed form. A
 //! contact is followed in the variable of `regularised`, in which it is analytic through the touch.
+//! With [`PrimarySettings::chain`] nothing is integrated where there is a closed form: `modes`,
+//! `flight`, `bounce` and `resting` have those of the phases, `chain` puts them together.
 //!
 //! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
 

@@ -4,8 +4,8 @@ use crate::export::json::points::PrimaryPoint;
 use crate::export::json::shard::Shard;
 use crate::export::{json, primary};
 use crate::impact::primary::{
-    PrimaryCase, PrimaryError, PrimaryParameter, PrimaryRow, PrimarySettings, PrimaryStop,
-    simulate_primary, sweep_primary,
+    PrimaryCase, PrimaryError, PrimaryMotion, PrimaryParameter, PrimaryRow, PrimarySettings,
+    PrimaryStop, simulate_primary, sweep_primary,
 };
 use crate::impact::sweep::{Axis, grid_size, grid_values};
 use crate::problem::Problem;
@@ -18,7 +18,7 @@ use super::progress::{MOTIONS, PartsBar};
 use super::session;
 use super::shard::{self, Points};
 use super::simulate::{
-    SimulateArguments, TOGETHER, check_format, check_samples, check_varied, inputs,
+    CHAIN_TOLERANCE, SimulateArguments, TOGETHER, check_format, check_samples, check_varied, inputs,
 };
 use super::{Failure, Format, Outcome, json_text};
 
@@ -33,10 +33,19 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
 fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    let settings = PrimarySettings { interrupt: session::interrupt(), ..file.settings };
+    let settings = settings(asked, file.settings);
     check_samples(&asked.sample, settings.duration, "`duration` in [run]")?;
     let motion = simulate_primary(file.case, &settings)?;
-    let report = PrimaryReport { motion: &motion, units: &file.units, samples: &asked.sample };
+    let judge = match asked.chain {
+        true => Some(simulate_primary(file.case, &PrimarySettings { chain: false, ..settings })?),
+        false => None,
+    };
+    let report = PrimaryReport {
+        motion: &motion,
+        units: &file.units,
+        samples: &asked.sample,
+        judge: judge.as_ref(),
+    };
     let answer = Answer {
         document: &report::primary(&report),
         width: width(common.output.as_deref()),
@@ -47,7 +56,10 @@ fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, F
             format => no_such(format),
         },
     };
-    let kept = motion.energy.residual <= common.tolerance.unwrap_or(TRUSTED);
+    let kept = match &judge {
+        Some(judge) => is_near(&motion, judge, common.tolerance.unwrap_or(CHAIN_TOLERANCE)),
+        None => motion.energy.residual <= common.tolerance.unwrap_or(TRUSTED),
+    };
     Ok(Outcome {
         note: match report.doubt() {
             _ if !motion.is_complete() => {
@@ -59,6 +71,23 @@ fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, F
         partial: !report.is_complete(),
         ..answer.outcome(common)?
     })
+}
+
+/// The settings of the file, by closed forms where they are asked for.
+fn settings(asked: &SimulateArguments, settings: PrimarySettings) -> PrimarySettings {
+    PrimarySettings { chain: asked.chain, interrupt: session::interrupt(), ..settings }
+}
+
+/// Whether a chain ends as its integration does: with the same rest time, or where there is none
+/// with the same amplitude in the long run.
+fn is_near(motion: &PrimaryMotion, judge: &PrimaryMotion, allowed: f64) -> bool {
+    let driven = motion.case.primary.force != 0.0;
+    let [found, truth] = match (driven, motion.rest_time(), judge.rest_time()) {
+        (false, Ok(found), Ok(truth)) => [found, truth],
+        (false, Ok(_), Err(_)) | (false, Err(_), Ok(_)) => return false,
+        _ => [motion, judge].map(|motion| motion.largest_since(0.75 * motion.end)),
+    };
+    judge.is_complete() && (found - truth).abs() <= allowed * truth.abs()
 }
 
 fn run_sweep(
@@ -85,8 +114,7 @@ fn run_sweep(
             parameters.iter().copied().zip(grid_values(axes, number)).collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-        let settings = PrimarySettings { interrupt: session::interrupt(), ..file.settings };
-        motions.push((file.case, settings));
+        motions.push((file.case, settings(asked, file.settings)));
         units.push(file.units);
     }
     if let Some(shard) = asked.shard.shard {

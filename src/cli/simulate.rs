@@ -71,7 +71,7 @@ pub struct SimulateArguments {
     /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with
     /// its formula, and its error against the integration; a sweep is not judged
     #[arg(long, conflicts_with = "integrator")]
-    chain: bool,
+    pub(super) chain: bool,
     /// Follow many motions: a parameter over a range by equal steps, by equal ratios
     /// (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
     /// combination
@@ -179,15 +179,14 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
 /// A main mass that carries the pendulum.
 fn main_mass(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
-        ("--chain", arguments.chain),
         ("--integrator", arguments.integrator.is_some()),
         ("--baseline", arguments.baseline),
         ("--jobs", arguments.jobs.is_some()),
     ];
     if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
-            "{option} belongs to the pendulum alone: a file with [primary] is followed by power series, on all cores where \
-             something is swept"
+            "{option} belongs to the pendulum alone: a file with [primary] is followed by power series or by --chain, on all \
+             cores where something is swept"
         )));
     }
     primary::run(problem, arguments)
@@ -330,7 +329,7 @@ const LONGEST_CHAIN: f64 = 1e4;
 
 /// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in
 /// parts of it.
-const CHAIN_TOLERANCE: f64 = 0.01;
+pub(super) const CHAIN_TOLERANCE: f64 = 0.01;
 
 /// The rest time by the chain and by integration agree, or neither comes to rest and the motions
 /// are near.

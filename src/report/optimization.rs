@@ -135,7 +135,6 @@ fn problem_blocks(study: &Study) -> Vec<Block<'_>> {
 /// The route by which the designs of the search were followed.
 fn route(study: &Study) -> &'static str {
     match study.evaluations() {
-        _ if study.question.main_mass.is_some() => "integration",
         (all, integrated) if integrated == all => "integration",
         (_, 0) => "closed forms",
         _ => "closed forms and integration",
@@ -321,7 +320,6 @@ fn options(study: &Study) -> Vec<String> {
         words.push(format!("no more than {budget} evaluations a run"));
     }
     let by_integration = match question.limits.is_empty() && !question.elastic {
-        _ if question.main_mass.is_some() => "all of them integrated".to_owned(),
         true => format!("{integrated} of them integrated for want of a closed form"),
         false => format!(
             "{integrated} of them integrated for want of a closed form or to see whether they keep the constraints"

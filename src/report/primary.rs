@@ -2,7 +2,7 @@
 //! the damper.
 
 use super::trajectory::{Doubt, TRUSTED};
-use super::{Block, Document, cell};
+use super::{Block, Document, cell, percent};
 use crate::decimal::{decimal, significant};
 use crate::impact::Units;
 use crate::impact::primary::{Alone, PrimaryMotion, PrimaryParameter, PrimaryRow};
@@ -21,13 +21,16 @@ pub struct PrimaryReport<'a> {
     pub units: &'a Units,
     /// The times at which states are requested, in units of 1/omega.
     pub samples: &'a [f64],
+    /// The same motion by integration, if it was followed by closed forms.
+    pub judge: Option<&'a PrimaryMotion>,
 }
 
 impl PrimaryReport<'_> {
-    /// The energy that is not accounted for, if it exceeds [`TRUSTED`]; `None` otherwise.
+    /// The energy that is not accounted for, if it exceeds [`TRUSTED`]; `None` otherwise, and for a
+    /// chain, which is judged by its integration.
     pub fn doubt(&self) -> Option<Doubt> {
         let residual = self.motion.energy.residual;
-        (residual > TRUSTED).then_some(Doubt::Energy(residual))
+        (residual > TRUSTED && !self.motion.by_chain).then_some(Doubt::Energy(residual))
     }
 
     /// Whether the motion covers the whole duration, and its energy is accounted for.
@@ -46,7 +49,7 @@ impl PrimaryReport<'_> {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[] };
+/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None };
 /// let text = lindstedt::export::text::document(&lindstedt::report::primary(&report), 120);
 /// assert!(text.contains("damper locked"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -74,6 +77,9 @@ pub fn primary<'a>(report: &PrimaryReport<'a>) -> Document<'a> {
         energy(report),
         rest_times(report),
     ];
+    if report.motion.by_chain {
+        sections.push(closed_forms(report));
+    }
     if !report.samples.is_empty() {
         sections.push(samples(report));
     }
@@ -233,6 +239,40 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
             "without a dashpot a main mass alone never comes to rest".to_owned(),
         ));
     }
+    blocks
+}
+
+/// The phases of a chain, and how far it is from its integration.
+fn closed_forms<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
+    let motion = report.motion;
+    let phases = motion.phase_starts().count();
+    let mut blocks = vec![
+        Block::Heading("By a chain of closed forms".to_owned()),
+        Block::Note(format!(
+            "{phases} phases, {} of them integrated for want of a closed form",
+            motion.integrated
+        )),
+    ];
+    let Some(judge) = report.judge else { return blocks };
+    let driven = motion.case.primary.force != 0.0;
+    let time = |motion: &PrimaryMotion| motion.rest_time().ok().filter(|_| !driven);
+    let amplitude = |motion: &PrimaryMotion| motion.largest_since(0.75 * motion.end);
+    let error = |found: f64, truth: f64| match truth == 0.0 {
+        true => String::new(),
+        false => percent(found / truth - 1.0),
+    };
+    let mut rows = vec![];
+    let (found, truth) = (time(motion), time(judge));
+    if found.is_some() || truth.is_some() {
+        let off = found.zip(truth).map_or_else(String::new, |(found, truth)| error(found, truth));
+        rows.push(vec!["rest time, 1/omega".to_owned(), cell(found), cell(truth), off]);
+    }
+    let (found, truth) = (amplitude(motion), amplitude(judge));
+    let name = "largest |y| in the last quarter, over L";
+    rows.push(vec![name.to_owned(), decimal(found), decimal(truth), error(found, truth)]);
+    let [found, truth] = [motion, judge].map(|motion| motion.impacts.len());
+    rows.push(vec!["impacts".to_owned(), found.to_string(), truth.to_string(), String::new()]);
+    blocks.push(Block::table(["", "closed forms", "integration", "error"], rows));
     blocks
 }
 

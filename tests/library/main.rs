@@ -36,6 +36,7 @@ mod narrow;
 mod near_rest;
 mod normal_modes;
 mod primary;
+mod primary_chain;
 mod printed_integrals;
 mod pulses;
 mod quotations;

@@ -178,6 +178,7 @@ fn documents() -> Vec<(String, Value)> {
         add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
     }
     add(&["simulate", "examples/primary/driven.toml", "--sweep", "frequency=18:20:3"]);
+    add(&["simulate", "examples/primary/chain.toml", "--chain"]);
     let driven = ["simulate", "x'' + x'/5 + x = F*cos(t)", "--from", "x=1"];
     add(&[&driven[..], &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"]].concat());
     add(&[&driven[..], &["--at", "F=1", "--section", "x'"]].concat());

@@ -698,6 +698,27 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
     assert!(message.contains("choose one of k, x, x'"), "{message}");
 }
 
+/// The chain of a main mass beside its integration: in every format, judged, and swept.
+#[test]
+fn a_main_mass_by_its_chain_is_judged() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary/chain.toml");
+    let [chain, truth] = [json(&[file, "--chain"]), json(&[file])];
+    assert_eq!([&chain["route"], &truth["route"]], [&json!("chain"), &json!("integration")]);
+    assert_eq!(chain["judge"]["rest_time"], truth["rest_time"]);
+    assert_eq!(truth["judge"], Value::Null);
+    let rest = |document: &Value| document["rest_time"].as_f64().expect("a rest time");
+    assert!((rest(&chain) / rest(&truth) - 1.0).abs() < 0.01);
+    let text = output(&[file, "--chain"]);
+    assert!(text.contains("closed forms") && text.contains("integrated for want"), "{text}");
+    assert_eq!(run(&[file, "--chain"]).status.code(), Some(0));
+    assert_eq!(run(&[file, "--chain", "--tolerance", "1e-12"]).status.code(), Some(3));
+    let swept = json(&[file, "--chain", "--sweep", "displacement=0.005,0.01"]);
+    assert_eq!(swept["rows"][1]["rest_time"], chain["rest_time"]);
+    let refused = run(&[file, "--chain", "--sweep", "primary.damping=1,90"]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(message.contains("motion 2") && message.contains("leave out --chain"), "{message}");
+}
+
 #[test]
 fn exit_codes_follow_the_verdict() {
     let file = example("paper");

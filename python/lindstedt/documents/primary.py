@@ -185,6 +185,29 @@ Alone.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class PrimaryJudge(Document):
+    """The motion of a chain by integration.
+
+    Attributes:
+        rest_time: When the envelope of the main mass has fallen to a tenth, for good; null where
+            it never does, and where a force drives it.
+        long_run: The largest displacement of the main mass in the last quarter of the run.
+        impacts: The number of impacts.
+    """
+
+    rest_time: float | None
+    long_run: float
+    impacts: int
+
+
+PrimaryJudge.FIELDS = (
+    ("rest_time", "rest_time", None),
+    ("long_run", "long_run", None),
+    ("impacts", "impacts", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Primary(Answer):
     """A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of
     1/omega, omega^2 = g/L, displacements of the main mass are over L, energies in units of m g
@@ -205,6 +228,10 @@ class Primary(Answer):
         long_run: The largest displacement of the main mass in the last quarter of the run.
         without: The same main mass without its damper, in closed form.
         locked: The same with the damper locked, in closed form.
+        route: How the motion was found: by `integration`, or as a `chain` of closed forms.
+        integrated_phases: The number of phases of a chain that were integrated for want of a
+            closed form; null where the motion was integrated.
+        judge: The motion of a chain by integration; null where the motion was integrated.
         stopped: Why the run ended.
         complete: Whether it was followed as long as asked, and its energy is accounted for.
     """
@@ -222,6 +249,9 @@ class Primary(Answer):
     long_run: float
     without: Alone
     locked: Alone
+    route: Literal["integration", "chain"]
+    integrated_phases: int | None
+    judge: PrimaryJudge | None
     stopped: str
     complete: bool
 
@@ -240,6 +270,9 @@ Primary.FIELDS = (
     ("long_run", "long_run", None),
     ("without", "without", Alone.from_json),
     ("locked", "locked", Alone.from_json),
+    ("route", "route", None),
+    ("integrated_phases", "integrated_phases", None),
+    ("judge", "judge", PrimaryJudge.from_json),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )

@@ -5,11 +5,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
+#[cfg(feature = "schema")]
+use super::simulation::ROUTES;
 use super::sweep::Axis;
-use crate::impact::Units;
 use crate::impact::primary::{
     Alone, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop, UndampedAndLocked,
 };
+use crate::impact::{Integrator, Units};
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega,
@@ -45,10 +47,31 @@ pub struct PrimaryDocument {
     pub without: Alone,
     /// The same with the damper locked, in closed form.
     pub locked: Alone,
+    /// How the motion was found: by `integration`, or as a `chain` of closed forms.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ROUTES)))]
+    pub route: String,
+    /// The number of phases of a chain that were integrated for want of a closed form; null where
+    /// the motion was integrated.
+    pub integrated_phases: Option<usize>,
+    /// The motion of a chain by integration; null where the motion was integrated.
+    pub judge: Option<PrimaryJudge>,
     /// Why the run ended.
     pub stopped: String,
     /// Whether it was followed as long as asked, and its energy is accounted for.
     pub complete: bool,
+}
+
+/// The motion of a chain by integration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct PrimaryJudge {
+    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never
+    /// does, and where a force drives it.
+    pub rest_time: Option<f64>,
+    /// The largest displacement of the main mass in the last quarter of the run.
+    pub long_run: f64,
+    /// The number of impacts.
+    pub impacts: usize,
 }
 
 /// The numbers of main mass and pendulum, dimensionless.
@@ -162,7 +185,7 @@ pub struct PrimarySweepRow {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[] });
+/// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None });
 /// assert!(document.complete && document.energy.residual < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -216,6 +239,15 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
         long_run: motion.largest_since(0.75 * motion.end),
         without: others.without,
         locked: others.locked,
+        route: if motion.by_chain { Integrator::Chain } else { Integrator::Taylor }
+            .route()
+            .to_owned(),
+        integrated_phases: motion.by_chain.then_some(motion.integrated),
+        judge: report.judge.map(|judge| PrimaryJudge {
+            rest_time: judge.rest_time().ok().filter(|_| !driven),
+            long_run: judge.largest_since(0.75 * judge.end),
+            impacts: judge.impacts.len(),
+        }),
         stopped: motion.stop.to_string(),
         complete: report.is_complete(),
     }

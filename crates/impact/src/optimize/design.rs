@@ -2,11 +2,13 @@
 //!
 //! The motion is the chain of closed forms, a few microseconds; if it has none, as for a heavily
 //! damped swing, it is integrated. A pendulum that a main mass carries is followed together with
-//! it, always by integration.
+//! it, likewise, in a millisecond or two.
 
 use super::question::OptimizationProblem;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
-use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings, simulate_primary};
+use crate::impact::primary::{
+    MainMass, PrimaryCase, PrimaryError, PrimarySettings, simulate_primary,
+};
 use crate::impact::{
     Case, ContactRecord, Integrator, Model, MotionToRest, NoRest, Parameter, Settings, Simulation,
     SimulationError, Start, Units, hertz, simulate, simulate_each,
@@ -302,8 +304,7 @@ impl DesignMotion<'_> {
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 
-    /// The pendulum on the main mass that carries it: always by integration, for the two have no
-    /// chain. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
+    /// The pendulum on the main mass that carries it, by its chain if there is one. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
     fn on_main_mass(&self, main_mass: &MainMass) -> Result<SimulatedMotion, String> {
         let [displacement, speed] = main_mass.start(&self.units);
         let case = PrimaryCase {
@@ -317,10 +318,17 @@ impl DesignMotion<'_> {
             phase_limit: settings.maximum_steps,
             stop_at_rest: !(self.question.follows_pendulum()
                 || self.route == Route::Integration && self.contact),
+            chain: self.route == Route::Chain,
             interrupt: settings.interrupt,
             ..PrimarySettings::default()
         };
-        let motion = simulate_primary(case, &settings).map_err(|error| error.to_string())?;
+        let motion = match simulate_primary(case, &settings) {
+            Err(PrimaryError::Chain(_)) => {
+                simulate_primary(case, &PrimarySettings { chain: false, ..settings })
+            }
+            found => found,
+        };
+        let motion = motion.map_err(|error| error.to_string())?;
         let rest = motion.pendulum_rest_time();
         let impacts = motion.impacts.iter();
         let impacts = impacts
@@ -338,7 +346,7 @@ impl DesignMotion<'_> {
             impacts: impacts.count(),
             hardest: hardest.flatten(),
             primary_rest_time: Some(motion.rest_time().map(|rest| rest * self.units.time())),
-            integrated: true,
+            integrated: !motion.by_chain,
         })
     }
 }

@@ -490,10 +490,8 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
     let judge = |&(run, found): &(usize, &Found)| {
         let design = question.follow(&found.point, Route::Integration, true).ok()?;
         let evaluation = question.evaluation(&design);
-        let by_chain = match question.main_mass {
-            None => question.follow(&found.point, Route::Chain, question.needs_contact()).ok()?,
-            Some(_) => design.clone(),
-        };
+        let by_chain =
+            question.follow(&found.point, Route::Chain, question.needs_contact()).ok()?;
         Some(Finalist {
             run,
             by_chain: question.evaluation(&by_chain).objectives,

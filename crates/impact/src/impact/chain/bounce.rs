@@ -82,7 +82,7 @@ pub(super) struct ChainBarrier {
 
 /// The change of the motion by one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Bounce {
+pub(in crate::impact) struct Bounce {
     /// The greatest depth, rad.
     pub depth: f64,
     /// The duration, in units of 1/omega.
@@ -115,12 +115,13 @@ impl ChainBarrier {
 
 /// The numbers of several barriers.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contacts<const L: usize> {
-    gamma: Lanes<L>,
+pub(in crate::impact) struct Contacts<const L: usize> {
+    /// The stiffness.
+    pub gamma: Lanes<L>,
     /// lambda = mu/gamma.
-    damping: Lanes<L>,
+    pub damping: Lanes<L>,
     /// The force of the swing there, against the motion inwards.
-    push: Lanes<L>,
+    pub push: Lanes<L>,
     /// The viscous damping.
     pub zeta: Lanes<L>,
     /// The dry friction.
@@ -129,7 +130,7 @@ pub(super) struct Contacts<const L: usize> {
 
 /// Several contacts.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bounces<const L: usize> {
+pub(in crate::impact) struct Bounces<const L: usize> {
     depth: Lanes<L>,
     duration: Lanes<L>,
     speed_out: Lanes<L>,
@@ -151,7 +152,7 @@ impl<const L: usize> Bounces<L> {
 
 impl<const L: usize> Contacts<L> {
     /// The contacts of these barriers, lane by lane.
-    pub fn of(barriers: [&ChainBarrier; L]) -> Self {
+    pub(super) fn of(barriers: [&ChainBarrier; L]) -> Self {
         let gathered = |number: fn(&Contacts<1>) -> Lanes<1>| {
             Lanes(barriers.map(|barrier| number(&barrier.contact).0[0]))
         };

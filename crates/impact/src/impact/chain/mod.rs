@@ -35,7 +35,8 @@ use super::simulation::{
 };
 use super::taylor;
 use crate::decimal::decimal;
-use bounce::{Bounce, ChainBarrier};
+use bounce::ChainBarrier;
+pub(super) use bounce::{Bounce, Contacts};
 use cycle::{Cycle, CycleStart, LANES, cycles};
 use leg::{Leg, leg, rub_lag};
 use swing::{SwingAngle, UndampedSwing};
@@ -68,6 +69,17 @@ pub enum ChainError {
         "the motion starts at x = {0}, not below the upright position: the chain begins with a swing, leave out --chain"
     )]
     Upright(f64),
+    /// The dashpot of a main mass is too strong for a slowly decaying swing.
+    #[error(
+        "the dashpot of the main mass is {} of the critical one: below {MOST_DAMPING} the chain holds, leave out --chain",
+        decimal(*.0)
+    )]
+    OverdampedMainMass(f64),
+    /// The two modes of pendulum and main mass are one.
+    #[error(
+        "the two modes of pendulum and main mass coincide, so that the motion is no sum of two decaying waves: leave out --chain"
+    )]
+    EqualModes,
     /// The motion starts inside a barrier.
     #[error("the motion starts inside the {} barrier: the chain begins with a swing, leave out --chain", .0.name())]
     Inside(Side),

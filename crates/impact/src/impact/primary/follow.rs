@@ -16,7 +16,9 @@
 
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
+use super::chain::PrimaryChain;
 use super::equations::{ACCOUNTS, PhaseSystem, PrimaryEquations};
+use super::flight::ClosedFlight;
 use super::path::{PrimaryPath, PrimarySegment, PrimaryState};
 use super::{
     PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings,
@@ -52,6 +54,7 @@ pub fn simulate_primary(
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
     }
+    let chain = settings.chain.then(|| PrimaryChain::new(&case)).transpose()?;
     let mut run = PrimaryRun::new(case, settings)?;
     let stop = loop {
         if run.t >= settings.duration {
@@ -68,12 +71,11 @@ pub fn simulate_primary(
             break PrimaryStop::AtRest;
         }
         let before = run.t;
-        let reason = match run.regime {
-            PrimaryRegime::Free(direction) => run.fly(direction)?,
-            PrimaryRegime::Contact(side, direction) => run.touch(side, direction)?,
-            PrimaryRegime::LetGo(side, direction) => run.let_go(side, direction)?,
-            PrimaryRegime::Held => run.follow_held()?,
+        let is_closed = match &chain {
+            Some(chain) => run.follow_in_closed_form(chain)?,
+            None => false,
         };
+        let reason = if is_closed { PathEnd::Reached } else { run.integrate_phase()? };
         run.close_accounts();
         match reason {
             PathEnd::Interrupted => break PrimaryStop::Interrupted,
@@ -99,7 +101,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The mode of the pendulum; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum PrimaryRegime {
+pub(super) enum PrimaryRegime {
     Free(f64),
     Contact(Side, f64),
     /// Inside a barrier that exerts no force because it would have to pull.
@@ -108,22 +110,26 @@ enum PrimaryRegime {
 }
 
 /// The state of an integration.
-struct PrimaryRun<'a> {
-    case: PrimaryCase,
-    settings: &'a PrimarySettings,
+pub(super) struct PrimaryRun<'a> {
+    pub(super) case: PrimaryCase,
+    pub(super) settings: &'a PrimarySettings,
     equations: PrimaryEquations,
-    regime: PrimaryRegime,
-    t: f64,
-    state: PrimaryState,
-    accounts: [f64; ACCOUNTS],
+    pub(super) regime: PrimaryRegime,
+    pub(super) t: f64,
+    pub(super) state: PrimaryState,
+    pub(super) accounts: [f64; ACCOUNTS],
     phases: usize,
+    /// Phases that were integrated.
+    integrated: usize,
     idle: usize,
-    path: PrimaryPath,
-    impacts: Vec<PrimaryImpact>,
+    pub(super) path: PrimaryPath,
+    /// The flight in closed form that was the last, whose memory the next one takes over.
+    pub(super) flight: ClosedFlight,
+    pub(super) impacts: Vec<PrimaryImpact>,
     /// Energy taken by the contacts when the open impact began.
     taken: f64,
-    turns: Vec<(f64, f64)>,
-    swings: Vec<(f64, f64)>,
+    pub(super) turns: Vec<(f64, f64)>,
+    pub(super) swings: Vec<(f64, f64)>,
     start_energy: f64,
     largest: f64,
     astray: f64,
@@ -156,8 +162,10 @@ impl<'a> PrimaryRun<'a> {
             state,
             accounts: [0.0; ACCOUNTS],
             phases: 0,
+            integrated: 0,
             idle: 0,
             path: PrimaryPath::default(),
+            flight: ClosedFlight::default(),
             impacts: Vec::new(),
             taken: 0.0,
             turns: Vec::new(),
@@ -200,7 +208,7 @@ impl<'a> PrimaryRun<'a> {
 
     /// Continues in this direction: into the barrier on whose surface it is, if it moves or is
     /// pushed that way, else in free flight.
-    fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
+    pub(super) fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
         self.regime = PrimaryRegime::Free(direction);
         let PrimaryState { x, velocity, y, speed } = self.state;
         for side in [Side::Left, Side::Right] {
@@ -230,7 +238,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// The position of a barrier.
-    fn barrier_position(&self, side: Side) -> f64 {
+    pub(super) fn barrier_position(&self, side: Side) -> f64 {
         self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
@@ -245,6 +253,23 @@ impl<'a> PrimaryRun<'a> {
         for (account, value) in followed.accounts.iter().zip(values) {
             self.accounts[*account] = *value;
         }
+    }
+
+    /// Integrates the next phase.
+    fn integrate_phase(&mut self) -> Result<PathEnd, PrimaryError> {
+        self.integrated += 1;
+        match self.regime {
+            PrimaryRegime::Free(direction) => self.fly(direction),
+            PrimaryRegime::Contact(side, direction) => self.touch(side, direction),
+            PrimaryRegime::LetGo(side, direction) => self.let_go(side, direction),
+            PrimaryRegime::Held => self.follow_held(),
+        }
+    }
+
+    /// The end of a flight that is integrated: a swing later where closed forms may go on.
+    fn end_of_flight(&self) -> f64 {
+        let end = self.settings.duration;
+        if self.settings.chain { end.min(self.t + std::f64::consts::TAU) } else { end }
     }
 
     fn fly(&mut self, direction: f64) -> Result<PathEnd, PrimaryError> {
@@ -291,7 +316,7 @@ impl<'a> PrimaryRun<'a> {
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
         let path = followed.system.solve(
-            [self.t, self.settings.duration],
+            [self.t, self.end_of_flight()],
             &start,
             events,
             &self.options(),
@@ -310,7 +335,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// Decides at a moment of rest whether the pendulum turns back or is held.
-    fn turn_back(&mut self, contact: f64) -> Result<(), PrimaryError> {
+    pub(super) fn turn_back(&mut self, contact: f64) -> Result<(), PrimaryError> {
         self.state.velocity = 0.0;
         match self.direction(contact) {
             Some(direction) => self.set_off(direction),
@@ -321,7 +346,7 @@ impl<'a> PrimaryRun<'a> {
         }
     }
 
-    fn begin_contact(&mut self, side: Side, direction: f64) {
+    pub(super) fn begin_contact(&mut self, side: Side, direction: f64) {
         self.state.x = self.barrier_position(side);
         self.begin_impact(side, 0.0);
         self.regime = PrimaryRegime::Contact(side, direction);
@@ -341,7 +366,7 @@ impl<'a> PrimaryRun<'a> {
         });
     }
 
-    fn end_contact(&mut self, side: Side, direction: f64) {
+    pub(super) fn end_contact(&mut self, side: Side, direction: f64) {
         self.state.x = self.barrier_position(side);
         let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
         if let Some(impact) = self.impacts.last_mut() {
@@ -518,6 +543,8 @@ impl<'a> PrimaryRun<'a> {
             case: self.case,
             end: self.t,
             stop,
+            by_chain: self.settings.chain,
+            integrated: self.integrated,
             impacts: self.impacts,
             turns: self.turns,
             swings: self.swings,

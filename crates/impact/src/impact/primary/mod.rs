@@ -17,15 +17,22 @@
 //! impacts, the energy balance, and the rest time of the main mass, with those of the same main
 //! mass without damper and with the damper locked, which are linear and known in closed form. A
 //! contact is followed in the variable of `regularised`, in which it is analytic through the touch.
+//! With [`PrimarySettings::chain`] nothing is integrated where there is a closed form: `modes`,
+//! `flight`, `bounce` and `resting` have those of the phases, `chain` puts them together.
 //!
 //! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
 
+mod bounce;
+mod chain;
 mod equations;
+mod flight;
 mod follow;
 mod linear;
+mod modes;
 mod parameter;
 mod path;
 mod pendulum;
+mod resting;
 mod si;
 mod sweep;
 
@@ -83,6 +90,8 @@ pub struct PrimarySettings {
     /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its
     /// start.
     pub stop_at_rest: bool,
+    /// Whether it is followed by closed forms, and integrated only where there are none.
+    pub chain: bool,
     /// The interrupt.
     pub interrupt: Interrupt,
 }
@@ -95,6 +104,7 @@ impl Default for PrimarySettings {
             tolerance: 1e-15,
             phase_limit: 100_000,
             stop_at_rest: false,
+            chain: false,
             interrupt: Interrupt::default(),
         }
     }
@@ -182,6 +192,10 @@ pub struct PrimaryMotion {
     pub end: f64,
     /// The reason why it ended.
     pub stop: PrimaryStop,
+    /// Whether it was followed by closed forms.
+    pub by_chain: bool,
+    /// The number of phases that were integrated: of a chain those without a closed form.
+    pub integrated: usize,
     /// Every impact.
     pub impacts: Vec<PrimaryImpact>,
     /// Turning points of the main mass: time and displacement.
@@ -210,6 +224,9 @@ pub enum PrimaryError {
     /// The numbers of the pendulum are not admissible.
     #[error(transparent)]
     Model(#[from] super::model::ModelError),
+    /// There is no chain of closed forms.
+    #[error(transparent)]
+    Chain(#[from] super::chain::ChainError),
     /// A driven pivot, which a main mass excludes.
     #[error(
         "the pivot moves with the main mass: drive that by a force, and leave out the excitation beta"

@@ -2,6 +2,9 @@
 //! which they are analytic.
 
 use super::super::model::Side;
+use super::bounce::ClosedBounce;
+use super::flight::{ClosedFlight, FlightStart};
+use super::resting::RestingPendulum;
 use crate::numeric::ode::root::{BisectionStop, try_bisect};
 use crate::system::Path;
 
@@ -27,6 +30,12 @@ pub(super) enum PrimarySegment {
     Contact { path: Path, side: Side, place: f64 },
     /// (y, y') in t: friction holds the pendulum here.
     Held { path: Path, x: f64 },
+    /// A flight of a chain.
+    ClosedFlight(Box<FlightStart>),
+    /// A contact of a chain.
+    ClosedBounce(ClosedBounce),
+    /// A pendulum of a chain that friction holds or a barrier carries.
+    Resting(RestingPendulum),
 }
 
 impl PrimarySegment {
@@ -50,6 +59,11 @@ impl PrimarySegment {
                 let state = path.states_at(time.min(path.end()))?;
                 Some(PrimaryState { x: *x, velocity: 0.0, y: state[0], speed: state[1] })
             }
+            Self::ClosedFlight(start) => {
+                Some(ClosedFlight::new(start)?.point(time - start.begin).state)
+            }
+            Self::ClosedBounce(bounce) => Some(bounce.state_at(time)),
+            Self::Resting(resting) => Some(resting.state_at(time)),
         }
     }
 }
@@ -94,8 +108,15 @@ impl PrimaryPath {
         let within = self.pieces.iter().filter(move |(start, _)| (from..=until).contains(start));
         within.filter_map(|(_, piece)| match piece {
             PrimarySegment::Contact { path, side, .. } => Some((path, *side)),
-            PrimarySegment::Flight(_) | PrimarySegment::Held { .. } => None,
+            _ => None,
         })
+    }
+
+    /// Whether the contact that begins at this time has a closed form.
+    pub(super) fn is_closed_bounce(&self, time: f64) -> bool {
+        let first = self.pieces.partition_point(|(start, _)| *start < time);
+        let mut here = self.pieces[first..].iter().take_while(|(start, _)| *start == time);
+        here.any(|(_, piece)| matches!(piece, PrimarySegment::ClosedBounce(_)))
     }
 
     pub(super) fn starts(&self) -> impl Iterator<Item = f64> {

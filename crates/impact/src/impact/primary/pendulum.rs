@@ -5,6 +5,7 @@ use super::super::si::greatest;
 use super::super::simulation::place::RestPoint;
 use super::super::simulation::rest::first_swing;
 use super::super::simulation::{NoRest, REST_FRACTION};
+use super::bounce::peak_force;
 use super::{PrimaryImpact, PrimaryMotion};
 use crate::impact::Start;
 
@@ -64,6 +65,14 @@ impl PrimaryMotion {
         let model = &self.case.model;
         let contacts =
             self.path.contacts([impact.entry_time, impact.exit_time.unwrap_or(self.end)]);
+        if let Some(force) = self
+            .path
+            .is_closed_bounce(impact.entry_time)
+            .then(|| peak_force(&self.case, impact.side, impact.speed_in))
+            .flatten()
+        {
+            return force;
+        }
         let peaks = contacts.map(|(path, side)| {
             let force = |s: f64| match path.states_at(s) {
                 Some(state) => hertz::force(

@@ -129,17 +129,13 @@ fn linear_modes<'a>(slow: &SlowMotion) -> Vec<Block<'a>> {
     blocks
 }
 
-/// The closed relations of steady motions.
-fn relations<'a>(slow: &SlowMotion) -> Option<Vec<Block<'a>>> {
-    let found = slow.steady_relations();
-    if found.is_empty() {
-        return None;
-    }
-    let mut blocks = Vec::new();
+/// The closed relations of steady motions, a section for each choice of modes at rest.
+fn relations<'a>(slow: &SlowMotion) -> Vec<Vec<Block<'a>>> {
+    let mut sections: Vec<Vec<Block>> = Vec::new();
     let mut last: Option<Vec<usize>> = None;
-    for relation in found {
+    for relation in slow.steady_relations() {
         if last.as_ref() != Some(&relation.at_rest) {
-            blocks.push(Block::Title {
+            sections.push(vec![Block::Title {
                 words: "Steady motions, the phases eliminated".to_owned(),
                 amplitude: match relation.at_rest.as_slice() {
                     [] => "every mode moving".to_owned(),
@@ -147,15 +143,17 @@ fn relations<'a>(slow: &SlowMotion) -> Option<Vec<Block<'a>>> {
                         format!("{} = 0", listed(modes.iter().map(|m| slow.amplitudes[*m])))
                     }
                 },
-            });
+            }]);
             last = Some(relation.at_rest.clone());
         }
-        blocks.push(match relation.solved {
-            Some((name, square)) => line(Expr::from(name) * Expr::from(name), square),
-            None => line(Expr::zero(), Expr::from(&relation.relation)),
-        });
+        if let Some(section) = sections.last_mut() {
+            section.push(match relation.solved {
+                Some((name, square)) => line(Expr::from(name) * Expr::from(name), square),
+                None => line(Expr::zero(), Expr::from(&relation.relation)),
+            });
+        }
     }
-    Some(blocks)
+    sections
 }
 
 /// What the slow equations say at values, beside the true motions.

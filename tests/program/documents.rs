@@ -261,7 +261,7 @@ fn innermost(document: &mut Value) -> &mut Value {
             false => "/equilibria/0",
         },
         Some("lindstedt/motion/1" | "lindstedt/primary/1") => "/final_state",
-        Some("lindstedt/one-harmonic/1") => "/families/0",
+        Some("lindstedt/one-harmonic/1") => "/motions/0",
         Some("lindstedt/slow-equations/1") => "/modes/0",
         Some("lindstedt/stability/1") => "/curves/0",
         Some("lindstedt/certificate/1") => "/formula",

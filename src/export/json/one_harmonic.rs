@@ -38,10 +38,10 @@ pub struct OneHarmonicDocument {
     pub at: Option<Map<Constant>>,
     /// The modes that have the amplitude, the slowest first.
     pub motions: Vec<OneHarmonicMotionDocument>,
-    /// The largest relative error that passes; null without values.
-    pub tolerance: Option<f64>,
     /// `pass` or `fail`; null without values.
     pub verdict: Option<String>,
+    /// The largest relative error that passes; null without values.
+    pub tolerance: Option<f64>,
 }
 
 /// A family of modes: formulas of two of ratio, A^2 and omega^2 in the parameter of the family.
@@ -135,8 +135,8 @@ pub fn one_harmonic(report: &OneHarmonicReport) -> OneHarmonicDocument {
                 relative_error: finite(motion.relative_error),
             })
             .collect(),
-        tolerance: judged.map(|judged| judged.tolerance),
         verdict: judged.map(|judged| judged.verdict.name().to_owned()),
+        tolerance: judged.map(|judged| judged.tolerance),
     }
 }
 

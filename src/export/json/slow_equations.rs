@@ -53,10 +53,10 @@ pub struct SlowEquationsDocument {
     pub steady: Vec<SlowSteadyDocument>,
     /// The motion from the amplitudes that were given, beside the true one; null without them.
     pub transient: Option<TransientDocument>,
-    /// The largest error that passes; null without values.
-    pub tolerance: Option<f64>,
     /// `pass` or `fail`; null where nothing was compared.
     pub verdict: Option<String>,
+    /// The largest error that passes; null without values.
+    pub tolerance: Option<f64>,
 }
 
 /// A mode with the rates of its amplitude and phase.
@@ -200,8 +200,8 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
             .map(|motion| steady(report, motion))
             .collect(),
         transient: judged.and_then(|judged| judged.transient.as_ref()).map(transient),
-        tolerance: judged.map(|judged| judged.tolerance),
         verdict: judged.and_then(|judged| judged.verdict).map(|verdict| verdict.name().to_owned()),
+        tolerance: judged.map(|judged| judged.tolerance),
     })
 }
 

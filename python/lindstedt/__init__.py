@@ -50,8 +50,8 @@ if TYPE_CHECKING:
     from .errors import UsageError as UsageError
     from .oscillator import Oscillator as Oscillator
     from .law import Law as Law
-    from .modes import Modes as Modes
-    from .modes import modes as modes
+    from .normal_modes import Modes as Modes
+    from .normal_modes import modes as modes
     from .slow import SlowEquations as SlowEquations
     from .slow import slow_equations as slow_equations
     from .studies import Study as Study
@@ -63,7 +63,7 @@ if TYPE_CHECKING:
 PLACES = {
     "catalog": "catalogue",
     "Law": "law",
-    **dict.fromkeys(("Modes", "modes"), "modes"),
+    **dict.fromkeys(("Modes", "modes"), "normal_modes"),
     **dict.fromkeys(("SlowEquations", "slow_equations"), "slow"),
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",

@@ -31,7 +31,7 @@ OWN = {
     "Friction": ("tabulated", "Friction"),
     "Materials": ("tabulated", "Materials"),
     "Impact": ("impacts", "Impact"),
-    "Modes": ("modes", "Modes"),
+    "Modes": ("normal_modes", "Modes"),
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),

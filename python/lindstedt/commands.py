@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from .documents.lagrangian import Lagrangian
     from .impacts import Impact
     from .law import Law
-    from .modes import Modes
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
+    from .normal_modes import Modes
+    from .slow import SlowEquations
     from .tabulated import Friction, Materials, Stability
 
 
@@ -68,8 +69,10 @@ def derive(
             one is chosen at the values.
         cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
             without it the smallest that attracts.
-        resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the
-            one nearest to the values, or 1:1.
+        resonance: Which resonance: of a driven equation Omega:omega0, 1:3 say, without it the
+            one nearest to the values, or 1:1; of coupled equations relations between frequencies,
+            "omega2 = 2*omega1, Omega = omega2", or none, without it those that the numbers are
+            near.
         omega_only: The frequency without the motion, of lindstedt-poincare: orders up to 2000,
             in less time.
         jobs: Threads of a long expansion; all cores without it. The result is the same for any
@@ -499,8 +502,10 @@ def certify(
             one is chosen at the values.
         cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
             without it the smallest that attracts.
-        resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the
-            one nearest to the values, or 1:1.
+        resonance: Which resonance: of a driven equation Omega:omega0, 1:3 say, without it the
+            one nearest to the values, or 1:1; of coupled equations relations between frequencies,
+            "omega2 = 2*omega1, Omega = omega2", or none, without it those that the numbers are
+            near.
         omega_only: The frequency without the motion, of lindstedt-poincare: orders up to 2000,
             in less time.
         jobs: Threads of a long expansion; all cores without it. The result is the same for any
@@ -591,8 +596,10 @@ class EquationCommands:
                 best one is chosen at the values.
             cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
                 without it the smallest that attracts.
-            resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it
-                the one nearest to the values, or 1:1.
+            resonance: Which resonance: of a driven equation Omega:omega0, 1:3 say, without it
+                the one nearest to the values, or 1:1; of coupled equations relations between
+                frequencies, "omega2 = 2*omega1, Omega = omega2", or none, without it those that the
+                numbers are near.
             omega_only: The frequency without the motion, of lindstedt-poincare: orders up to
                 2000, in less time.
             jobs: Threads of a long expansion; all cores without it. The result is the same for
@@ -815,8 +822,10 @@ class EquationCommands:
                 best one is chosen at the values.
             cycle: Which limit cycle of a self-excited equation, counted from 1 by amplitude;
                 without it the smallest that attracts.
-            resonance: Which resonance of a driven equation, Omega:omega0, 1:3 say; without it
-                the one nearest to the values, or 1:1.
+            resonance: Which resonance: of a driven equation Omega:omega0, 1:3 say, without it
+                the one nearest to the values, or 1:1; of coupled equations relations between
+                frequencies, "omega2 = 2*omega1, Omega = omega2", or none, without it those that the
+                numbers are near.
             omega_only: The frequency without the motion, of lindstedt-poincare: orders up to
                 2000, in less time.
             jobs: Threads of a long expansion; all cores without it. The result is the same for

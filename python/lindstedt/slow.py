@@ -20,7 +20,7 @@ class SlowEquations(SlowEquationsDocument):
     >>> import lindstedt as ls
     >>> pair = ls.slow_equations("x'' + x - x*y = 0; y'' + w2^2*y - x^2 = 0", resonance="w2 = 2*omega1")
     >>> pair.mode(1).amplitude_rate
-    'a1*a2*sin(gamma1)/4'
+    '-a1*a2*sin(gamma1)/4'
     """
 
     def mode(self, number: int) -> SlowMode:

@@ -33,7 +33,7 @@ pub struct SlowReport<'a> {
 /// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
 /// let report = SlowReport { slow: &slow, judged: None };
 /// let text = lindstedt::export::text::document(&slow_equations(&report)?, 100);
-/// assert!(text.contains("a1'    = a1*a2*sin(gamma1)/4"), "{text}");
+/// assert!(text.contains("a1' = -a1*a2*sin(gamma1)/4"), "{text}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_equations<'a>(report: &SlowReport<'a>) -> Result<Document<'a>, ExprError> {

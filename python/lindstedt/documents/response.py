@@ -308,12 +308,15 @@ class SlowPoint(Document):
         amplitude: The amplitude of the first harmonic.
         phase: Its phase, in radians.
         stable: Whether small disturbances die out, by the slow equations.
+        peak: Half of the way from the lowest to the highest point, of coupled equations; left out
+            of one coordinate.
     """
 
     parameter: float
     amplitude: float
     phase: float
     stable: bool
+    peak: float | None
 
 
 SlowPoint.FIELDS = (
@@ -321,7 +324,9 @@ SlowPoint.FIELDS = (
     ("amplitude", "amplitude", None),
     ("phase", "phase", None),
     ("stable", "stable", None),
+    ("peak", "peak", None),
 )
+SlowPoint.OPTIONAL = frozenset(['peak'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -331,8 +336,10 @@ class SlowResponse(Document):
     Attributes:
         method: The method: `multiple-scales`.
         order: Its order.
-        amplitude_rate: The rate of the amplitude, a formula.
-        phase_rate: The rate of the phase, a formula.
+        amplitude_rate: The rate of the amplitude, a formula; empty of coupled equations.
+        phase_rate: The rate of the phase, a formula; empty of coupled equations.
+        modes: The rates of amplitude and phase of each mode of coupled equations, formulas. Left
+            out of one coordinate.
         definitions: What stands for what in them.
         states: The steady motions, by the parameter.
         largest_error: The largest error of the amplitude at the stable points of the branches,
@@ -352,6 +359,7 @@ class SlowResponse(Document):
     order: int
     amplitude_rate: str
     phase_rate: str
+    modes: tuple[tuple[str, str], ...] | None
     definitions: dict[str, str]
     states: tuple[SlowPoint, ...]
     largest_error: float | None
@@ -366,6 +374,7 @@ SlowResponse.FIELDS = (
     ("order", "order", None),
     ("amplitude_rate", "amplitude_rate", None),
     ("phase_rate", "phase_rate", None),
+    ("modes", "modes", several(tuple)),
     ("definitions", "definitions", dict),
     ("states", "states", several(SlowPoint.from_json)),
     ("largest_error", "largest_error", None),
@@ -374,7 +383,7 @@ SlowResponse.FIELDS = (
     ("spurious", "spurious", None),
     ("verdict", "verdict", None),
 )
-SlowResponse.OPTIONAL = frozenset(['beside', 'spurious'])
+SlowResponse.OPTIONAL = frozenset(['beside', 'modes', 'spurious'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

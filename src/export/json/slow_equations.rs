@@ -137,7 +137,7 @@ pub struct TransientDocument {
 /// let resonance = Some("w2 = 2*omega1".to_owned());
 /// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
 /// let document = lindstedt::export::json::slow_equations(&SlowReport { slow: &slow, judged: None })?;
-/// assert_eq!(document.modes[0].amplitude_rate, "a1*a2*sin(gamma1)/4");
+/// assert_eq!(document.modes[0].amplitude_rate, "-a1*a2*sin(gamma1)/4");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, ExprError> {

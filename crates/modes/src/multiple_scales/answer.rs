@@ -148,7 +148,7 @@ impl SlowMotion {
 /// let resonance = Some("w2 = 2*w1".to_owned());
 /// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
 /// let [rate, _] = slow.rate(0)?;
-/// assert_eq!(rate.to_string(), "-mu1*a1 + alpha1*a1*a2*sin(gamma1)/(4*w1)");
+/// assert_eq!(rate.to_string(), "-a1*mu1 - a1*a2*alpha1*sin(gamma1)/(4*w1)");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(

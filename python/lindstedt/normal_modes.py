@@ -107,6 +107,7 @@ def modes(
         UsageError: The problem is one equation of one coordinate.
     """
     options = {
+        "method": "lindstedt-poincare",
         "mode": mode,
         "order": order,
         "amplitude": amplitude,

@@ -1,0 +1,204 @@
+"""Made by `python/generate.py` from the JSON schemas: change those."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from .._answer import Answer
+from .._document import Document, mapped, several
+from .common import Constant
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SlowMode(Document):
+    """A mode with the rates of its amplitude and phase.
+
+    Attributes:
+        number: Its number.
+        frequency: Its linear frequency, a formula.
+        reference_frequency: The frequency with which its phase is counted, which obeys the
+            resonances.
+        shape: The linear mode: the displacement of each coordinate.
+        amplitude: The symbol of its amplitude.
+        phase: The symbol of its phase.
+        amplitude_rate: The rate of the amplitude, a formula.
+        phase_rate: The rate of the phase, a formula.
+    """
+
+    number: int
+    frequency: str
+    reference_frequency: str
+    shape: dict[str, str]
+    amplitude: str
+    phase: str
+    amplitude_rate: str
+    phase_rate: str
+
+
+SlowMode.FIELDS = (
+    ("number", "number", None),
+    ("frequency", "frequency", None),
+    ("reference_frequency", "reference_frequency", None),
+    ("shape", "shape", dict),
+    ("amplitude", "amplitude", None),
+    ("phase", "phase", None),
+    ("amplitude_rate", "amplitude_rate", None),
+    ("phase_rate", "phase_rate", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SteadyRelation(Document):
+    """A relation between amplitudes of steady motions.
+
+    Attributes:
+        at_rest: The amplitudes that are zero; the others are not.
+        vanishes: The formula that vanishes.
+        squares: The amplitude that the relation fixes alone, and its square; else empty.
+    """
+
+    at_rest: tuple[str, ...]
+    vanishes: str
+    squares: dict[str, str]
+
+
+SteadyRelation.FIELDS = (
+    ("at_rest", "at_rest", tuple),
+    ("vanishes", "vanishes", None),
+    ("squares", "squares", dict),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SlowSteadyMotion(Document):
+    """A steady motion of the slow equations.
+
+    Attributes:
+        amplitudes: The amplitude of each mode.
+        phases: The phase of each mode at t = 0.
+        phase_rates: The rate of each phase: zero where a drive fixes it.
+        stable: Whether small disturbances die out, by the slow equations.
+        growth: The largest real part of the eigenvalues that decide; null where there are none.
+        error: The largest deviation of a coordinate from the true motion over a period, as a part
+            of the largest displacement; null where none was sought, or found near.
+        truly_stable: Whether the true motion is stable, by its multipliers; null where it is not
+            known.
+    """
+
+    amplitudes: dict[str, float]
+    phases: dict[str, float]
+    phase_rates: dict[str, float]
+    stable: bool
+    growth: float | None
+    error: float | None
+    truly_stable: bool | None
+
+
+SlowSteadyMotion.FIELDS = (
+    ("amplitudes", "amplitudes", dict),
+    ("phases", "phases", dict),
+    ("phase_rates", "phase_rates", dict),
+    ("stable", "stable", None),
+    ("growth", "growth", None),
+    ("error", "error", None),
+    ("truly_stable", "truly_stable", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SlowTransient(Document):
+    """A motion by the slow equations beside the true one.
+
+    Attributes:
+        until: The time over which both are compared.
+        error: The largest deviation of a coordinate, as a part of the largest displacement.
+    """
+
+    until: float
+    error: float
+
+
+SlowTransient.FIELDS = (
+    ("until", "until", None),
+    ("error", "error", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SlowEquations(Answer):
+    """The slow equations of coupled equations by multiple scales.
+
+    Attributes:
+        schema: The kind of document.
+        equations: The equations as they were understood.
+        coordinates: The coordinates.
+        rest: The place of rest from which each coordinate is counted, a formula.
+        parameters: The letters of the equations, in alphabetical order.
+        method: The method: `multiple-scales`.
+        order: The highest order of the slow equations.
+        small_order: The order as which damping, detunings and drives at a resonance count.
+        small_parameter: The small parameter; null if it is the amplitude of the motion.
+        resonances: The resonances between the frequencies.
+        modes: The modes.
+        slow_phases: The slow phases in the rates that are combinations of the phases of the
+            modes.
+        motion: The motion of each coordinate: a formula in `t`, the amplitudes and the phases.
+        definitions: What the formulas name, each by those before it; detunings, `sigma`, are
+            reference frequency less linear frequency.
+        relations: The relations of steady motions with the phases eliminated.
+        numerical: Whether coefficients are rounded to fifteen digits.
+        at: The values at which steady motions, or a motion, were computed; null without values.
+        steady: The steady motions at the values, the largest first.
+        transient: The motion from the amplitudes that were given, beside the true one; null
+            without them.
+        verdict: `pass` or `fail`; null where nothing was compared.
+        tolerance: The largest error that passes; null without values.
+    """
+
+    schema: Literal["lindstedt/slow-equations/1"]
+    equations: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    rest: dict[str, str]
+    parameters: tuple[str, ...]
+    method: str
+    order: int
+    small_order: int
+    small_parameter: str | None
+    resonances: tuple[str, ...]
+    modes: tuple[SlowMode, ...]
+    slow_phases: dict[str, str]
+    motion: dict[str, str]
+    definitions: dict[str, str]
+    relations: tuple[SteadyRelation, ...]
+    numerical: bool
+    at: dict[str, Constant] | None
+    steady: tuple[SlowSteadyMotion, ...]
+    transient: SlowTransient | None
+    verdict: str | None
+    tolerance: float | None
+
+
+SlowEquations.FIELDS = (
+    ("schema", "schema", None),
+    ("equations", "equations", tuple),
+    ("coordinates", "coordinates", tuple),
+    ("rest", "rest", dict),
+    ("parameters", "parameters", tuple),
+    ("method", "method", None),
+    ("order", "order", None),
+    ("small_order", "small_order", None),
+    ("small_parameter", "small_parameter", None),
+    ("resonances", "resonances", tuple),
+    ("modes", "modes", several(SlowMode.from_json)),
+    ("slow_phases", "slow_phases", dict),
+    ("motion", "motion", dict),
+    ("definitions", "definitions", dict),
+    ("relations", "relations", several(SteadyRelation.from_json)),
+    ("numerical", "numerical", None),
+    ("at", "at", mapped(Constant.from_json)),
+    ("steady", "steady", several(SlowSteadyMotion.from_json)),
+    ("transient", "transient", SlowTransient.from_json),
+    ("verdict", "verdict", None),
+    ("tolerance", "tolerance", None),
+)

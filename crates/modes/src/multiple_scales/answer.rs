@@ -207,112 +207,121 @@ pub fn derive(
     };
     let expansion = problem.expand(&mut form)?;
     let written = resonances.iter().map(|resonance| frequencies.written(resonance)).collect();
-    answer(system, &form, &reference, &polar, &problem, &expansion, written, leaves_out)
+    Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem }
+        .answer(&expansion, written, leaves_out)
 }
 
-#[allow(clippy::too_many_arguments)]
-fn answer(
-    system: &CoupledSystem,
-    form: &ModalForm,
-    reference: &References,
-    polar: &PolarNames,
-    problem: &Problem,
-    expansion: &Expansion,
-    resonances: Vec<String>,
-    leaves_out: bool,
-) -> Result<SlowMotion, MultipleScalesError> {
-    let round = |polynomial: &Polynomial| match form.rounded {
-        true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
-        false => polynomial.clone(),
-    };
-    let in_phases = rates(expansion, polar, |order| order > 0);
-    let basis = slow_phases(&in_phases);
-    let stem = fresh_stem("gamma", &form.names.taken);
-    let mut named = 0;
-    let slow_phases: Vec<(Symbol, Vec<i32>)> = basis
-        .iter()
-        .map(|turns| {
-            let alone = turns.iter().filter(|m| **m != 0).count() == 1;
-            let own = turns.iter().position(|m| *m == 1).filter(|_| alone);
-            let name = match own {
-                Some(mode) => polar.phases[mode],
-                None => {
-                    named += 1;
-                    Symbol::new(&format!("{stem}{named}"))
-                }
-            };
-            (name, turns.clone())
-        })
-        .collect();
-    let rounded_rates = |rate: &SlowRate| {
-        let rate = in_slow_phases(rate, &basis);
-        let waves = |waves: &super::PhaseWaves| {
-            waves
-                .iter()
-                .map(|(turns, parts)| (turns.clone(), parts.each_ref().map(round)))
-                .collect()
+/// What a derivation is made of.
+struct Derivation<'a> {
+    system: &'a CoupledSystem,
+    form: &'a ModalForm,
+    reference: &'a References,
+    polar: &'a PolarNames,
+    problem: &'a Problem,
+}
+
+impl Derivation<'_> {
+    /// The slow equations of an expansion.
+    fn answer(
+        &self,
+        expansion: &Expansion,
+        resonances: Vec<String>,
+        leaves_out: bool,
+    ) -> Result<SlowMotion, MultipleScalesError> {
+        let Self { system, form, reference, polar, problem } = self;
+        let round = |polynomial: &Polynomial| match form.rounded {
+            true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
+            false => polynomial.clone(),
         };
-        SlowRate { amplitude: waves(&rate.amplitude), phase: waves(&rate.phase) }
-    };
-    // The base of the single drive, and the number of its periods in one of that.
-    let base = match reference.drives.as_slice() {
-        [wave] => {
-            let mut places = wave.iter().enumerate().filter(|(_, times)| **times != 0);
-            match (places.next(), places.next()) {
-                (Some((place, times)), None) => {
-                    usize::try_from(*times).ok().map(|periods| (place, periods))
+        let in_phases = rates(expansion, polar, |order| order > 0);
+        let basis = slow_phases(&in_phases);
+        let stem = fresh_stem("gamma", &form.names.taken);
+        let mut named = 0;
+        let slow_phases: Vec<(Symbol, Vec<i32>)> = basis
+            .iter()
+            .map(|turns| {
+                let alone = turns.iter().filter(|m| **m != 0).count() == 1;
+                let own = turns.iter().position(|m| *m == 1).filter(|_| alone);
+                let name = match own {
+                    Some(mode) => polar.phases[mode],
+                    None => {
+                        named += 1;
+                        Symbol::new(&format!("{stem}{named}"))
+                    }
+                };
+                (name, turns.clone())
+            })
+            .collect();
+        let rounded_rates = |rate: &SlowRate| {
+            let rate = in_slow_phases(rate, &basis);
+            let waves = |waves: &super::PhaseWaves| {
+                waves
+                    .iter()
+                    .map(|(turns, parts)| (turns.clone(), parts.each_ref().map(round)))
+                    .collect()
+            };
+            SlowRate { amplitude: waves(&rate.amplitude), phase: waves(&rate.phase) }
+        };
+        // The base of the single drive, and the number of its periods in one of that.
+        let base = match reference.drives.as_slice() {
+            [wave] => {
+                let mut places = wave.iter().enumerate().filter(|(_, times)| **times != 0);
+                match (places.next(), places.next()) {
+                    (Some((place, times)), None) => {
+                        usize::try_from(*times).ok().map(|periods| (place, periods))
+                    }
+                    _ => None,
                 }
-                _ => None,
             }
-        }
-        _ => None,
-    };
-    let motion = motion(problem, expansion, polar, &form.shapes, &round)?;
-    let columns = |column: usize| {
-        form.shapes.iter().map(|row| Expr::from(&round(&row[column]))).collect::<Vec<Expr>>()
-    };
-    let mut slow = SlowMotion {
-        system: system.clone(),
-        order: problem.order,
-        small_order: problem.small_order,
-        resonances,
-        frequencies: form
-            .frequencies
-            .iter()
-            .map(|frequency| Expr::from(&round(&frequency.value)))
-            .collect(),
-        shapes: (0..form.frequencies.len()).map(columns).collect(),
-        references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
-        base: base.map(|(place, _)| Expr::from(&round(&reference.bases[place]))),
-        periods: base.map(|(_, periods)| periods),
-        locked: reference
-            .own
-            .iter()
-            .map(|row| {
-                let mut others = row.iter().enumerate().filter(|(_, times)| **times != 0);
-                base.is_some_and(|(place, _)| others.all(|(other, _)| other == place))
-            })
-            .collect(),
-        detunings: reference.meanings.clone(),
-        amplitudes: polar.amplitudes.clone(),
-        phases: polar.phases.clone(),
-        slow_phases,
-        rates: in_phases.iter().map(rounded_rates).collect(),
-        complex_amplitudes: polar.complex.clone(),
-        complex_rates: (0..polar.complex.len())
-            .map(|mode| {
-                let mut sum = ComplexPolynomial::zero();
-                expansion.rates.iter().for_each(|rates| sum.accumulate(&rates[mode]));
-                sum.map(&round)
-            })
-            .collect(),
-        motion,
-        definitions: vec![],
-        rounded: form.rounded,
-        leaves_out,
-    };
-    slow.definitions = used(&slow, form.names.definitions.clone())?;
-    Ok(slow)
+            _ => None,
+        };
+        let motion = motion(problem, expansion, polar, &form.shapes, &round)?;
+        let columns = |column: usize| {
+            form.shapes.iter().map(|row| Expr::from(&round(&row[column]))).collect::<Vec<Expr>>()
+        };
+        let mut slow = SlowMotion {
+            system: (*system).clone(),
+            order: problem.order,
+            small_order: problem.small_order,
+            resonances,
+            frequencies: form
+                .frequencies
+                .iter()
+                .map(|frequency| Expr::from(&round(&frequency.value)))
+                .collect(),
+            shapes: (0..form.frequencies.len()).map(columns).collect(),
+            references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
+            base: base.map(|(place, _)| Expr::from(&round(&reference.bases[place]))),
+            periods: base.map(|(_, periods)| periods),
+            locked: reference
+                .own
+                .iter()
+                .map(|row| {
+                    let mut others = row.iter().enumerate().filter(|(_, times)| **times != 0);
+                    base.is_some_and(|(place, _)| others.all(|(other, _)| other == place))
+                })
+                .collect(),
+            detunings: reference.meanings.clone(),
+            amplitudes: polar.amplitudes.clone(),
+            phases: polar.phases.clone(),
+            slow_phases,
+            rates: in_phases.iter().map(rounded_rates).collect(),
+            complex_amplitudes: polar.complex.clone(),
+            complex_rates: (0..polar.complex.len())
+                .map(|mode| {
+                    let mut sum = ComplexPolynomial::zero();
+                    expansion.rates.iter().for_each(|rates| sum.accumulate(&rates[mode]));
+                    sum.map(round)
+                })
+                .collect(),
+            motion,
+            definitions: vec![],
+            rounded: form.rounded,
+            leaves_out,
+        };
+        slow.definitions = used(&slow, form.names.definitions.clone())?;
+        Ok(slow)
+    }
 }
 
 /// The definitions that occur in an answer, or in others that do.

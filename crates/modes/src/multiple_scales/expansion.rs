@@ -80,9 +80,9 @@ impl Problem {
             rates: vec![vec![ComplexPolynomial::zero(); count]],
         };
         let forced = self.force(0, &[], form);
-        for mode in 0..count {
+        for (mode, forced) in forced.iter().enumerate() {
             let own = ComplexPolynomial::real(Polynomial::symbol(self.amplitudes[mode][0]));
-            let mut first = self.particular(mode, &negative(&forced[mode]), form)?;
+            let mut first = self.particular(mode, &negative(forced), form)?;
             accumulate(&mut first, &self.mirrored(Waves::from([(self.own[mode].clone(), own)])));
             found.displacement[mode].push(first);
         }

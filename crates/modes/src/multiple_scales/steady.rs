@@ -21,11 +21,14 @@ use crate::interrupt::Interrupt;
 use crate::solution::defined_values;
 use crate::symbol::Symbol;
 
+/// A term of a rate: the number before it, and the powers of each `B_j` and of its conjugate.
+type RateTerm = (Complex<f64>, Vec<[i32; 2]>);
+
 /// Slow equations with numbers for all parameters.
 #[derive(Clone, Debug)]
 pub struct SlowNumbers {
-    /// The terms of each rate: the number before it, and the powers of `B_j` and of its conjugate.
-    rates: Vec<Vec<(Complex<f64>, Vec<[i32; 2]>)>>,
+    /// The terms of each rate.
+    rates: Vec<Vec<RateTerm>>,
     /// A basis of the rates that the phases may have by themselves.
     open: DMatrix<f64>,
 }
@@ -120,7 +123,7 @@ impl SlowMotion {
 impl SlowNumbers {
     /// `B_j'` at these complex amplitudes.
     pub fn rates(&self, amplitudes: &[Complex<f64>]) -> Vec<Complex<f64>> {
-        let one = |terms: &Vec<(Complex<f64>, Vec<[i32; 2]>)>| {
+        let one = |terms: &Vec<RateTerm>| {
             terms.iter().map(|(factor, powers)| factor * product(amplitudes, powers)).sum()
         };
         self.rates.iter().map(one).collect()
@@ -129,7 +132,7 @@ impl SlowNumbers {
     /// The derivatives of the rates with respect to each amplitude and its conjugate.
     fn slopes(&self, amplitudes: &[Complex<f64>]) -> Vec<Vec<[Complex<f64>; 2]>> {
         let count = amplitudes.len();
-        let one = |terms: &Vec<(Complex<f64>, Vec<[i32; 2]>)>| {
+        let one = |terms: &Vec<RateTerm>| {
             let mut row = vec![[Complex::zero(); 2]; count];
             for (factor, powers) in terms {
                 for (mode, entry) in row.iter_mut().enumerate() {

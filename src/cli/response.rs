@@ -337,7 +337,7 @@ fn slow_motion(
     Err(match last {
         Some(error) => refused(error),
         None => Failure::because(
-            "no value in the range is near a resonance at which the drive acts on every mode: `lindstedt derive --method multiple-scales --resonance ...` has the slow equations of others"
+            "no value in the range is near a resonance at which a drive fixes the phases of the modes that it moves: `lindstedt derive --method multiple-scales --resonance ...` has the slow equations of others"
                 .to_owned(),
         ),
     })

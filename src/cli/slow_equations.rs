@@ -128,20 +128,14 @@ pub(super) fn run(
     })
 }
 
-/// The slow equations; where letters leave no closed form, or leave open which resonance is meant, and
-/// values are given, those of the equations with the numbers in them, and the values that are left.
+/// The slow equations; where letters leave no closed form and values are given, those of the equations with the numbers in them, and the values that are left.
 fn with_numbers(
     system: &CoupledSystem,
     options: &MultipleScalesOptions,
     values: Option<Values>,
 ) -> Result<(SlowMotion, Option<Values>), MultipleScalesError> {
     let in_the_way = |error: &MultipleScalesError| {
-        matches!(
-            error,
-            MultipleScalesError::Modes(ModeError::Letters { .. })
-                | MultipleScalesError::Resonance(_)
-                | MultipleScalesError::Divisor { .. }
-        )
+        matches!(error, MultipleScalesError::Modes(ModeError::Letters { .. }))
     };
     match (derive(system, options), values) {
         (Err(error), Some(values)) if in_the_way(&error) => {

@@ -197,7 +197,7 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
         let stable = match motion.state.growth {
             Some(growth) if growth < 0.0 => "yes",
             Some(growth) if growth > 0.0 => "no",
-            _ => "-",
+            _ => "neutral",
         };
         numbers
             .map(|number| decimal(*number))
@@ -205,6 +205,12 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
             .collect::<Vec<String>>()
     });
     blocks.push(Block::Table { head, rows: rows.collect() });
+    if judged.has_families {
+        blocks.push(Block::Note(
+            "there are families of steady motions as well, without isolated members; they are not listed"
+                .to_owned(),
+        ));
+    }
     let turning =
         judged.steady.iter().any(|motion| motion.state.turning.iter().any(|rate| *rate != 0.0));
     if turning {
@@ -257,11 +263,19 @@ fn validity(slow: &SlowMotion) -> Vec<Block<'static>> {
             slow.resonances.join(", ")
         )));
     }
-    if slow.rounded {
+    for near in &slow.near {
         notes.push(Block::Note(format!(
-            "coefficients are rounded to {} digits: a linear frequency has no closed form",
-            significant(15.0, 2)
+            "a divisor is small: the wave of frequency {} is within {} % of that of mode {}, and no resonance says so",
+            near.frequency,
+            significant(100.0 * near.distance, 2),
+            near.mode
         )));
+    }
+    if slow.rounded {
+        notes.push(Block::Note(
+            "coefficients are rounded to 15 digits: squares of linear frequencies are no fractions"
+                .to_owned(),
+        ));
     }
     notes
 }

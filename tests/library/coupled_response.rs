@@ -447,7 +447,7 @@ fn what_is_asked_wrongly_says_why() {
         ("x'' + k*x - y = 0; y'' + y - x = 0", "k", "", "a frequency for each energy"),
         ("x'' + x'/5 + k*x = y + cos(w*t); y'' + y'/5 + y = x", "w", "", "no value for `k`"),
         ("x'' + x'/5 + x = y + cos(w*t); y'' + y'/5 + y = x", "w", "q = 1", "`q`"),
-        ("x'' + sgn(x')/5 + x = y + cos(w*t); y'' + y'/5 + y = x", "w", "", "jumps"),
+        ("x'' + sgn(x')*sgn(y') + x = y + cos(w*t); y'' + sgn(y')/5 + y = x", "w", "", "jumps"),
     ] {
         let refused = respond(&question(equations, parameter, [0.5, 1.5], values));
         let message = refused.expect_err(equations).to_string();

@@ -266,7 +266,7 @@ fn coupled_cycles_die_beyond_the_published_distance() {
     for (apart, dies) in [(edge * 1.001, true), (edge * 0.999, false)] {
         let values: BTreeMap<&str, f64> = [("eps", 0.05), ("k", 2.0), ("w", 1.0 + apart)].into();
         let numbers = found.in_numbers(&|name| values.get(name.name()).copied()).expect("values");
-        let states = numbers.steady_states(Default::default());
+        let states = numbers.steady_states(Default::default()).isolated;
         let rest = states.iter().find(|state| state.amplitudes == [0.0, 0.0]).expect("rest");
         assert_eq!(rest.is_stable(), dies, "{apart}: {states:?}");
     }
@@ -347,4 +347,63 @@ fn refusals_name_what_is_in_the_way() {
     assert!(twice.to_string().contains("follows"), "{twice}");
     let alone = refused("x'' + x + x^3 = 0; y'' = x", "", None);
     assert!(alone.to_string().contains("omega = 0"), "{alone}");
+}
+
+/// Steady motions that differ in phase alone, families, large amplitudes, drives on one mode: each was
+/// missed once.
+#[test]
+fn no_steady_motion_is_passed_over() {
+    let states = |equations: &str, values: &[(&str, f64)]| {
+        let system = CoupledSystem::parse(equations).expect(equations);
+        let values: BTreeMap<Symbol, f64> =
+            values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
+        let asked = MultipleScalesOptions { values: values.clone(), ..Default::default() };
+        let slow = derive(&system, &asked).unwrap_or_else(|error| panic!("{equations}: {error}"));
+        let numbers = slow.in_numbers(&|name| values.get(&name).copied()).expect("values");
+        (numbers.steady_states(Default::default()), slow)
+    };
+    // In phase and out of phase, with equal amplitudes.
+    let (found, _) = states(
+        "x'' - eps*(1 - x^2)*x' + x + eps*(x - y) = 0; y'' - eps*(1 - y^2)*y' + y + eps*(y - x) = 0",
+        &[("eps", 0.1)],
+    );
+    let locked = found.isolated.iter().filter(|state| state.is_stable());
+    let amplitudes: Vec<_> = locked.map(|state| state.amplitudes.clone()).collect();
+    assert_eq!(amplitudes.len(), 2, "{found:?}");
+    assert!(amplitudes.iter().flatten().all(|a| (a - 2.0).abs() < 1e-9));
+    // A circle of motions.
+    let (found, _) = states(
+        "x'' - eps*(1 - x^2 - y^2)*x' + x = 0; y'' - eps*(1 - x^2 - y^2)*y' + y = 0",
+        &[("eps", 0.1)],
+    );
+    assert!(found.has_families, "{found:?}");
+    // The same in other units.
+    let at = |scale: f64| {
+        let system = format!(
+            "x'' + x'/50 + x + x*y/{scale} = 0; y'' + y'/50 + 4*y + x^2/{scale} = F*cos(Omega*t)"
+        );
+        states(&system, &[("F", 0.01 * scale), ("Omega", 2.0)]).0.isolated.len()
+    };
+    assert_eq!([at(5.0), at(5000.0)], [2, 2]);
+    // A drive near a mode on which it does not act drives another at twice its frequency.
+    let (_, slow) = states(
+        "x'' + x'/50 + x + x^2/5 = F*cos(Omega*t); y'' + y'/50 + 4*y + y*x^2/5 = 0",
+        &[("F", 0.5), ("Omega", 2.0)],
+    );
+    let [rate, _] = slow.rate(0).expect("rates");
+    assert!(rate.contains(Symbol::new("F")), "{rate}");
+    // A second drive near the first: its divisor is small, and that is said.
+    let (_, slow) = states(
+        "x'' + x'/50 + x + x^3/5 = F*cos(Omega*t) + G*cos(W*t); y'' + y'/50 + 3*y + x*y/5 = 0",
+        &[("F", 0.02), ("G", 0.01), ("Omega", 1.01), ("W", 1.02)],
+    );
+    assert!(slow.near.iter().any(|near| near.mode == 1 && near.distance < 0.02), "{:?}", slow.near);
+    // Resonances that contradict the numbers together are not taken together.
+    let (_, slow) =
+        states("x'' + 2*x - y + x^3/5 = 0; y'' + 2*y - x - z = 0; z'' + 2*z - y = 0", &[]);
+    for (reference, frequency) in slow.references.iter().zip(&slow.frequencies) {
+        let [reference, frequency] = [reference, frequency]
+            .map(|expression| expression.evaluate(&Default::default()).expect("a number"));
+        assert!((reference / frequency - 1.0).abs() < 0.061, "{reference} {frequency}");
+    }
 }

@@ -1,12 +1,13 @@
 //! Coupled oscillators, `M q'' + K q + f(q, q', q'') = 0`, and the formulas of their free motions.
 //!
-//! In: equations of several coordinates that nothing drives or damps. Out: the nonlinear normal
-//! modes, each with its frequency law, the motion of every coordinate and the modal line; or a
-//! refusal that names the term, or the two modes that resonate.
+//! In: equations of several coordinates. Out: of those that nothing drives or damps the nonlinear
+//! normal modes, each with its frequency law, the motion of every coordinate and the modal line; of
+//! all the slow equations of amplitudes and phases; or a refusal that names the term, or the two
+//! modes that resonate.
 //!
-//! Five names to know: [`modes::FreeSystem`], the question; [`modes::derive`] with
-//! [`modes::ModeOptions`]; [`modes::NonlinearMode`], the answer for one mode;
-//! [`modes::ModeError`], the refusal.
+//! Five names to know: [`modes::FreeSystem`], the question; [`modes::derive`] and
+//! [`modes::NonlinearMode`], the answer for one mode; [`multiple_scales::CoupledSystem`] and
+//! [`multiple_scales::SlowMotion`], the same with damping and drives.
 
 #![warn(missing_docs)]
 
@@ -22,6 +23,7 @@ pub use lindstedt_oscillator::{method, solution};
 pub use lindstedt_series::series;
 
 pub mod modes;
+
 pub mod multiple_scales;
 
 pub use interrupt::Supervision;

@@ -77,8 +77,8 @@ pub use schema::DocumentKind;
 pub use shard::{PointDocument, StudyDocument};
 pub use simulation::{SimulationDocument, simulation};
 pub use slow_equations::{
-    SlowEquationsDocument, SlowModeDocument, SlowSteadyDocument, SteadyRelationDocument,
-    TransientDocument, slow_equations,
+    NearDivisorDocument, SlowEquationsDocument, SlowModeDocument, SlowSteadyDocument,
+    SteadyRelationDocument, TransientDocument, slow_equations,
 };
 pub use solution::{SolutionDocument, solution};
 pub use stability::{StabilityDocument, stability};

@@ -45,12 +45,17 @@ pub struct SlowEquationsDocument {
     pub definitions: Map<String>,
     /// The relations of steady motions with the phases eliminated.
     pub relations: Vec<SteadyRelationDocument>,
+    /// Waves that are near the frequency of a mode they are not in resonance with, where values are known: a
+    /// divisor is small.
+    pub near: Vec<NearDivisorDocument>,
     /// Whether coefficients are rounded to fifteen digits.
     pub numerical: bool,
     /// The values at which steady motions, or a motion, were computed; null without values.
     pub at: Option<Map<Constant>>,
     /// The steady motions at the values, the largest first.
     pub steady: Vec<SlowSteadyDocument>,
+    /// Whether there are families of steady motions as well, which are not listed.
+    pub has_families: bool,
     /// The motion from the amplitudes that were given, beside the true one; null without them.
     pub transient: Option<TransientDocument>,
     /// `pass` or `fail`; null where nothing was compared.
@@ -79,6 +84,18 @@ pub struct SlowModeDocument {
     pub amplitude_rate: String,
     /// The rate of the phase, a formula.
     pub phase_rate: String,
+}
+
+/// A wave near the frequency of a mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "NearDivisor"))]
+pub struct NearDivisorDocument {
+    /// The number of the mode.
+    pub mode: usize,
+    /// The frequency of the wave, a formula.
+    pub frequency: String,
+    /// Its distance from that of the mode, as a part of it.
+    pub distance: f64,
 }
 
 /// A relation between amplitudes of steady motions.
@@ -192,6 +209,15 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
         motion: formulas(&slow.motion),
         definitions: meanings(&definitions),
         relations: relations.collect(),
+        near: slow
+            .near
+            .iter()
+            .map(|near| NearDivisorDocument {
+                mode: near.mode,
+                frequency: near.frequency.to_string(),
+                distance: near.distance,
+            })
+            .collect(),
         numerical: slow.rounded,
         at: judged.map(|judged| constants(&judged.at)),
         steady: judged
@@ -199,6 +225,7 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
             .flat_map(|judged| &judged.steady)
             .map(|motion| steady(report, motion))
             .collect(),
+        has_families: judged.is_some_and(|judged| judged.has_families),
         transient: judged.and_then(|judged| judged.transient.as_ref()).map(transient),
         verdict: judged.and_then(|judged| judged.verdict).map(|verdict| verdict.name().to_owned()),
         tolerance: judged.map(|judged| judged.tolerance),

@@ -280,6 +280,13 @@ fn along_ratio(
     let mut eliminated = a2.product(&b1);
     eliminated.negate();
     eliminated.accumulate(&a1.product(&b2));
+    if eliminated.is_zero() {
+        // Every ratio balances.
+        let ratio = Expr::from(names.ratio);
+        let quotient = Expr::divide(&Expr::from(&a1), &Expr::from(&b1))?.expand()?;
+        found.families.push(OneHarmonicFamily::Similar { ratio, frequency_squared: quotient });
+        return Ok(());
+    }
     // G by powers of A, each by powers of r.
     let mut parts: Vec<InRatio> =
         by_powers(&eliminated, AMPLITUDE).iter().map(|part| by_powers(part, names.ratio)).collect();
@@ -418,7 +425,8 @@ fn closed_roots(rows: &InRatio) -> Result<Vec<Expr>, ModeError> {
             let four = Polynomial::constant(ratio(-4, 1));
             let mut under = free.product(leading).product(&four);
             under.accumulate(&middle.product(middle));
-            let root = Expr::from(&under).sqrt()?;
+            // Numbers without a real root are no ratios.
+            let Ok(root) = Expr::from(&under).sqrt() else { return Ok(vec![]) };
             let below = Expr::from(2) * Expr::from(leading);
             let of = |sign: i64| -> Result<Expr, ModeError> {
                 let above = &(&root * &Expr::from(sign)) - &Expr::from(middle);

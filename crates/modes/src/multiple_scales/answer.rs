@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
 use super::expansion::{Expansion, OrderedTerm, Problem, WaveVector};
 use super::modal::ModalForm;
@@ -12,7 +12,7 @@ use super::slow_equations::{
 };
 use super::{CoupledSystem, MultipleScalesError, SlowSteadyState};
 use crate::decimal::rounded_fraction;
-use crate::exact::rational::{Integer, ratio};
+use crate::exact::rational::{Integer, ratio, to_f64};
 use crate::exact::{ComplexPolynomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
@@ -25,7 +25,10 @@ use num_integer::Integer as _;
 const HIGHEST_ORDER: usize = 6;
 
 /// Number of digits of rounded coefficients.
-const KEPT_DIGITS: usize = 15;
+pub(super) const KEPT_DIGITS: usize = 15;
+
+/// Size below which a coefficient of rounded numbers is what is left of terms that cancel.
+const NOISE: f64 = 1e-40;
 
 /// The choices of a derivation.
 #[derive(Clone, Debug, Default)]
@@ -90,6 +93,20 @@ pub struct SlowMotion {
     pub rounded: bool,
     /// Whether terms of the equations are of a higher order, and so left out.
     pub leaves_out: bool,
+    /// Waves in the motion that are near the frequency of a mode they are not in resonance with, where
+    /// values are known: a divisor is small.
+    pub near: Vec<NearDivisor>,
+}
+
+/// A wave near the frequency of a mode.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearDivisor {
+    /// The number of the mode.
+    pub mode: usize,
+    /// The frequency of the wave.
+    pub frequency: Expr,
+    /// Its distance from that of the mode, as a part of it.
+    pub distance: f64,
 }
 
 impl SlowMotion {
@@ -108,7 +125,7 @@ impl SlowMotion {
     /// Whether a steady motion is periodic with the drive: no other mode moves.
     pub fn is_periodic(&self, state: &SlowSteadyState) -> bool {
         let mut modes = self.locked.iter().zip(&state.amplitudes);
-        self.is_driven() && modes.all(|(locked, a)| *locked || *a == 0.0)
+        self.base.is_some() && modes.all(|(locked, a)| *a == 0.0 || (*locked && self.is_driven()))
     }
 
     /// `a_j'` and `phi_j'` as expressions.
@@ -191,7 +208,7 @@ pub fn derive(
     if order < small_order {
         return Err(MultipleScalesError::BelowBalance { asked: order, lowest: small_order });
     }
-    let terms = ordered(system, &reference, small_order);
+    let terms = ordered(system, &reference, &form.projection, small_order);
     let leaves_out = terms.iter().flatten().any(|term| term.order > order);
     let problem = Problem {
         terms,
@@ -204,7 +221,9 @@ pub fn derive(
         amplitudes: polar.complex.clone(),
         order,
         supervision: options.supervision,
+        known: known_values(&form, &options.values),
     };
+    form.near.clear();
     let expansion = problem.expand(&mut form)?;
     let written = resonances.iter().map(|resonance| frequencies.written(resonance)).collect();
     Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem }
@@ -230,7 +249,10 @@ impl Derivation<'_> {
     ) -> Result<SlowMotion, MultipleScalesError> {
         let Self { system, form, reference, polar, problem } = self;
         let round = |polynomial: &Polynomial| match form.rounded {
-            true => polynomial.map(|number| rounded_fraction(number, KEPT_DIGITS)),
+            true => polynomial.map(|number| match to_f64(&number.abs()) < NOISE {
+                true => Rational::zero(),
+                false => rounded_fraction(number, KEPT_DIGITS),
+            }),
             false => polynomial.clone(),
         };
         let in_phases = rates(expansion, polar, |order| order > 0);
@@ -318,6 +340,7 @@ impl Derivation<'_> {
             definitions: vec![],
             rounded: form.rounded,
             leaves_out,
+            near: form.near.clone(),
         };
         slow.definitions = used(&slow, form.names.definitions.clone())?;
         Ok(slow)
@@ -394,9 +417,14 @@ fn names_of_frequencies(
     let modes = form.frequencies.iter().enumerate().map(|(index, frequency)| {
         let own = Expr::from(&frequency.value);
         let alias = alias(index + 1, &system.equations.parameters);
-        match own.as_number() {
-            Some(_) => alias.into_iter().chain([own]).collect(),
-            None => std::iter::once(own).chain(alias).collect(),
+        // A name, and one that no other mode has.
+        let twice = form
+            .frequencies
+            .iter()
+            .filter(|other| Expr::from(&other.value).symbols() == own.symbols());
+        match own.as_number().is_some() || twice.count() > 1 {
+            true => alias.into_iter().chain([own]).collect(),
+            false => std::iter::once(own).chain(alias).collect(),
         }
     });
     let drives = drives.iter().zip(&system.drives).enumerate().map(|(index, (drive, rate))| {
@@ -537,33 +565,40 @@ fn put_in_place_of_a_base(
 fn ordered(
     system: &CoupledSystem,
     reference: &References,
+    projection: &[Vec<Polynomial>],
     small_order: usize,
 ) -> Vec<Vec<OrderedTerm>> {
-    let resonant = |multiple: &Rational, drive: usize| {
+    // Whether a wave on an equation drives a mode at its own frequency.
+    let resonant = |row: usize, multiple: &Rational, drive: usize| {
         let wave: Vec<Rational> = reference.drives[drive]
             .iter()
             .map(|m| multiple * Rational::from_integer((*m).into()))
             .collect();
-        reference.own.iter().any(|own| {
-            own.iter().zip(&wave).all(|(own, m)| Rational::from_integer((*own).into()) == *m)
+        reference.own.iter().zip(projection).any(|(own, onto)| {
+            !onto[row].is_zero()
+                && own.iter().zip(&wave).all(|(own, m)| Rational::from_integer((*own).into()) == *m)
         })
     };
-    let order = |term: &super::system::SmallTerm| match (term.degree(), term.written_order) {
-        (0, written) => match term.waves.as_slice() {
-            [wave] if !resonant(&wave.multiple, wave.drive) => written,
-            _ => written.max(small_order),
-        },
-        (_, written @ 1..) => written,
-        (1, 0) => small_order,
-        (degree, 0) => match system.small {
-            Some(_) => 1,
-            None => degree - 1,
-        },
+    let order =
+        |row: usize, term: &super::system::SmallTerm| match (term.degree(), term.written_order) {
+            (0, written) => match term.waves.as_slice() {
+                [wave] if !resonant(row, &wave.multiple, wave.drive) => written,
+                _ => written.max(small_order),
+            },
+            (_, written @ 1..) => written,
+            (1, 0) => small_order,
+            (degree, 0) => match system.small {
+                Some(_) => 1,
+                None => degree - 1,
+            },
+        };
+    let row = |(row, terms): (usize, &Vec<super::system::SmallTerm>)| {
+        terms
+            .iter()
+            .map(|term| OrderedTerm { order: order(row, term), term: term.clone() })
+            .collect()
     };
-    let row = |terms: &Vec<super::system::SmallTerm>| {
-        terms.iter().map(|term| OrderedTerm { order: order(term), term: term.clone() }).collect()
-    };
-    system.terms.iter().map(row).collect()
+    system.terms.iter().enumerate().map(row).collect()
 }
 
 /// The order at which nonlinear terms, and nonlinear terms with drives, change the amplitudes first.
@@ -577,10 +612,9 @@ fn order_of_balance(
     const USUAL: usize = 2;
     let nonlinear =
         |term: &OrderedTerm| term.term.degree() > 1 || (term.term.degree() == 0 && term.order == 0);
-    let terms: Vec<Vec<OrderedTerm>> = ordered(system, reference, HIGHEST_ORDER + 1)
-        .into_iter()
-        .map(|terms| terms.into_iter().filter(nonlinear).collect())
-        .collect();
+    let all = ordered(system, reference, &form.projection, HIGHEST_ORDER + 1);
+    let terms: Vec<Vec<OrderedTerm>> =
+        all.into_iter().map(|terms| terms.into_iter().filter(nonlinear).collect()).collect();
     let highest = terms.iter().flatten().map(|term| term.term.degree()).max().unwrap_or(0);
     for order in 1..=USUAL.max(highest.saturating_sub(1)).min(4) {
         let problem = Problem {
@@ -594,6 +628,7 @@ fn order_of_balance(
             amplitudes: polar.complex.clone(),
             order,
             supervision: Supervision::default(),
+            known: BTreeMap::new(),
         };
         let expansion = problem.expand(form)?;
         let acts =

@@ -77,7 +77,7 @@ impl MultipleScalesError {
             Self::Modes(error) => error.help(),
             Self::Resonance(error) => error.help(),
             Self::Divisor { .. } => {
-                Some("name the resonance, such as --resonance \"omega2 = 2*omega1\"".to_owned())
+                Some("name the resonance that makes it vanish, such as --resonance \"omega2 = 2*omega1\"; drives of one frequency need one letter".to_owned())
             }
             Self::BelowBalance { lowest, .. } => Some(format!("--order {lowest}")),
             Self::Term(_) | Self::Taylor(_) | Self::Gyroscopic(_) => {

@@ -12,9 +12,11 @@ use std::collections::BTreeMap;
 
 use num_traits::{ToPrimitive, Zero};
 
-use super::MultipleScalesError;
+use super::answer::KEPT_DIGITS;
 use super::modal::ModalForm;
 use super::system::SmallTerm;
+use super::{MultipleScalesError, NearDivisor};
+use crate::decimal::rounded_fraction;
 use crate::exact::rational::ratio;
 use crate::exact::{ComplexPolynomial, Polynomial, Rational};
 use crate::expr::Expr;
@@ -54,6 +56,8 @@ pub(super) struct Problem {
     pub(super) amplitudes: Vec<[Symbol; 2]>,
     pub(super) order: usize,
     pub(super) supervision: Supervision,
+    /// The values that are known.
+    pub(super) known: BTreeMap<Symbol, f64>,
 }
 
 /// The expansion, order by order.
@@ -296,11 +300,41 @@ impl Problem {
                     frequency: Expr::from(&frequency).to_string(),
                 });
             }
+            self.check_distance(mode, &frequency, form)?;
             let wanted = format!("d{}", form.names.definitions.len() + 1);
             let inverse = form.names.inverse(&divisor, &wanted).unwrap_or_else(Polynomial::zero);
             solved.insert(wave.clone(), tidied(&value.times(&inverse), form));
         }
         Ok(self.mirrored(solved))
+    }
+
+    /// Keeps a wave that is near the frequency of a mode, and refuses one that has it.
+    fn check_distance(
+        &self,
+        mode: usize,
+        frequency: &Polynomial,
+        form: &mut ModalForm,
+    ) -> Result<(), MultipleScalesError> {
+        const NEAR: f64 = 0.08;
+        const EQUAL: f64 = 1e-9;
+        let value = |of: &Polynomial| Expr::from(of).evaluate(&self.known).ok();
+        let (Some(wave), Some(own)) = (value(frequency), value(&self.references[mode])) else {
+            return Ok(());
+        };
+        let distance = (wave.abs() / own.abs() - 1.0).abs();
+        let written = Expr::from(&frequency.map(|number| match form.rounded {
+            true => rounded_fraction(number, KEPT_DIGITS),
+            false => number.clone(),
+        }));
+        if distance < EQUAL {
+            let frequency = written.to_string();
+            return Err(MultipleScalesError::Divisor { mode: mode + 1, frequency });
+        }
+        let known = form.near.iter().any(|near| near.mode == mode + 1 && near.frequency == written);
+        if distance < NEAR && !known {
+            form.near.push(NearDivisor { mode: mode + 1, frequency: written, distance });
+        }
+        Ok(())
     }
 
     /// `D_0` with the slow parts of a wave, at one order: `i mu` for order zero, `D_n` above.

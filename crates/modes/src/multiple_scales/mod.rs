@@ -37,10 +37,10 @@ mod slow_equations;
 mod steady;
 mod system;
 
-pub use answer::{MultipleScalesOptions, SlowMotion, derive};
+pub use answer::{MultipleScalesOptions, NearDivisor, SlowMotion, derive};
 pub use error::MultipleScalesError;
 pub use relations::SteadyRelation;
 pub use resonance::{Resonance, ResonanceError};
 pub use slow_equations::{PhaseWaves, SlowRate};
-pub use steady::{SlowNumbers, SlowSteadyState};
+pub use steady::{SlowNumbers, SlowSteadyState, SlowSteadyStates};
 pub use system::CoupledSystem;

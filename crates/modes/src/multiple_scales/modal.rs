@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 
 use num_traits::{One, Signed, Zero};
 
-use super::{CoupledSystem, MultipleScalesError};
+use super::answer::KEPT_DIGITS;
+use super::{CoupledSystem, MultipleScalesError, NearDivisor};
 use crate::decimal::{rounded_fraction, significant};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::{from_f64, to_f64};
@@ -35,6 +36,8 @@ pub(super) struct ModalForm {
     pub(super) names: Names,
     /// Whether coefficients are rounded to [`DIGITS`] digits.
     pub(super) rounded: bool,
+    /// The waves that are near the frequency of a mode.
+    pub(super) near: Vec<NearDivisor>,
 }
 
 /// A frequency, as a polynomial of one term.
@@ -71,7 +74,16 @@ impl Names {
     pub(super) fn single(&mut self, polynomial: &Polynomial, wanted: &str) -> Polynomial {
         match polynomial.single_term() {
             Some(_) => polynomial.clone(),
-            None => Polynomial::symbol(self.define(wanted, Expr::from(polynomial))),
+            None => {
+                // Numbers of more digits are those of rounding.
+                const LONGEST: u64 = 160;
+                let long = |number: &Rational| number.denom().bits() > LONGEST;
+                let meaning = polynomial.map(|number| match long(number) {
+                    true => rounded_fraction(number, KEPT_DIGITS),
+                    false => number.clone(),
+                });
+                Polynomial::symbol(self.define(wanted, Expr::from(&meaning)))
+            }
         }
     }
 
@@ -176,6 +188,7 @@ impl ModalForm {
             frequencies: vec![],
             names,
             rounded,
+            near: vec![],
         };
         for index in 0..count {
             let mode = modes.mode(index)?;
@@ -199,6 +212,7 @@ impl ModalForm {
             frequencies: vec![],
             names,
             rounded: false,
+            near: vec![],
         };
         for index in 0..count {
             let number = index + 1;

@@ -53,7 +53,11 @@ impl SlowMotion {
         let mut found = Vec::new();
         for at_rest in std::iter::once(free.clone()).chain(resting) {
             if at_rest.len() < count && self.may_rest(&at_rest) {
-                found.extend(self.relations(&at_rest));
+                let own = self.relations(&at_rest);
+                // A mode without a relation may be one that cannot move.
+                if own.len() + at_rest.len() == count {
+                    found.extend(own);
+                }
             }
         }
         found

@@ -257,7 +257,7 @@ impl Frequencies<'_> {
 
     fn check_near(&self, resonance: &Resonance) -> Result<(), ResonanceError> {
         /// The largest distance of a resonance that somebody asks for.
-        const FAR: f64 = 0.35;
+        const FAR: f64 = 0.15;
         match self.distance(resonance) {
             Some(distance) if distance > FAR => Err(ResonanceError::Far {
                 resonance: self.written(resonance),
@@ -274,7 +274,7 @@ impl Frequencies<'_> {
     /// [`ResonanceError::Open`] for a drive in letters.
     pub(super) fn near(&self) -> Result<Vec<Resonance>, ResonanceError> {
         /// The largest distance of a resonance that counts as near.
-        const NEAR: f64 = 0.1;
+        const NEAR: f64 = 0.06;
         /// The number of modes above which resonances of three frequencies at most are sought.
         const MANY: usize = 10;
         let open = (self.modes..self.names.len()).any(|index| {
@@ -311,11 +311,25 @@ impl Frequencies<'_> {
         let mut found: Vec<Resonance> = Vec::new();
         for (_, _, resonance) in candidates {
             found.push(resonance);
-            if Lattice::new([self.modes, self.names.len()], &found, &Integer::one()).is_err() {
+            let lattice = Lattice::new([self.modes, self.names.len()], &found, &Integer::one());
+            if !lattice.is_ok_and(|lattice| self.keeps_near(&lattice, NEAR)) {
                 found.pop();
             }
         }
         Ok(found)
+    }
+
+    /// Whether every reference frequency is near that of its mode.
+    fn keeps_near(&self, lattice: &Lattice, near: f64) -> bool {
+        (0..self.modes).all(|mode| {
+            let parts = lattice.rows[mode].iter().zip(&lattice.bases).map(|(times, base)| {
+                Some(f64::from(*times) * self.values[*base]? / lattice.divisor as f64)
+            });
+            match (parts.sum::<Option<f64>>(), self.values[mode]) {
+                (Some(reference), Some(own)) => (reference / own - 1.0).abs() <= near,
+                _ => true,
+            }
+        })
     }
 
     /// All rows of whole numbers with a sum of sizes of two at least, of which the last that is not zero is positive.

@@ -31,6 +31,17 @@ pub struct SlowNumbers {
     rates: Vec<Vec<RateTerm>>,
     /// A basis of the rates that the phases may have by themselves.
     open: DMatrix<f64>,
+    /// The combinations of phases that occur.
+    slow_phases: Vec<Vec<i32>>,
+}
+
+/// The steady motions of slow equations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SlowSteadyStates {
+    /// Those that stand alone, the largest first.
+    pub isolated: Vec<SlowSteadyState>,
+    /// Whether others are members of families, which are not listed.
+    pub has_families: bool,
 }
 
 /// A steady motion of slow equations.
@@ -101,7 +112,8 @@ impl SlowMotion {
         let open = DMatrix::from_fn(kept.len(), count, |row, column| {
             decomposed.eigenvectors[(column, kept[row])]
         });
-        Ok(SlowNumbers { rates, open })
+        let slow_phases = self.slow_phases.iter().map(|(_, turns)| turns.clone()).collect();
+        Ok(SlowNumbers { rates, open, slow_phases })
     }
 
     /// The values of what the formulas name, detunings among it.
@@ -195,10 +207,10 @@ impl SlowNumbers {
     }
 
     /// The steady motions that are found, the largest first; one of those that differ in phase alone.
-    /// A family of motions without isolated members, as without damping, is left out.
-    pub fn steady_states(&self, interrupt: Interrupt) -> Vec<SlowSteadyState> {
+    /// Families of motions without isolated members, as without damping, are left out.
+    pub fn steady_states(&self, interrupt: Interrupt) -> SlowSteadyStates {
         /// The number of starts for each mode.
-        const STARTS: usize = 500;
+        const STARTS: usize = 1000;
         self.steady_states_near(&[], STARTS * self.rates.len(), interrupt)
     }
 
@@ -208,10 +220,11 @@ impl SlowNumbers {
         known: &[SlowSteadyState],
         starts: usize,
         interrupt: Interrupt,
-    ) -> Vec<SlowSteadyState> {
+    ) -> SlowSteadyStates {
         let count = self.rates.len();
         let mut random = ChaCha8Rng::seed_from_u64(0);
-        let mut found: Vec<SlowSteadyState> = Vec::new();
+        let mut all = SlowSteadyStates::default();
+        let found = &mut all.isolated;
         for start in 0..=known.len() + starts {
             if interrupt.is_requested() {
                 break;
@@ -229,21 +242,28 @@ impl SlowNumbers {
                 }
             } else if start > 0 {
                 for mode in 0..count {
-                    let size = 10.0_f64.powf(random.random_range(-4.0..1.5));
+                    let size = 10.0_f64.powf(random.random_range(-5.0..4.5));
                     let phase = random.random_range(0.0..std::f64::consts::TAU);
                     (place[2 * mode], place[2 * mode + 1]) =
                         (size * phase.cos(), size * phase.sin());
                 }
             }
-            let Some(state) = self.solved(place) else { continue };
+            let state = match self.solved(place) {
+                Solved::Isolated(state) => state,
+                Solved::Family => {
+                    all.has_families = true;
+                    continue;
+                }
+                Solved::Nothing => continue,
+            };
             let scale = state.amplitudes.iter().fold(0.0_f64, |most, a| most.max(*a));
             let is_known = |known: &SlowSteadyState| {
+                let amplitudes = known.amplitudes.iter().zip(&state.amplitudes);
                 known.is_stable() == state.is_stable()
-                    && known
-                        .amplitudes
-                        .iter()
-                        .zip(&state.amplitudes)
+                    && amplitudes
+                        .into_iter()
                         .all(|(one, other)| (one - other).abs() <= 1e-7 * scale)
+                    && self.slow_phases.iter().all(|turns| same_phase(turns, known, &state))
             };
             if !found.iter().any(is_known) {
                 found.push(state);
@@ -254,37 +274,55 @@ impl SlowNumbers {
                 |state: &SlowSteadyState| state.amplitudes.iter().map(|a| a * a).sum::<f64>();
             size(other).total_cmp(&size(one))
         });
-        found
+        all
     }
 
     /// Newton's method with the shortest steps, for phases may be open.
-    fn solved(&self, mut place: DVector<f64>) -> Option<SlowSteadyState> {
+    fn solved(&self, mut place: DVector<f64>) -> Solved {
         const MOST: usize = 60;
-        const LARGEST: f64 = 1e4;
+        const LARGEST: f64 = 1e7;
         let count = self.rates.len();
+        let isolated =
+            |place: &DVector<f64>| self.state(place).map_or(Solved::Family, Solved::Isolated);
+        let solves = |place: &DVector<f64>, residual: &DVector<f64>, slopes: &DMatrix<f64>| {
+            let size = place.rows(0, 2 * count).norm();
+            residual.norm() <= 1e-12 * size * slopes.norm() && size > 1e-9
+        };
         for step in 0..MOST {
             let (residual, slopes) = self.equations(&place);
             if !residual.iter().all(|entry| entry.is_finite()) {
-                return None;
+                return Solved::Nothing;
             }
             // The shortest of the steps that a rate which is open leaves.
             let square = &slopes * slopes.transpose();
-            let change = slopes.transpose() * square.lu().solve(&residual)?;
+            let Some(solution) = square.lu().solve(&residual) else {
+                return match solves(&place, &residual, &slopes) {
+                    true => isolated(&place),
+                    false => Solved::Nothing,
+                };
+            };
+            let change = slopes.transpose() * solution;
             place -= &change;
             let size = place.rows(0, 2 * count).norm();
             if !size.is_finite() || size > LARGEST {
-                return None;
+                return Solved::Nothing;
             }
             if change.norm() <= 1e-13 * size.max(1e-3) && step > 0 {
-                return self.state(&place);
+                return isolated(&place);
             }
             if size < 1e-12 {
                 place.rows_mut(0, 2 * count).fill(0.0);
                 let (residual, _) = self.equations(&place);
-                return (residual.norm() == 0.0).then(|| self.state(&place)).flatten();
+                let state = (residual.norm() == 0.0).then(|| self.state(&place)).flatten();
+                return state.map_or(Solved::Nothing, Solved::Isolated);
             }
         }
-        None
+        // Newton's method comes to a family, or to a mode at rest whose phase is open, by halves.
+        let (residual, slopes) = self.equations(&place);
+        match solves(&place, &residual, &slopes) {
+            true => isolated(&place),
+            false => Solved::Nothing,
+        }
     }
 
     /// A solution with its stability; `None` if it is one of a family.
@@ -323,12 +361,14 @@ impl SlowNumbers {
         let growth = growth.map(|growth| if growth.abs() <= ZERO * largest { 0.0 } else { growth });
         let amplitude =
             |b: &Complex<f64>| if at_rest(b) || scale == 0.0 { 0.0 } else { 2.0 * b.norm() };
+        let phase = |b: &Complex<f64>| {
+            let phase = if amplitude(b) == 0.0 { 0.0 } else { b.arg() };
+            // What rounding leaves of zero.
+            if phase.abs() < 1e-13 { 0.0 } else { phase }
+        };
         Some(SlowSteadyState {
             amplitudes: moving.iter().map(amplitude).collect(),
-            phases: moving
-                .iter()
-                .map(|b| if amplitude(b) == 0.0 { 0.0 } else { b.arg() })
-                .collect(),
+            phases: moving.iter().map(phase).collect(),
             turning: self
                 .turning(&place.as_slice()[2 * count..])
                 .into_iter()
@@ -337,6 +377,27 @@ impl SlowNumbers {
                 .collect(),
             growth,
         })
+    }
+}
+
+/// What Newton's method comes to.
+enum Solved {
+    Isolated(SlowSteadyState),
+    Family,
+    Nothing,
+}
+
+/// Whether a combination of phases is the same in two motions, or says nothing because a mode in it is
+/// at rest.
+fn same_phase(turns: &[i32], one: &SlowSteadyState, other: &SlowSteadyState) -> bool {
+    let of = |state: &SlowSteadyState| -> Option<f64> {
+        let moving = turns.iter().zip(&state.amplitudes).all(|(m, a)| *m == 0 || *a > 0.0);
+        let parts = turns.iter().zip(&state.phases).map(|(m, phase)| f64::from(*m) * phase);
+        moving.then(|| parts.sum())
+    };
+    match (of(one), of(other)) {
+        (Some(one), Some(other)) => (0.5 * (one - other)).sin().abs() < 1e-5,
+        _ => true,
     }
 }
 

@@ -187,9 +187,12 @@ impl ListedQuantity {
             cosine += 2.0 * found[0] * theta.cos() / POINTS as f64;
             sine += 2.0 * found[0] * theta.sin() / POINTS as f64;
         }
+        let amplitude = f64::hypot(cosine, sine);
+        // What rounding leaves of a quantity that has no first harmonic.
+        let none = amplitude <= 1e-12 * (highest - lowest);
         Ok(SlowState {
             parameter,
-            amplitude: f64::hypot(cosine, sine),
+            amplitude: if none { 0.0 } else { amplitude },
             phase: sine.atan2(cosine),
             stable: state.is_stable(),
             peak: Some(0.5 * (highest - lowest)),
@@ -296,7 +299,7 @@ impl ResponseDiagram {
     /// The first symbol without a value, or a quantity that has none.
     pub fn with_slow_motion(mut self, slow: SlowMotion) -> Result<Self, Symbol> {
         /// Random starts at the first value, and at each of the others, for each mode.
-        const FIRST: usize = 500;
+        const FIRST: usize = 1000;
         const OTHERS: usize = 20;
         let question = &self.question;
         let listed = ListedQuantity::new(question, &slow)?;
@@ -311,7 +314,7 @@ impl ResponseDiagram {
             let numbers = listed.numbers(&slow, parameter)?;
             let last = known.last().map_or(&[][..], |(_, states)| states.as_slice());
             let starts = if index == 0 { FIRST } else { OTHERS } * slow.amplitudes.len();
-            let found = numbers.steady_states_near(last, starts, question.interrupt);
+            let found = numbers.steady_states_near(last, starts, question.interrupt).isolated;
             for state in found.iter().filter(|state| slow.is_periodic(state)) {
                 states.push(listed.state(&slow, parameter, state)?);
             }
@@ -325,7 +328,8 @@ impl ResponseDiagram {
             else {
                 return vec![];
             };
-            let found = numbers.steady_states_near(start, 0, question.interrupt).into_iter();
+            let found = numbers.steady_states_near(start, 0, question.interrupt);
+            let found = found.isolated.into_iter();
             found
                 .filter(|state| state.is_stable() && slow.is_periodic(state))
                 .filter_map(|state| listed.state(&slow, parameter, &state).ok()?.peak)

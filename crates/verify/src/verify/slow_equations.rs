@@ -36,6 +36,8 @@ pub struct JudgedSlowMotion {
     pub tolerance: f64,
     /// The steady motions, the largest first.
     pub steady: Vec<JudgedSteadyMotion>,
+    /// Whether there are families of steady motions as well, which are not listed.
+    pub has_families: bool,
     /// The motion from the amplitudes that were given; `None` without them.
     pub transient: Option<JudgedTransient>,
     /// Whether the stable steady motions, or the transient, are within the tolerance; `None` where
@@ -102,11 +104,13 @@ pub fn judge_slow_motion(
     let truth = TrueMotion::new(slow, at)?;
     let started = slow.amplitudes.iter().any(|name| truth.numbers.contains_key(name));
     let transient = if started { Some(truth.transient()?) } else { None };
+    let mut has_families = false;
     let steady = match started {
         true => vec![],
         false => {
             let states = truth.slow_numbers.steady_states(Interrupt::default());
-            states.into_iter().map(|state| truth.judged(state)).collect()
+            has_families = states.has_families;
+            states.isolated.into_iter().map(|state| truth.judged(state)).collect()
         }
     };
     let compared = steady.iter().filter(|motion| motion.compared && motion.state.is_stable());
@@ -116,7 +120,7 @@ pub fn judge_slow_motion(
     };
     let within = |error: &Option<f64>| error.is_some_and(|error| error <= tolerance);
     let verdict = (!errors.is_empty()).then(|| Verdict::from_passed(errors.iter().all(within)));
-    Ok(JudgedSlowMotion { at: at.clone(), tolerance, steady, transient, verdict })
+    Ok(JudgedSlowMotion { at: at.clone(), tolerance, steady, has_families, transient, verdict })
 }
 
 /// The equations with numbers, and the formulas of the motion.
@@ -202,9 +206,7 @@ impl<'a> TrueMotion<'a> {
 
     /// A steady motion beside the true one, which is sought from its start.
     fn judged(&self, state: SlowSteadyState) -> JudgedSteadyMotion {
-        let still = state.amplitudes.iter().all(|a| *a == 0.0);
-        let periodic = self.slow.is_periodic(&state);
-        let Some(base) = self.base.filter(|_| periodic && !still) else {
+        let Some(base) = self.base.filter(|_| self.slow.is_periodic(&state)) else {
             return JudgedSteadyMotion { state, compared: false, error: None, truly_stable: None };
         };
         let period = TAU / base.abs();
@@ -291,7 +293,7 @@ impl<'a> TrueMotion<'a> {
             })
             .collect();
         let size = amplitudes.iter().map(|b| b.norm()).fold(0.0, f64::max);
-        if size == 0.0 {
+        if size == 0.0 && self.slow.system.drives.is_empty() {
             return Err(VerificationError::AtRest);
         }
         let named = |name: Symbol| self.numbers.get(&name).copied();
@@ -312,7 +314,11 @@ impl<'a> TrueMotion<'a> {
         let fastest = frequencies.iter().copied().fold(0.0, f64::max);
         let rate = self.slow_numbers.rates(&amplitudes).iter().map(|rate| rate.norm()).sum::<f64>();
         let longest = WAVES * TAU / slowest;
-        let until = if rate > 0.0 { (TURNS * TAU * size / rate).min(longest) } else { longest };
+        let until = if rate > 0.0 && size > 0.0 {
+            (TURNS * TAU * size / rate).min(longest)
+        } else {
+            longest
+        };
         let start = self.at(0.0, &amplitudes);
         // Some thirty points a wave of the fastest mode, each reached by steps of the slow equations.
         let points = (32.0 * until * fastest / TAU).ceil().clamp(64.0, 40_000.0) as usize;
@@ -320,7 +326,7 @@ impl<'a> TrueMotion<'a> {
             (0..=points).map(|index| until * index as f64 / points as f64).collect();
         let step = until / points as f64;
         let mut formula = vec![start.clone()];
-        let substeps = STEPS.min(1 + (step * rate / size * 100.0) as usize);
+        let substeps = STEPS.min(1 + (step * rate / size.max(f64::MIN_POSITIVE) * 100.0) as usize);
         for time in times.iter().skip(1) {
             for _ in 0..substeps {
                 amplitudes = self.stepped(&amplitudes, step / substeps as f64);

@@ -71,6 +71,28 @@ SteadyRelation.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class NearDivisor(Document):
+    """A wave near the frequency of a mode.
+
+    Attributes:
+        mode: The number of the mode.
+        frequency: The frequency of the wave, a formula.
+        distance: Its distance from that of the mode, as a part of it.
+    """
+
+    mode: int
+    frequency: str
+    distance: float
+
+
+NearDivisor.FIELDS = (
+    ("mode", "mode", None),
+    ("frequency", "frequency", None),
+    ("distance", "distance", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class SlowSteadyMotion(Document):
     """A steady motion of the slow equations.
 
@@ -147,9 +169,12 @@ class SlowEquations(Answer):
         definitions: What the formulas name, each by those before it; detunings, `sigma`, are
             reference frequency less linear frequency.
         relations: The relations of steady motions with the phases eliminated.
+        near: Waves that are near the frequency of a mode they are not in resonance with, where
+            values are known: a divisor is small.
         numerical: Whether coefficients are rounded to fifteen digits.
         at: The values at which steady motions, or a motion, were computed; null without values.
         steady: The steady motions at the values, the largest first.
+        has_families: Whether there are families of steady motions as well, which are not listed.
         transient: The motion from the amplitudes that were given, beside the true one; null
             without them.
         verdict: `pass` or `fail`; null where nothing was compared.
@@ -171,9 +196,11 @@ class SlowEquations(Answer):
     motion: dict[str, str]
     definitions: dict[str, str]
     relations: tuple[SteadyRelation, ...]
+    near: tuple[NearDivisor, ...]
     numerical: bool
     at: dict[str, Constant] | None
     steady: tuple[SlowSteadyMotion, ...]
+    has_families: bool
     transient: SlowTransient | None
     verdict: str | None
     tolerance: float | None
@@ -195,9 +222,11 @@ SlowEquations.FIELDS = (
     ("motion", "motion", dict),
     ("definitions", "definitions", dict),
     ("relations", "relations", several(SteadyRelation.from_json)),
+    ("near", "near", several(NearDivisor.from_json)),
     ("numerical", "numerical", None),
     ("at", "at", mapped(Constant.from_json)),
     ("steady", "steady", several(SlowSteadyMotion.from_json)),
+    ("has_families", "has_families", None),
     ("transient", "transient", SlowTransient.from_json),
     ("verdict", "verdict", None),
     ("tolerance", "tolerance", None),

@@ -257,6 +257,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 97);
+        assert_eq!(known.len(), 98);
     }
 }

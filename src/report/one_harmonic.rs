@@ -30,7 +30,7 @@ pub struct OneHarmonicReport<'a> {
 /// let modes = one_harmonic_modes(&pair)?;
 /// let report = OneHarmonicReport { modes: &modes, judged: None };
 /// let text = lindstedt::export::text::document(&one_harmonic(&report), 100);
-/// assert!(text.contains("r       = 1/(2 - omega^2)"), "{text}");
+/// assert!(text.contains("r = 1/(2 - omega^2)"), "{text}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn one_harmonic<'a>(report: &OneHarmonicReport<'a>) -> Document<'a> {

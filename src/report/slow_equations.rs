@@ -15,7 +15,7 @@ use crate::verify::{JudgedSlowMotion, JudgedSteadyMotion};
 pub struct SlowReport<'a> {
     /// The slow equations.
     pub slow: &'a SlowMotion,
-    /// What they say at values, beside the true motions; `None` without values.
+    /// Their steady motions, or their motion, at values beside the true ones; `None` without values.
     pub judged: Option<&'a JudgedSlowMotion>,
 }
 
@@ -156,7 +156,7 @@ fn relations<'a>(slow: &SlowMotion) -> Vec<Vec<Block<'a>>> {
     sections
 }
 
-/// What the slow equations say at values, beside the true motions.
+/// Steady motions, or a motion, at values beside the true ones.
 fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<Block<'a>> {
     let within = size_in_percent(judged.tolerance);
     let verdict = judged

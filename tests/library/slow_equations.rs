@@ -377,6 +377,12 @@ fn no_steady_motion_is_passed_over() {
         &[("eps", 0.1)],
     );
     assert!(found.has_families, "{found:?}");
+    // Nothing takes energy: members of families are not listed as if they stood alone.
+    let (found, _) = states(
+        "x'' + x + eps*x*y = eps*cos(t)^2; y'' + 4*y + eps*x^2*sin(3*t) = 0",
+        &[("eps", 0.05)],
+    );
+    assert!(found.has_families && found.isolated.is_empty(), "{found:?}");
     // The same in other units.
     let at = |scale: f64| {
         let system = format!(

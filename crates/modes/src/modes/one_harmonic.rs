@@ -44,7 +44,7 @@ pub struct OneHarmonicModes {
 /// A family of modes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OneHarmonicFamily {
-    /// The same ratio at every amplitude.
+    /// A similar mode, whose ratio does not depend on the amplitude.
     Similar {
         /// The ratio r.
         ratio: Expr,
@@ -72,7 +72,7 @@ pub enum OneHarmonicFamily {
 pub struct OneHarmonicBranchPoint {
     /// The ratio of the similar mode.
     pub ratio: Expr,
-    /// What is fixed there: A^2, or a parameter; and its value.
+    /// The quantity that is fixed there, A^2 or a parameter, and its value.
     pub at: (Expr, Expr),
 }
 

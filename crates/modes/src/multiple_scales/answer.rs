@@ -230,7 +230,7 @@ pub fn derive(
         .answer(&expansion, written, leaves_out)
 }
 
-/// What a derivation is made of.
+/// The parts of a derivation.
 struct Derivation<'a> {
     system: &'a CoupledSystem,
     form: &'a ModalForm,

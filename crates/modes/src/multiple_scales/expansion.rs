@@ -37,7 +37,7 @@ pub(super) struct OrderedTerm {
     pub(super) term: SmallTerm,
 }
 
-/// What is expanded.
+/// The equations to be expanded, in the waves of all frequencies.
 pub(super) struct Problem {
     /// The terms of each equation.
     pub(super) terms: Vec<Vec<OrderedTerm>>,
@@ -163,7 +163,7 @@ impl Problem {
         sum
     }
 
-    /// What the detuning leaves on the right.
+    /// Adds the terms of the detuning to the right side.
     fn detune(
         &self,
         mode: usize,

@@ -327,8 +327,9 @@ impl SlowNumbers {
 
     /// A solution with its stability; `None` if it is one of a family.
     fn state(&self, place: &DVector<f64>) -> Option<SlowSteadyState> {
-        /// Ratio to the largest eigenvalue below which one is zero.
-        const ZERO: f64 = 1e-8;
+        /// Ratio to the size of the matrix below which an eigenvalue is zero: rounding moves a double
+        /// zero by the root of its own size.
+        const ZERO: f64 = 1e-7;
         let count = self.rates.len();
         let (_, slopes) = self.equations(place);
         let squares = (&slopes * slopes.transpose()).symmetric_eigenvalues();
@@ -341,8 +342,8 @@ impl SlowNumbers {
             return None;
         }
         let square = slopes.columns(0, 2 * count).into_owned();
+        let largest = square.norm();
         let eigenvalues = Schur::try_new(square, f64::EPSILON, 1000)?.complex_eigenvalues();
-        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
         let mut sorted: Vec<Complex<f64>> = eigenvalues.iter().copied().collect();
         sorted.sort_by(|one, other| one.norm().total_cmp(&other.norm()));
         let turning = (0..self.open.nrows())
@@ -380,7 +381,7 @@ impl SlowNumbers {
     }
 }
 
-/// What Newton's method comes to.
+/// The outcome of Newton's method.
 enum Solved {
     Isolated(SlowSteadyState),
     Family,

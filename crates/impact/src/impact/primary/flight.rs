@@ -74,7 +74,7 @@ struct FlightMode {
     polynomial: [Complex<f64>; 3],
 }
 
-/// What a piece of a flight begins with, and all that it depends on.
+/// The state in which a piece of a flight begins, and all else that it depends on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlightStart {
     pub modes: DampedModes,
@@ -535,7 +535,8 @@ mod tests {
         }
     }
 
-    /// What is left out is of fifth order in the angle: a third of the size has 3^5 less of it.
+    /// The terms that are left out are of fifth order in the angle: a third of the size has 3^5 less of
+    /// them.
     #[test]
     fn the_error_of_a_flight_is_of_fifth_order() {
         let settings = PrimarySettings { duration: 1.0, ..PrimarySettings::default() };

@@ -25,7 +25,7 @@ pub(super) struct RestingPendulum {
     waves: [(Complex<f64>, Complex<f64>); 2],
 }
 
-/// What keeps the pendulum at rest.
+/// The forces that keep the pendulum at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Support {
     /// Dry friction up to this torque.

@@ -792,7 +792,7 @@ fn picture(
 
 /// The beginning of the names of functions, so that the programs of several files can be one: in C,
 /// which has no modules, the name of the file.
-fn prefix(language: Language, output: Option<&Path>) -> String {
+pub(super) fn prefix(language: Language, output: Option<&Path>) -> String {
     let stem = output.and_then(|path| path.file_stem()?.to_str());
     match (language, stem) {
         (Language::C, Some(stem))

@@ -1,6 +1,7 @@
 //! `lindstedt derive` of coupled equations: nonlinear normal modes.
 
 use crate::coupled::CoupledEquations;
+use crate::export::code::{self, CodeStyle};
 use crate::export::{json, modes as drawing};
 use crate::expr::{Expr, excerpt_of};
 use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
@@ -11,7 +12,7 @@ use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
 
 use super::answer::{Answer, no_such};
-use super::derive::{DeriveArguments, amplitude, as_meant, exact_values, unjudged};
+use super::derive::{DeriveArguments, amplitude, as_meant, exact_values, prefix, unjudged};
 use super::progress::with_progress;
 use super::{Failure, Format, Outcome, files, json_text, session, tolerance};
 
@@ -86,15 +87,15 @@ pub(super) fn run(
         document: &report::modes(&report),
         width: files::width(arguments.common.output.as_deref()),
         picture: Some(&|| Ok(drawing::picture(&report)?)),
-        other: &|format| {
-            match format {
+        other: &|format| match format {
             Format::Json => json_text(&json::modes(&report)),
-            Format::Code(_) => Err(Failure::Usage(
-                "there is no program of the modes of coupled equations: --format json has their polynomials"
-                    .to_owned(),
-            )),
+            Format::Code(language) => {
+                let prefix = prefix(language, arguments.common.output.as_deref());
+                let style = CodeStyle { language, prefix: &prefix };
+                let program = code::modes(&report, style);
+                program.map_err(|reason| Failure::with_advice(&reason, reason.help()))
+            }
             format => no_such(format),
-        }
         },
     };
     let verdicts = judged.iter().flatten().map(|judged| judged.verdict == Verdict::Pass);

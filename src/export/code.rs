@@ -9,10 +9,13 @@
 //! A program computes what [`evaluate`](crate::method::numbers::evaluate) does, by the law that is
 //! judged. What cannot be written as a formula is refused; at given values its numbers can be
 //! written.
+//!
+//! Nonlinear normal modes are programs too, with functions for each mode and coordinate.
 
 mod c;
 mod julia;
 mod matlab;
+mod modes;
 mod program;
 mod python;
 mod rust;
@@ -20,6 +23,7 @@ mod writer;
 
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
+use crate::report::ModesReport;
 use crate::solution::{Advice, Setting, Solution};
 use crate::symbol::Symbol;
 use crate::verify::Verification;
@@ -166,6 +170,32 @@ pub fn solution<'a>(
     let program = program::of_solution(oscillator, solution, verification)?;
     let CodeStyle { language, prefix } = style.into();
     writer::source(&program.with_prefix(prefix), language.syntax())
+}
+
+/// The source text of nonlinear normal modes: what is known of them as a comment, then for each mode
+/// with a formula `mode1_angular_frequency`, and for each coordinate `mode1_displacement_x` and
+/// `mode1_velocity_x`. All functions of a mode have the same arguments, behind the time of a motion.
+///
+/// # Errors
+/// [`NoCode::Beyond`] for a coefficient that no double holds.
+///
+/// ```
+/// use lindstedt::export::code::{self, Language};
+/// use lindstedt::modes::{FreeSystem, ModeOptions, derive};
+/// use lindstedt::report::ModesReport;
+///
+/// let pair = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0")?;
+/// let found = derive(&pair, &ModeOptions::default())?;
+/// let report = ModesReport { modes: &found, judged: &[], tolerance: 0.01 };
+/// let text = code::modes(&report, Language::Python)?;
+/// assert!(text.contains("omega_squared = 1 + 3*a**2/16 - 101*a**4/2048"), "{text}");
+/// assert!(text.contains("def mode2_displacement_y(t, a):"), "{text}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn modes<'a>(report: &ModesReport, style: impl Into<CodeStyle<'a>>) -> Result<String, NoCode> {
+    let _letters = report.modes.system.letters.in_force();
+    let CodeStyle { language, prefix } = style.into();
+    writer::source(&modes::program(report).with_prefix(prefix), language.syntax())
 }
 
 /// A language: how everything looks in it.

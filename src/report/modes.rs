@@ -161,20 +161,14 @@ fn amplitude_in_words(mode: &NonlinearMode, coordinates: &[Symbol]) -> String {
         }
         FirstHarmonic => {
             let terms = mode.linear.modal.iter().zip(coordinates);
-            let sum: Expr = terms
-                .filter(|(factor, _)| !factor.is_zero())
-                .map(|(factor, name)| Expr::from(&rounded(mode, factor)) * Expr::from(*name))
-                .sum();
+            let terms = terms.filter(|(factor, _)| !factor.is_zero());
+            let terms = terms.map(|(factor, name)| match mode.rounded {
+                true => in_line(mode, &factor.product(&Polynomial::symbol(*name))),
+                false => (Expr::from(factor) * Expr::from(*name)).to_string(),
+            });
+            let sum = crate::series::terms::sum(terms);
             format!("{symbol} = amplitude of the first harmonic of {sum}")
         }
-    }
-}
-
-/// A polynomial as it is printed.
-fn rounded(mode: &NonlinearMode, polynomial: &Polynomial) -> Polynomial {
-    match mode.rounded {
-        true => polynomial.map(|number| crate::decimal::rounded_fraction(number, 6)),
-        false => polynomial.clone(),
     }
 }
 

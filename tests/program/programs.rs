@@ -5,10 +5,13 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use lindstedt::exact::Polynomial;
 use lindstedt::export::code::{self, Language};
 use lindstedt::method::numbers::evaluate;
-use lindstedt::solution::{AmplitudeConvention, Method};
-use lindstedt::verify::judge;
+use lindstedt::modes::{FreeSystem, ModeOptions, derive};
+use lindstedt::report::ModesReport;
+use lindstedt::solution::{AmplitudeConvention, Method, defined_values};
+use lindstedt::verify::{judge, judge_mode};
 use lindstedt::{Options, Oscillator, Symbol, Values, solve};
 use serde_json::Value;
 
@@ -34,6 +37,8 @@ struct Case {
     texts: [String; 3],
     values: BTreeMap<String, f64>,
     omega: f64,
+    /// The names of its functions: frequency, displacement, velocity.
+    routines: [String; 3],
     /// The displacement by the time; none where there is no formula for the motion.
     motion: Option<Box<dyn Fn(f64) -> f64>>,
 }
@@ -53,7 +58,7 @@ fn arguments<'a>(text: &'a str, routine: &str) -> Option<Vec<&'a str>> {
 impl Case {
     /// The calls whose values a program prints, in this order: the frequency; for each time
     /// displacement, velocity, and the displacements a step before and after.
-    fn calls(&self) -> Vec<(&'static str, Vec<f64>)> {
+    fn calls(&self) -> Vec<(&str, Vec<f64>)> {
         let list = |routine: &str, t: f64| -> Option<Vec<f64>> {
             let value = |name: &str| match name {
                 "t" => t,
@@ -67,13 +72,14 @@ impl Case {
             };
             Some(arguments(&self.texts[0], routine)?.into_iter().map(value).collect())
         };
-        let mut calls = vec![(ROUTINES[0], list(ROUTINES[0], 0.0).expect("a frequency"))];
+        let [frequency, ..] = &self.routines;
+        let mut calls = vec![(frequency.as_str(), list(frequency, 0.0).expect("a frequency"))];
         if self.motion.is_some() {
             for t in TIMES {
                 for (routine, t) in [(1, t), (2, t), (1, t - STEP), (1, t + STEP)] {
-                    let routine = ROUTINES[routine];
+                    let routine = &self.routines[routine];
                     calls.push((
-                        routine,
+                        routine.as_str(),
                         list(routine, t).unwrap_or_else(|| panic!("{}: {routine}", self.name)),
                     ));
                 }
@@ -179,6 +185,7 @@ fn examples() -> Vec<Case> {
         cases.push(Case {
             name: file,
             texts,
+            routines: ROUTINES.map(str::to_owned),
             values: values.map(|(name, value)| (name.clone(), number(value))).collect(),
             omega,
             motion: Some(Box::new(move |t| {
@@ -244,6 +251,7 @@ fn methods() -> Vec<Case> {
             values.extend(own.chosen.iter().map(|(name, value)| (name.to_string(), *value)));
             cases.push(Case {
                 texts: LANGUAGES.map(text),
+                routines: ROUTINES.map(str::to_owned),
                 values,
                 omega,
                 motion: own.motion.map(|motion| {
@@ -253,6 +261,61 @@ fn methods() -> Vec<Case> {
             });
         }
         assert!(cases.len() - before >= least, "{equation}: only {} methods", cases.len() - before);
+    }
+    cases
+}
+
+/// Modes of coupled equations, with the numbers that their polynomials have.
+fn modes() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (equations, at) in [
+        ("x'' + k*x - y + x^3/2 = 0; y'' + k*y - x + y^2 = 0", "a = 2/5, k = 3"),
+        ("x'' + 2*x - y/3 + x^2*y = 0; y'' + 5*y - x/3 = 0", "a = -3/10"),
+    ] {
+        let numbers: Values = at.parse().expect("values");
+        let named =
+            numbers.iter().filter_map(|(name, _)| Some((name.to_string(), numbers.get(name)?)));
+        let values: BTreeMap<String, f64> = named.collect();
+        let system = FreeSystem::parse(equations).expect("equations");
+        let found = derive(&system, &ModeOptions::default()).expect("modes");
+        let report = ModesReport { modes: &found, judged: &[], tolerance: 0.01 };
+        let texts = LANGUAGES.map(|language| code::modes(&report, language).expect(equations));
+        for mode in found.modes.iter().flatten() {
+            let own = |name: Symbol| values.get(&name.to_string()).copied();
+            let defined = defined_values(&mode.definitions, &own).expect(equations);
+            let number = |polynomial: &Polynomial| {
+                let value = |name: Symbol| {
+                    let defined = defined.iter().find(|(own, _)| *own == name);
+                    own(name).or_else(|| defined.map(|(_, value)| *value))
+                };
+                polynomial.evaluate(value).expect(equations)
+            };
+            let omega = number(&mode.frequency_squared).sqrt();
+            let judged = judge_mode(&system, mode, &numbers, 0.01).expect(equations);
+            let by_judge = judged.frequency.expect("a frequency");
+            assert!((omega - by_judge).abs() < 1e-14 * omega, "{equations}");
+            for (name, series) in system.equations.coordinates.iter().zip(&mode.motion) {
+                let harmonics = series.harmonics().into_iter();
+                let harmonics: Vec<(usize, f64)> =
+                    harmonics.map(|(k, cosine, _)| (k, number(&cosine))).collect();
+                let routine = |what: &str| format!("mode{}_{what}", mode.number);
+                cases.push(Case {
+                    name: format!("{name} of mode {} of {equations}", mode.number),
+                    texts: texts.clone(),
+                    values: values.clone(),
+                    omega,
+                    routines: [
+                        routine("angular_frequency"),
+                        routine(&format!("displacement_{name}")),
+                        routine(&format!("velocity_{name}")),
+                    ],
+                    motion: Some(Box::new(move |t| {
+                        let harmonics = harmonics.iter();
+                        harmonics.map(|(k, c)| c * (*k as f64 * omega * t).cos()).sum()
+                    })),
+                });
+            }
+        }
     }
     cases
 }
@@ -338,7 +401,9 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
             ];
             driver += "#include <math.h>\n#include <stdio.h>\n";
             for k in 0..cases.len() {
-                for name in NAMES {
+                let own = cases[k].texts[0].split("def mode").skip(1);
+                let own = own.filter_map(|text| Some(format!("mode{}", text.split_once('(')?.0)));
+                for name in NAMES.into_iter().map(str::to_owned).chain(own) {
                     let _ = writeln!(driver, "#undef {name}\n#define {name} {name}_{k}");
                 }
                 let _ = writeln!(driver, "#include \"case{k}.c\"\nstatic void show_{k}(void)\n{{");
@@ -409,7 +474,7 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
 fn programs_give_the_numbers_of_the_library() {
     let folder = std::env::temp_dir().join(format!("lindstedt-programs-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let cases: Vec<Case> = examples().into_iter().chain(methods()).collect();
+    let cases: Vec<Case> = examples().into_iter().chain(methods()).chain(modes()).collect();
     for language in LANGUAGES {
         let Some(found) = run_all(language, &cases, &folder) else {
             continue;
@@ -516,6 +581,8 @@ fn programs_look_as_they_looked() {
                 ["derive", "pendulum", "--method", "iteration-perturbation", "--format", name];
             insta::assert_snapshot!(format!("program-iterate-{name}"), output(&iterate));
         }
+        let pair = ["derive", "examples/modes/two-masses.toml", "--order", "2", "--format", "matlab"];
+        insta::assert_snapshot!("program-modes-matlab", output(&pair));
         let balance = ["derive", "examples/harmonic-balance-duffing.toml", "--format", "python"];
         insta::assert_snapshot!("program-balance-python", output(&balance));
         let exact = ["derive", "pendulum", "--method", "exact", "--format", "python"];

@@ -116,6 +116,20 @@ pub struct Definition {
     pub meaning: Expr,
 }
 
+/// Those of these definitions, each of which may use those before it, that a formula in these symbols
+/// needs.
+pub fn definitions_behind(
+    definitions: &[Definition],
+    mut symbols: BTreeSet<Symbol>,
+) -> Vec<&Definition> {
+    for definition in definitions.iter().rev() {
+        if symbols.contains(&definition.symbol) {
+            symbols.extend(definition.meaning.symbols());
+        }
+    }
+    definitions.iter().filter(|entry| symbols.contains(&entry.symbol)).collect()
+}
+
 impl Definition {
     /// The meaning as it is printed.
     pub fn meaning_in_words(&self) -> String {
@@ -543,15 +557,8 @@ impl Solution {
     }
 
     /// The definitions that a formula in these symbols needs, those that they are made of included.
-    pub fn definitions_behind(&self, mut symbols: BTreeSet<Symbol>) -> Vec<&Definition> {
-        // A definition may use those before it.
-        for definition in self.definitions.iter().rev() {
-            if symbols.contains(&definition.symbol) {
-                symbols.extend(definition.meaning.symbols());
-            }
-        }
-        let definitions = self.definitions.iter();
-        definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
+    pub fn definitions_behind(&self, symbols: BTreeSet<Symbol>) -> Vec<&Definition> {
+        definitions_behind(&self.definitions, symbols)
     }
 
     /// A polynomial of this solution, the terms with the lowest power of the small parameters

@@ -95,9 +95,13 @@ fn beginning(used: &UsedRoutines) -> String {
     let handles = used.routines.iter().map(|name| format!("    motion.{name} = @{name};\n"));
     let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\n\
                 function motion = oscillator()\n";
-    let head = match used.routines.contains(&"displacement") {
-        true => head.to_owned(),
-        false => head.replace("displacement(t, ...), and so on", "angular_frequency(...)"),
+    let head = match (used.routines.contains(&"displacement"), used.routines) {
+        (true, _) => head.to_owned(),
+        (false, [only]) => head.replace("displacement(t, ...), and so on", &format!("{only}(...)")),
+        (false, several) => {
+            let first = several.iter().find(|name| name.contains("displacement"));
+            head.replace("displacement", first.unwrap_or(&"angular_frequency"))
+        }
     };
     std::iter::once(head).chain(handles).chain(["end\n".to_owned()]).collect()
 }

@@ -16,12 +16,12 @@ use crate::oscillator::Oscillator;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::solution::note::ExactBy;
-use crate::solution::{Definition, Note, Solution};
+use crate::solution::{Definition, Note, Solution, Sum, definitions_behind};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY as FREQUENCY_LETTER, of_frequency};
 use crate::verify::Verification;
 
-const FREQUENCY: &str = "angular_frequency";
+pub(super) const FREQUENCY: &str = "angular_frequency";
 const DISPLACEMENT: &str = "displacement";
 const VELOCITY: &str = "velocity";
 const ABOUT_DISPLACEMENT: &str = "The displacement at the time t, equilibrium included";
@@ -42,7 +42,8 @@ pub(super) fn of_solution(
     if solution.slow().is_some() {
         return Err(NoCode::Slow);
     }
-    let names = ProgramNames::new(solution);
+    let amplitude = solution.amplitude.symbol();
+    let names = ProgramNames::new(amplitude, solution.phase(), &solution.names());
     let mut header = header(solution, verification);
     let mut remarks: Vec<String> = Vec::new();
     let formula = formula(solution);
@@ -94,7 +95,7 @@ pub(super) fn of_solution(
 
 /// Gives every function the same arguments, whether it needs them or not, after the time of a
 /// motion.
-fn share_arguments(names: &ProgramNames, routines: &mut [Routine]) {
+pub(super) fn share_arguments(names: &ProgramNames, routines: &mut [Routine]) {
     let mut all: Vec<Symbol> = vec![];
     // The motion has the most, in the order of their names.
     for routine in routines.iter().rev() {
@@ -137,9 +138,13 @@ fn header(solution: &Solution, verification: Option<&Verification>) -> Vec<Strin
         !words
     };
     let sections = document.sections.into_iter().filter(|section| !section.iter().any(is_formula));
-    let text = crate::export::text::document(&Document { sections: sections.collect() }, WIDTH);
-    let lines = text.trim_end().lines();
-    lines.flat_map(wrapped).collect()
+    lines_of(&Document { sections: sections.collect() })
+}
+
+/// A document as the lines of a header.
+pub(super) fn lines_of(document: &Document) -> Vec<String> {
+    let text = crate::export::text::document(document, WIDTH);
+    text.trim_end().lines().flat_map(wrapped).collect()
 }
 
 /// A line wrapped to the width of the header, continuation lines being indented.
@@ -161,11 +166,11 @@ fn wrapped(line: &str) -> Vec<String> {
 }
 
 /// The names of variables that a program introduces.
-struct ProgramNames {
-    amplitude: Symbol,
-    time: Symbol,
-    theta: Symbol,
-    omega: Symbol,
+pub(super) struct ProgramNames {
+    pub(super) amplitude: Symbol,
+    pub(super) time: Symbol,
+    pub(super) theta: Symbol,
+    pub(super) omega: Symbol,
     omega_squared: Symbol,
     /// The displacement for the absolute value of the amplitude.
     shape: Symbol,
@@ -178,18 +183,18 @@ struct ProgramNames {
 }
 
 impl ProgramNames {
-    fn new(solution: &Solution) -> Self {
-        let taken = solution.names();
+    /// The names beside those of a motion of this amplitude and phase, in which others are taken.
+    pub(super) fn new(amplitude: Symbol, theta: Symbol, taken: &[Symbol]) -> Self {
         Self {
-            amplitude: solution.amplitude.symbol(),
+            amplitude,
             time: Symbol::new("t"),
-            theta: solution.phase(),
+            theta,
             omega: Symbol::new("omega"),
-            omega_squared: fresh(&format!("{FREQUENCY_LETTER}_squared"), &taken),
-            shape: fresh("shape", &taken),
-            slope: fresh("slope", &taken),
-            digits: fresh("digits", &taken),
-            sign: fresh("direction", &taken),
+            omega_squared: fresh(&format!("{FREQUENCY_LETTER}_squared"), taken),
+            shape: fresh("shape", taken),
+            slope: fresh("slope", taken),
+            digits: fresh("digits", taken),
+            sign: fresh("direction", taken),
         }
     }
 }
@@ -237,7 +242,11 @@ fn formula(solution: &Solution) -> Result<Law, String> {
 
 /// A polynomial with its terms in reading order.
 fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
-    let sum = solution.ordered(polynomial);
+    in_order(&solution.ordered(polynomial))
+}
+
+/// A sum with its terms in their order.
+pub(super) fn in_order(sum: &Sum) -> Value {
     let term = |(monomial, number): (&_, &Rational)| {
         let term: Polynomial = Polynomial::term(Clone::clone(monomial), number.clone());
         Value::Expression(Expr::from(&term))
@@ -247,12 +256,12 @@ fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
 
 /// Resolves the symbols of a formula: the definitions behind them, and the arguments, the amplitude
 /// first.
-fn resolved<'a>(
-    solution: &'a Solution,
+pub(super) fn resolved<'a>(
+    definitions: &'a [Definition],
     names: &ProgramNames,
     symbols: BTreeSet<Symbol>,
 ) -> (Vec<&'a Definition>, Vec<Symbol>) {
-    let definitions = solution.definitions_behind(symbols.clone());
+    let definitions = definitions_behind(definitions, symbols.clone());
     let mut all = symbols;
     all.extend(definitions.iter().flat_map(|definition| definition.meaning.symbols()));
     for definition in &definitions {
@@ -264,7 +273,7 @@ fn resolved<'a>(
     (definitions, amplitude.into_iter().chain(all).collect())
 }
 
-fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> + '_ {
+pub(super) fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> + '_ {
     let variable = |definition: &Definition| {
         Statement::Variable(definition.symbol, Value::Expression(definition.meaning.clone()))
     };
@@ -297,7 +306,7 @@ fn frequency(
     names: &ProgramNames,
     law: &Law,
 ) -> Routine {
-    let (definitions, arguments) = resolved(solution, names, law.expression.symbols());
+    let (definitions, arguments) = resolved(&solution.definitions, names, law.expression.symbols());
     let mut body = Vec::new();
     let by_size = arguments.contains(&names.amplitude) && law_takes_size(oscillator, solution);
     if by_size && !flips(solution, &law.expression, false) {
@@ -307,15 +316,8 @@ fn frequency(
     let value = Value::clone(&law.value);
     let result = match law.squared {
         true => {
-            body.push(Statement::Variable(names.omega_squared, value));
-            body.extend(digits(names, [&law.expression], names.omega_squared, &Expr::one()));
-            body.push(Statement::Positive(
-                names.omega_squared,
-                names.omega_squared,
-                of_frequency("omega^2 is not positive: there is no frequency"),
-            ));
-            let squared = Expr::from(names.omega_squared);
-            squared.sqrt().unwrap_or(squared)
+            let remaining = digits(names, [&law.expression], names.omega_squared, &Expr::one());
+            return root_of_square(names, arguments, body, value, remaining);
         }
         false => {
             body.push(Statement::Variable(names.omega, value));
@@ -330,15 +332,39 @@ fn frequency(
     };
     Routine {
         name: FREQUENCY.to_owned(),
-        about: match law.squared {
-            true => of_frequency(
-                "The angular frequency in radians per unit of time, the root of omega^2",
-            ),
-            false => "The angular frequency in radians per unit of time".to_owned(),
-        },
+        about: "The angular frequency in radians per unit of time".to_owned(),
         arguments,
         body,
         result: Value::Expression(result),
+    }
+}
+
+/// The routine of a frequency whose square has a law: the statements before it, the law, and those
+/// behind it that look whether digits remain.
+pub(super) fn root_of_square(
+    names: &ProgramNames,
+    arguments: Vec<Symbol>,
+    before: Vec<Statement>,
+    law: Value,
+    remaining: Vec<Statement>,
+) -> Routine {
+    let mut body = before;
+    body.push(Statement::Variable(names.omega_squared, law));
+    body.extend(remaining);
+    body.push(Statement::Positive(
+        names.omega_squared,
+        names.omega_squared,
+        of_frequency("omega^2 is not positive: there is no frequency"),
+    ));
+    let squared = Expr::from(names.omega_squared);
+    Routine {
+        name: FREQUENCY.to_owned(),
+        about: of_frequency(
+            "The angular frequency in radians per unit of time, the root of omega^2",
+        ),
+        arguments,
+        body,
+        result: Value::Expression(squared.sqrt().unwrap_or(squared)),
     }
 }
 
@@ -367,10 +393,10 @@ fn wave(function: Function, k: usize, theta: Symbol) -> Value {
 }
 
 /// A harmonic: `k` and the coefficients of the cosine and the sine; `None` for a zero coefficient.
-struct Harmonic {
-    k: usize,
-    cosine: Option<Value>,
-    sine: Option<Value>,
+pub(super) struct Harmonic {
+    pub(super) k: usize,
+    pub(super) cosine: Option<Value>,
+    pub(super) sine: Option<Value>,
 }
 
 /// The terms of a motion.
@@ -394,9 +420,9 @@ fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
 }
 
 /// The statements of a function of the motion before its result, and its arguments.
-struct FunctionPrologue {
-    arguments: Vec<Symbol>,
-    body: Vec<Statement>,
+pub(super) struct FunctionPrologue {
+    pub(super) arguments: Vec<Symbol>,
+    pub(super) body: Vec<Statement>,
 }
 
 fn motion(
@@ -414,7 +440,7 @@ fn motion(
         if !matches!(sign, Sign::Any) {
             symbols.insert(names.amplitude);
         }
-        let (definitions, mut arguments) = resolved(solution, names, symbols);
+        let (definitions, mut arguments) = resolved(&solution.definitions, names, symbols);
         arguments.insert(0, names.time);
         let mut body = Vec::new();
         match sign {
@@ -504,7 +530,8 @@ fn written_motion(
 ) -> Result<[Routine; 2], NoCode> {
     let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
     let routine = |name, about: &str, expression: &Expr| {
-        let (definitions, mut arguments) = resolved(solution, names, expression.symbols());
+        let (definitions, mut arguments) =
+            resolved(&solution.definitions, names, expression.symbols());
         arguments.insert(0, names.time);
         Routine {
             name: str::to_owned(name),
@@ -545,13 +572,13 @@ fn missing_at_start(
 }
 
 /// `theta = omega*t`.
-fn angle(names: &ProgramNames) -> Statement {
+pub(super) fn angle(names: &ProgramNames) -> Statement {
     let angle = Expr::from(names.omega) * Expr::from(names.time);
     Statement::Variable(names.theta, Value::Expression(angle))
 }
 
 /// The routines of displacement and velocity; both begin with the statements `before`.
-fn displacement_and_velocity(
+pub(super) fn displacement_and_velocity(
     names: &ProgramNames,
     beginnings: [FunctionPrologue; 2],
     before: Option<Symbol>,

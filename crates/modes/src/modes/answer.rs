@@ -14,8 +14,7 @@ use crate::exact::rational::to_f64;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
 use crate::interrupt::Supervision;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Sum};
-use crate::symbol::Symbol;
+use crate::solution::{AmplitudeConvention, Definition, Sum, definitions_behind};
 
 /// The order without a choice.
 const USUAL_ORDER: u32 = 4;
@@ -325,14 +324,6 @@ fn used(mode: &NonlinearMode, definitions: Vec<Definition>) -> Vec<Definition> {
         .chain(&linear.modal)
         .chain(&mode.lines)
         .chain(mode.motion.iter().flat_map(FourierSeries::numerators));
-    let mut names: Vec<Symbol> = polynomials.flat_map(Polynomial::symbols).collect();
-    let mut kept: Vec<Definition> = Vec::new();
-    for definition in definitions.into_iter().rev() {
-        if names.contains(&definition.symbol) {
-            names.extend(definition.meaning.symbols());
-            kept.push(definition);
-        }
-    }
-    kept.reverse();
-    kept
+    let names = polynomials.flat_map(Polynomial::symbols).collect();
+    definitions_behind(&definitions, names).into_iter().cloned().collect()
 }

@@ -225,7 +225,7 @@ impl FreeSystem {
     }
 
     /// The names of the equations: coordinates, parameters, constants, time.
-    pub(super) fn names(&self) -> Vec<Symbol> {
+    pub fn names(&self) -> Vec<Symbol> {
         let constants = self.constants.iter().map(|constant| constant.symbol);
         let own = self.equations.coordinates.iter().chain(&self.equations.parameters).copied();
         own.chain(constants).chain([Symbol::new("t")]).collect()

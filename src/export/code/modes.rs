@@ -1,0 +1,114 @@
+//! The program of nonlinear normal modes in any language: of each mode the frequency, and of each
+//! coordinate the displacement and the velocity.
+
+use std::collections::BTreeSet;
+
+use num_traits::Zero as _;
+
+use super::program::{
+    FREQUENCY, FunctionPrologue, Harmonic, ProgramNames, angle, displacement_and_velocity,
+    in_order, lines_of, resolved, root_of_square, share_arguments, variables,
+};
+use super::{Program, Routine, Statement, Value};
+use crate::exact::{Polynomial, Rational};
+use crate::modes::NonlinearMode;
+use crate::report::{Block, Document, ModesReport};
+use crate::symbol::Symbol;
+
+/// The program of all modes that have a formula.
+pub(super) fn program(report: &ModesReport) -> Program {
+    let routines = report.judged_modes().flat_map(|(mode, _)| {
+        let program = Program { header: vec![], routines: one_mode(report, mode) };
+        program.with_prefix(&format!("mode{}_", mode.number)).routines
+    });
+    Program { routines: routines.collect(), header: header(report) }
+}
+
+/// The report without its formulas.
+fn header(report: &ModesReport) -> Vec<String> {
+    let mut document: Document = crate::report::modes(report);
+    let is_formula = |block: &Block| {
+        matches!(block, Block::Law { .. } | Block::Harmonics { .. } | Block::Definition(_))
+    };
+    for section in &mut document.sections {
+        section.retain(|block| !is_formula(block));
+    }
+    lines_of(&document)
+}
+
+/// The functions of a mode.
+fn one_mode(report: &ModesReport, mode: &NonlinearMode) -> Vec<Routine> {
+    let system = &report.modes.system;
+    let coordinates = &system.equations.coordinates;
+    let defined = mode.definitions.iter().map(|definition| definition.symbol);
+    let taken: Vec<Symbol> = system.names().into_iter().chain(defined).collect();
+    let names = ProgramNames::new(mode.amplitude.symbol(), report.phase(), &taken);
+    let (definitions, of_frequency) =
+        resolved(&mode.definitions, &names, mode.frequency_squared.symbols());
+    let law = in_order(&mode.ordered(&mode.frequency_squared));
+    let before = variables(definitions).collect();
+    let mut routines = vec![root_of_square(&names, of_frequency.clone(), before, law, vec![])];
+    for (index, name) in coordinates.iter().enumerate() {
+        let mut motion = motion(mode, index, &names, &of_frequency);
+        let rest = &system.rest[index];
+        let from = match rest.is_zero() {
+            true => String::new(),
+            false => format!(", counted from its place of rest, {rest}"),
+        };
+        for (routine, about) in motion.iter_mut().zip(["displacement", "velocity"]) {
+            routine.about = format!("The {about} of {name} at the time t{from}");
+            routine.name = format!("{}_{}", routine.name, as_word(*name));
+        }
+        routines.extend(motion);
+    }
+    share_arguments(&names, &mut routines);
+    routines
+}
+
+/// The name of a coordinate as a part of that of a function.
+fn as_word(name: Symbol) -> String {
+    name.written().replace(|letter: char| !letter.is_ascii_alphanumeric(), "_")
+}
+
+/// Displacement and velocity of a coordinate.
+fn motion(
+    mode: &NonlinearMode,
+    index: usize,
+    names: &ProgramNames,
+    of_frequency: &[Symbol],
+) -> [Routine; 2] {
+    let harmonics: Vec<(usize, Polynomial)> = mode.motion[index]
+        .harmonics()
+        .into_iter()
+        .map(|(k, cosine, _)| (k, cosine))
+        .filter(|(_, cosine)| !cosine.is_zero())
+        .collect();
+    let beginning = |least: usize| {
+        let own = harmonics.iter().filter(|(k, _)| *k >= least);
+        let symbols: BTreeSet<Symbol> =
+            own.flat_map(|(_, cosine)| cosine.symbols()).chain(of_frequency.to_vec()).collect();
+        let (definitions, mut arguments) = resolved(&mode.definitions, names, symbols);
+        arguments.insert(0, names.time);
+        let frequency = Value::Call(FREQUENCY.to_owned(), of_frequency.to_vec());
+        let own = [Statement::Variable(names.omega, frequency), angle(names)];
+        FunctionPrologue { arguments, body: variables(definitions).chain(own).collect() }
+    };
+    let coefficient = |polynomial: &Polynomial| Some(in_order(&mode.ordered(polynomial)));
+    let displaced = harmonics.iter().map(|(k, cosine)| Harmonic {
+        k: *k,
+        cosine: coefficient(cosine),
+        sine: None,
+    });
+    let moving = harmonics.iter().filter(|(k, _)| *k > 0).map(|(k, cosine)| {
+        let factor = Rational::from_integer((*k).into());
+        let slope: Polynomial = cosine.map(|number| -(number * &factor));
+        Harmonic { k: *k, cosine: None, sine: coefficient(&slope) }
+    });
+    displacement_and_velocity(
+        names,
+        [beginning(0), beginning(1)],
+        None,
+        displaced.collect(),
+        moving.collect(),
+    )
+}

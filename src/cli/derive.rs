@@ -304,11 +304,6 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
             return super::slow_equations::run(arguments, equations, &problem);
         }
         arguments.question.check_of_modes()?;
-        if arguments.steps {
-            return Err(Failure::Usage(
-                "--steps: the derivation of modes is not printed order by order; docs/normal-modes.md has its equations".to_owned(),
-            ));
-        }
         return super::modes::run(arguments, equations, &problem);
     }
     if arguments.mode.is_some() {

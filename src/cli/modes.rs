@@ -63,6 +63,7 @@ pub(super) fn run(
         mode: arguments.mode.map(|mode| mode as usize),
         order,
         amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
+        steps: arguments.steps,
         supervision: session::supervision(),
     };
     let letters = system.letters;

@@ -35,6 +35,11 @@ pub(super) fn run(
             "--mode says nothing to --method {name}, whose families may have several modes"
         ));
     }
+    if arguments.steps {
+        return usage(
+            "--steps: one harmonic has no orders, its equations are in the answer".to_owned(),
+        );
+    }
     let convention = amplitude(question, problem.amplitude.as_deref())?;
     if convention == Some(AmplitudeConvention::FirstHarmonic) {
         return usage(format!(

@@ -6,7 +6,8 @@ use num_traits::Zero;
 
 use super::latex::{self, symbol};
 use crate::derivation::{
-    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, NOTATION, Step,
+    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, DerivativeTerm, NOTATION,
+    Step,
 };
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
@@ -304,9 +305,13 @@ fn formula_as_latex(formula: &DerivationFormula) -> String {
             &latex::NOTATION,
             *phase,
         )),
-        DerivationFormula::Oscillator { of, square } => {
-            let linear = latex::expression(&(square * &Expr::from(*of)));
-            format!("{}'' + {linear}", symbol(*of))
+        DerivationFormula::Linear(terms) => {
+            terms::sum(terms.iter().map(|DerivativeTerm { factor, of, derivatives }| {
+                match derivatives {
+                    0 => latex::expression(&(factor * &Expr::from(*of))),
+                    _ => format!("{}{}{}", before(factor), symbol(*of), "'".repeat(*derivatives)),
+                }
+            }))
         }
         DerivationFormula::AtZero { of, derivatives } => {
             format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives))

@@ -133,6 +133,10 @@ fn one_mode<'a>(
     let others = others.filter(|(index, _)| *index != mode.along);
     blocks.extend(others.map(|(_, (name, line))| law(Expr::from(*name), mode.ordered(line))));
     blocks.extend(mode.definitions.iter().map(Block::Definition));
+    if !mode.derivation.is_empty() {
+        blocks.push(Block::Note("Derivation".to_owned()));
+        blocks.extend(mode.derivation.iter().map(|line| Block::Line(Cow::Borrowed(line))));
+    }
     blocks.extend(mode.near.iter().map(|near| {
         let times = if near.ratio == 1 { String::new() } else { format!("{}*", near.ratio) };
         Block::Note(format!(

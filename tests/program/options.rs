@@ -58,12 +58,21 @@ fn a_mode_is_chosen_by_its_number() {
     let initial = json(&["derive", pair, "--mode", "1", "--amplitude", "initial", "--order", "2"]);
     assert_eq!(initial["modes"][0]["formula"], "omega^2 = 1 + 3*A^2/16");
     assert_eq!(initial["modes"][0]["order"], 2);
+    // The cube of cos(theta) is three quarters of it and a quarter of cos(3*theta).
+    let steps = json(&["derive", pair, "--mode", "1", "--order", "2", "--steps"]);
+    let lines = steps["modes"][0]["derivation"].as_array().expect("lines");
+    for line in [
+        "x3'' + 2*x3 - y3 = (-3/8 + W2)*cos(theta) - 1/8*cos(3*theta)",
+        "y3'' - x3 + 2*y3 = W2*cos(theta)",
+        "no secular cos(theta) along the mode:  W2 = 3/16",
+    ] {
+        assert!(lines.contains(&line.into()), "{lines:?}");
+    }
     for (more, words) in [
         (&["--mode", "3"][..], "there is no mode 3: there are 2"),
         (&["--taylor", "3"], "--taylor: it is of one coordinate"),
         (&["--method", "averaging"], "are derived by lindstedt-poincare"),
-        (&["--steps"], "is not printed order by order"),
-        (&["--format", "python"], "there is no program of the modes"),
+        (&["--steps", "--method", "harmonic-balance"], "--steps: one harmonic has no orders"),
     ] {
         let output = run(&[&["derive", pair], more].concat());
         let message = String::from_utf8_lossy(&output.stderr).into_owned();

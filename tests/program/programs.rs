@@ -581,7 +581,8 @@ fn programs_look_as_they_looked() {
                 ["derive", "pendulum", "--method", "iteration-perturbation", "--format", name];
             insta::assert_snapshot!(format!("program-iterate-{name}"), output(&iterate));
         }
-        let pair = ["derive", "examples/modes/two-masses.toml", "--order", "2", "--format", "matlab"];
+        let pair =
+            ["derive", "examples/modes/two-masses.toml", "--order", "2", "--format", "matlab"];
         insta::assert_snapshot!("program-modes-matlab", output(&pair));
         let balance = ["derive", "examples/harmonic-balance-duffing.toml", "--format", "python"];
         insta::assert_snapshot!("program-balance-python", output(&balance));

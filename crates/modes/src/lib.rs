@@ -18,7 +18,7 @@ pub use lindstedt_expr::{decimal, exact, expr, symbol};
 #[doc(no_inline)]
 pub use lindstedt_numeric::interrupt;
 #[doc(no_inline)]
-pub use lindstedt_oscillator::{method, solution};
+pub use lindstedt_oscillator::{derivation, method, solution};
 #[doc(no_inline)]
 pub use lindstedt_series::series;
 

@@ -87,13 +87,9 @@ pub enum DerivationFormula {
         /// The name of the phase.
         phase: Symbol,
     },
-    /// `y'' + square*y`, derivatives in theta or, with `square` = omega^2, in time.
-    Oscillator {
-        /// `y`.
-        of: Symbol,
-        /// The coefficient of `y`.
-        square: Expr,
-    },
+    /// A sum of derivatives, each times a factor: `y'' + square*y`, derivatives in theta or, with
+    /// `square` = omega^2, in time.
+    Linear(Vec<DerivativeTerm>),
     /// `y(0)`, or `y'(0)`.
     AtZero {
         /// `y`.
@@ -125,6 +121,17 @@ pub enum DerivationFormula {
         /// The variable of differentiation.
         by: Symbol,
     },
+}
+
+/// A derivative times a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DerivativeTerm {
+    /// The factor.
+    pub factor: Expr,
+    /// The function.
+    pub of: Symbol,
+    /// The number of its derivatives.
+    pub derivatives: usize,
 }
 
 impl DerivationLine {
@@ -180,6 +187,12 @@ impl DerivationLine {
 }
 
 impl DerivationFormula {
+    /// `y'' + square*y`.
+    pub fn oscillator(of: Symbol, square: Expr) -> Self {
+        let term = |factor, derivatives| DerivativeTerm { factor, of, derivatives };
+        Self::Linear(vec![term(Expr::one(), 2), term(square, 0)])
+    }
+
     fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         let changed = |expression: &Expr| {
             expression.with_numbers(change).unwrap_or_else(|_| expression.clone())
@@ -190,8 +203,11 @@ impl DerivationFormula {
                 series: series.map(POLYNOMIALS, |coefficient, _| coefficient.map(change)),
                 phase: *phase,
             },
-            Self::Oscillator { of, square } => {
-                Self::Oscillator { of: *of, square: changed(square) }
+            Self::Linear(terms) => {
+                let terms = terms.iter();
+                let changed = terms
+                    .map(|term| DerivativeTerm { factor: changed(&term.factor), ..term.clone() });
+                Self::Linear(changed.collect())
             }
             Self::Integral { factor, from, to, integrand, variable } => Self::Integral {
                 factor: changed(factor),
@@ -217,7 +233,10 @@ impl DerivationFormula {
             Self::Waves { series, .. } => {
                 series.numerators().flat_map(Polynomial::symbols).collect()
             }
-            Self::Oscillator { of, square } => square.symbols().into_iter().chain([*of]).collect(),
+            Self::Linear(terms) => {
+                let each = terms.iter();
+                each.flat_map(|term| term.factor.symbols().into_iter().chain([term.of])).collect()
+            }
             Self::AtZero { of, .. } => [*of].into(),
             Self::Integral { factor, from, to, integrand, variable } => {
                 let ends = [factor, from, to].into_iter().flat_map(Expr::symbols);
@@ -302,9 +321,12 @@ impl fmt::Display for DerivationFormula {
                 let waves = terms::waves(series, ToString::to_string, &NOTATION, *phase);
                 formatter.write_str(&terms::sum(waves))
             }
-            Self::Oscillator { of, square } => {
-                let linear = square * &Expr::from(*of);
-                write!(formatter, "{of}'' + {linear}")
+            Self::Linear(terms) => {
+                let each = terms.iter().map(|DerivativeTerm { factor, of, derivatives }| {
+                    let primes = "'".repeat(*derivatives);
+                    (factor * &Expr::symbol(&format!("{of}{primes}"))).to_string()
+                });
+                formatter.write_str(&terms::sum(each))
             }
             Self::AtZero { of, derivatives } => {
                 write!(formatter, "{of}{}(0)", "'".repeat(*derivatives))

@@ -73,6 +73,9 @@ pub struct ModeDocument {
     pub definitions: Map<String>,
     /// Whether coefficients are rounded to fifteen digits, because the linear frequency is no fraction.
     pub numerical: bool,
+    /// The derivation line by line, as text; left out where it was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivation: Option<Vec<String>>,
     /// The mode at values beside the true motion; null without values.
     pub verification: Option<ModeVerification>,
     /// The reason why no true motion was found; null where one was, or none was asked for.
@@ -175,6 +178,8 @@ fn one_mode(
         modal_lines: named(others.map(|(_, (name, line))| (name, polynomial(line)))),
         definitions: meanings(&mode.definitions),
         numerical: mode.rounded,
+        derivation: (!mode.derivation.is_empty())
+            .then(|| mode.derivation.iter().map(ToString::to_string).collect()),
         verification: judged.and_then(|judged| judged.as_ref().ok()).map(verification),
         unjudged: judged.and_then(|judged| judged.as_ref().err().cloned()),
     }

@@ -2,13 +2,14 @@
 
 use num_traits::Zero;
 
-use super::expansion::{Expansion, OverRing, Question};
+use super::expansion::{Expansion, ExpansionStep, OverRing, Question};
 use super::free_system::ForceTerm;
 use super::inverse::HarmonicInverses;
 use super::linear::{DIGITS, LinearMode, LinearModes, NearResonance};
 use super::modal_line::modal_lines;
-use super::{FreeSystem, ModeError};
+use super::{FreeSystem, ModeError, steps};
 use crate::decimal::rounded_fraction;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
@@ -37,6 +38,8 @@ pub struct ModeOptions {
     pub order: Option<u32>,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
+    /// Whether the derivation is kept, order by order.
+    pub steps: bool,
     /// Interrupt and progress.
     pub supervision: Supervision,
 }
@@ -47,6 +50,7 @@ impl Default for ModeOptions {
             mode: None,
             order: None,
             amplitude: AmplitudeConvention::FirstHarmonic,
+            steps: false,
             supervision: Supervision::default(),
         }
     }
@@ -110,6 +114,8 @@ pub struct NonlinearMode {
     /// Whether the coefficients are rounded to fifteen digits, because the linear frequency is no
     /// closed root.
     pub rounded: bool,
+    /// The derivation order by order; empty if it was not asked for.
+    pub derivation: Vec<DerivationLine>,
 }
 
 impl NonlinearMode {
@@ -190,6 +196,7 @@ fn one_mode(
         force,
         order: order as usize,
         amplitude: options.amplitude,
+        steps: options.steps,
         supervision: options.supervision,
     };
     let round = |number: &Rational| match rounded {
@@ -216,31 +223,51 @@ fn one_mode(
             .expand(&mut inverse_of)?,
         ),
     };
+    let names = system.names().into_iter();
+    let defined = known.iter().chain(&inverses.definitions).map(|definition| definition.symbol);
+    let taken = names.chain(defined).collect();
+    let derivation =
+        steps::derivation(system, &basis, &expansion, options.amplitude.symbol(), taken);
     let definitions: Vec<Definition> =
         known.into_iter().chain(std::mem::take(&mut inverses.definitions)).collect();
-    let mut found = in_amplitude(system, expansion, number, mode, definitions, rounded, options);
+    let mut found = in_amplitude(system, expansion, number, mode, rounded, options);
     let occurs = |near: &NearResonance| {
         let mut harmonics = found.motion.iter().map(|series| series.cosine(near.ratio));
         harmonics.any(|harmonic| !harmonic.is_zero())
     };
     let near = linear.near_resonances(number - 1, order as usize + 1);
     found.near = near.into_iter().filter(occurs).collect();
+    found.derivation = match rounded {
+        true => derivation.iter().map(|line| line.with_numbers(&to_shown_digits)).collect(),
+        false => derivation,
+    };
+    found.definitions = used(&found, &definitions);
     Ok(found)
+}
+
+/// A rounded number of a derivation with the digits that are shown.
+fn to_shown_digits(number: &Rational) -> Rational {
+    const SHOWN_DIGITS: usize = 9;
+    match to_f64(number).abs() < NOISE {
+        true => Rational::zero(),
+        false => rounded_fraction(number, SHOWN_DIGITS),
+    }
 }
 
 /// The orders with polynomials as coefficients.
 fn in_polynomials(expansion: Expansion<Rationals>) -> Expansion<Polynomials> {
     let constant = Polynomial::constant;
+    let all = |of: &[FourierSeries<Rationals>]| -> Vec<FourierSeries<Polynomials>> {
+        of.iter().map(|series| series.map(POLYNOMIALS, |c, _| constant(c.clone()))).collect()
+    };
+    let step = |step: &ExpansionStep<Rationals>| ExpansionStep {
+        right_sides: all(&step.right_sides),
+        unknowns: all(&step.unknowns),
+    };
     Expansion {
         frequency_squared: expansion.frequency_squared.into_iter().map(constant).collect(),
-        motion: expansion
-            .motion
-            .iter()
-            .map(|order| {
-                let series = order.iter();
-                series.map(|series| series.map(POLYNOMIALS, |c, _| constant(c.clone()))).collect()
-            })
-            .collect(),
+        motion: expansion.motion.iter().map(|order| all(order)).collect(),
+        steps: expansion.steps.iter().map(step).collect(),
     }
 }
 
@@ -250,7 +277,6 @@ fn in_amplitude(
     expansion: Expansion<Polynomials>,
     number: usize,
     mode: &LinearMode,
-    definitions: Vec<Definition>,
     rounded: bool,
     options: &ModeOptions,
 ) -> NonlinearMode {
@@ -282,7 +308,7 @@ fn in_amplitude(
     let along = mode.shape.iter().position(|entry| !entry.is_zero()).unwrap_or(0);
     let lines = modal_lines(&expansion.motion, along, coordinates[along], amplitude);
     let rounded_all = |entries: &[Polynomial]| entries.iter().map(round).collect();
-    let mut found = NonlinearMode {
+    NonlinearMode {
         number,
         order: u32::try_from(reached).unwrap_or(u32::MAX),
         amplitude: options.amplitude,
@@ -300,9 +326,8 @@ fn in_amplitude(
         near: vec![],
         definitions: vec![],
         rounded,
-    };
-    found.definitions = used(&found, definitions);
-    found
+        derivation: vec![],
+    }
 }
 
 /// `u^T M/(u^T M v)`.
@@ -316,7 +341,7 @@ fn modal_coordinate(mass: &[Vec<Polynomial>], mode: &LinearMode) -> Vec<Polynomi
 }
 
 /// The definitions that occur in a mode, or in others that do.
-fn used(mode: &NonlinearMode, definitions: Vec<Definition>) -> Vec<Definition> {
+fn used(mode: &NonlinearMode, definitions: &[Definition]) -> Vec<Definition> {
     let linear = &mode.linear;
     let polynomials = std::iter::once(&mode.frequency_squared)
         .chain(std::iter::once(&linear.square))
@@ -324,6 +349,7 @@ fn used(mode: &NonlinearMode, definitions: Vec<Definition>) -> Vec<Definition> {
         .chain(&linear.modal)
         .chain(&mode.lines)
         .chain(mode.motion.iter().flat_map(FourierSeries::numerators));
-    let names = polynomials.flat_map(Polynomial::symbols).collect();
-    definitions_behind(&definitions, names).into_iter().cloned().collect()
+    let of_derivation = mode.derivation.iter().flat_map(DerivationLine::symbols);
+    let names = polynomials.flat_map(Polynomial::symbols).chain(of_derivation).collect();
+    definitions_behind(definitions, names).into_iter().cloned().collect()
 }

@@ -29,6 +29,8 @@ pub(crate) struct Basis {
     pub(super) projection: Vec<Vec<Polynomial>>,
     /// `P M V`.
     pub(super) mass: Vec<Vec<Polynomial>>,
+    /// `P K V`.
+    pub(super) stiffness: Vec<Vec<Polynomial>>,
     /// v in the unknowns.
     pub(super) shape: Vec<Polynomial>,
     /// `u^T/(u^T M v)` for the equations of the unknowns.
@@ -41,6 +43,16 @@ pub(super) struct Expansion<R: Ring> {
     pub(super) frequency_squared: Vec<R::Element>,
     /// `q_n`, a series for each coordinate, from `q_1` on.
     pub(super) motion: Vec<Vec<FourierSeries<R>>>,
+    /// The derivation, from the second order on; empty if it was not asked for.
+    pub(super) steps: Vec<ExpansionStep<R>>,
+}
+
+/// An order of a derivation.
+pub(super) struct ExpansionStep<R: Ring> {
+    /// `r_n`, of each unknown, without what `W_(n-1)` adds.
+    pub(super) right_sides: Vec<FourierSeries<R>>,
+    /// The unknowns of this order.
+    pub(super) unknowns: Vec<FourierSeries<R>>,
 }
 
 /// The question of an expansion.
@@ -54,6 +66,8 @@ pub(super) struct Question<'a> {
     /// The highest power of the amplitude in omega^2.
     pub(super) order: usize,
     pub(super) amplitude: AmplitudeConvention,
+    /// Whether the derivation is kept.
+    pub(super) steps: bool,
     pub(super) supervision: Supervision,
 }
 
@@ -110,6 +124,7 @@ impl<R: Ring> OverRing<'_, R> {
         let mut found = Expansion {
             frequency_squared: vec![(self.element)(self.question.square)],
             motion: vec![self.applied(&coordinates, &first)],
+            steps: vec![],
         };
         let mut unknowns = vec![first];
         let mut inverses: Vec<Option<HarmonicInverse>> = Vec::new();
@@ -173,6 +188,9 @@ impl<R: Ring> OverRing<'_, R> {
                 .map(|cosines| FourierSeries::from_parts(ring.clone(), cosines, vec![]))
                 .collect();
             found.motion.push(self.applied(&coordinates, &next));
+            if self.question.steps {
+                found.steps.push(ExpansionStep { right_sides: right, unknowns: next.clone() });
+            }
             unknowns.push(next);
             self.question.supervision.progress.advance();
         }

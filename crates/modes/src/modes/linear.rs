@@ -184,6 +184,11 @@ impl LinearModes {
                     coordinates: unit.clone(),
                     projection: unit,
                     mass: mass.to_vec(),
+                    stiffness: modes
+                        .stiffness
+                        .iter()
+                        .map(|row| row.iter().cloned().map(Polynomial::constant).collect())
+                        .collect(),
                     shape: mode.shape.clone(),
                     left: scaled(&mode.left, &mode.inverse_mass),
                 }
@@ -198,6 +203,12 @@ impl LinearModes {
                         .map(|mode| scaled(&mode.left, &mode.inverse_mass))
                         .to_vec(),
                     mass: [unit(0), unit(1)].to_vec(),
+                    stiffness: [0, 1]
+                        .map(|index| {
+                            let square = &modes.modes[index].square;
+                            unit(index).iter().map(|entry| entry.product(square)).collect()
+                        })
+                        .to_vec(),
                     shape: unit(index),
                     left: unit(index),
                 }

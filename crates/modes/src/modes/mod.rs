@@ -17,6 +17,7 @@
 //! - `inverse`: `K - k^2 lambda M` inverted for each harmonic, the resonances among them.
 //! - `expansion`: the orders of frequency and motion.
 //! - `modal_line`: the other coordinates as functions of the first.
+//! - `steps`: the derivation order by order.
 //! - `one_harmonic`: modes of two coordinates with one harmonic, in closed form.
 
 mod answer;
@@ -29,6 +30,7 @@ pub(crate) mod matrix;
 mod modal_line;
 mod one_harmonic;
 pub(crate) mod reading;
+mod steps;
 
 pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;

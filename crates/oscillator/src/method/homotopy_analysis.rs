@@ -322,7 +322,7 @@ impl<'a> HomotopyExpansion<'a> {
         let (control, first_frequency) =
             (convergence_control(self.solution), self.first_frequency_name);
         let driven = to_fractions(&next.sum(&next.derivative().derivative()));
-        let left = DerivationFormula::Oscillator { of: name, square: Expr::one() };
+        let left = DerivationFormula::oscillator(name, Expr::one());
         let change = format!("{control}*{residual}/{first_frequency}^2");
         self.lines.push(DerivationLine::equal([left, driven.into()]).because(match m {
             1 => format!("{name}'' + {name} = {change}"),

@@ -217,7 +217,7 @@ impl IterationPass {
         let x = Expr::from(oscillator.coordinate);
         let factor = Expr::divide(&oscillator.force, &x)?.expand()?;
         let factor = factor.substitute(oscillator.coordinate, &before.into())?;
-        let left = DerivationFormula::Oscillator { of: after, square: omega };
+        let left = DerivationFormula::oscillator(after, omega);
         let secular = self.right_side.cosine(1).constant_term();
         let mut lines = vec![
             DerivationLine::equation(factor, self.factor.clone())
@@ -255,11 +255,8 @@ fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Derivati
     let squared = Expr::symbol("omega").integer_power(2)?;
     Ok(vec![
         DerivationLine::equation(start, along),
-        DerivationLine::equal([
-            DerivationFormula::Oscillator { of: first, square: frozen },
-            Expr::zero().into(),
-        ])
-        .because(format!("the factor frozen at {start}")),
+        DerivationLine::equal([DerivationFormula::oscillator(first, frozen), Expr::zero().into()])
+            .because(format!("the factor frozen at {start}")),
         DerivationLine::equation(squared, first_projection(oscillator, force)?)
             .because("no cos(θ) remains"),
     ])

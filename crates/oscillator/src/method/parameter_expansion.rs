@@ -55,7 +55,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
         let names = oscillator.names();
         let (p, w, omega0) = (fresh("p", &names), fresh_stem("w", &names), fresh("omega0", &names));
-        let left = DerivationFormula::Oscillator { of: first, square: omega };
+        let left = DerivationFormula::oscillator(first, omega);
         solution.derivation = vec![
             DerivationLine::equation(start, along).because(format!("at {p}^0")),
             DerivationLine::equation(left, driven).because(format!(

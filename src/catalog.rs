@@ -1,13 +1,15 @@
 //! Classical oscillators by name, each with its source and the published law, if one is printed.
 //!
-//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, and the list of methods that
-//! apply to it.
+//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, or several, and the list of
+//! methods that apply to it.
 //!
 //! A published law serves only for comparison with a derived one, never as an answer.
 
 use std::fmt;
 
-use crate::method::{Options, Refusal, solve};
+use crate::method::{Options, solve};
+use crate::modes::{self, FreeSystem, ModeOptions};
+use crate::multiple_scales::{self, CoupledSystem, MultipleScalesOptions};
 use crate::oscillator::Oscillator;
 use crate::solution::Method;
 
@@ -21,7 +23,7 @@ pub struct CatalogEntry {
     pub name: &'static str,
     /// The name in running text.
     pub title: &'static str,
-    /// The equation of motion.
+    /// The equation of motion, or several separated by `;`.
     pub equation: &'static str,
     /// The publication that studies it.
     pub source: &'static str,
@@ -38,6 +40,13 @@ pub struct Published {
     pub squared: bool,
     /// The order in the small parameter to which it is printed.
     pub order: u32,
+}
+
+impl CatalogEntry {
+    /// Whether it has several equations, separated by `;`.
+    pub fn is_coupled(&self) -> bool {
+        self.equation.contains(';')
+    }
 }
 
 impl fmt::Display for Published {
@@ -265,6 +274,97 @@ pub const CATALOG: &[CatalogEntry] = &[
         source: NAYFEH_MOOK_DAMPED,
         published: None,
     },
+    CatalogEntry {
+        name: "similar-pair",
+        title: "two masses on cubic springs, coupled by another",
+        equation: "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0",
+        source: "A. F. Vakakis, R. H. Rand, Int. J. Non-Linear Mech. 27 (1992) 861-874: similar modes, of which two more branch off at K = 1/4",
+        published: None,
+    },
+    CatalogEntry {
+        name: "modal-pair",
+        title: "two masses, one of them on a cubic spring",
+        equation: "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0",
+        source: "G. Kerschen, M. Peeters, J. C. Golinval, A. F. Vakakis, Mech. Syst. Signal Process. 23 (2009) 170-194",
+        published: None,
+    },
+    CatalogEntry {
+        name: "coupled-duffing",
+        title: "two springs of Duffing with a linear coupling",
+        equation: "x'' + x + eps*x^3 + k*(x - y) = 0; y'' + y + eps*y^3 + k*(y - x) = 0",
+        source: "R. M. Rosenberg, Adv. Appl. Mech. 9 (1966) 155-242",
+        published: None,
+    },
+    CatalogEntry {
+        name: "coupled-pendulums",
+        title: "two pendulums with a spring between them",
+        equation: "x'' + sin(x) + k*(x - y) = 0; y'' + sin(y) + k*(y - x) = 0",
+        source: "A. Sommerfeld, Mechanics, Academic Press 1952: sympathetic pendulums",
+        published: None,
+    },
+    CatalogEntry {
+        name: "double-pendulum",
+        title: "two equal pendulums, one below the other",
+        equation: "2*x'' + y''*cos(x - y) + y'^2*sin(x - y) + 2*sin(x) = 0; y'' + x''*cos(x - y) - x'^2*sin(x - y) + sin(y) = 0",
+        source: "L. D. Landau, E. M. Lifshitz, Mechanics, Pergamon 1960, section 5",
+        published: None,
+    },
+    CatalogEntry {
+        name: "elastic-pendulum",
+        title: "mass that swings on a spring",
+        equation: "r'' - (1 + r)*b'^2 + W^2*r + 1 - cos(b) = 0; (1 + r)*b'' + 2*r'*b' + sin(b) = 0",
+        source: "A. Vitt, G. Gorelik, J. Tech. Phys. USSR 3 (1933) 294-307: energy goes to and fro at W = 2",
+        published: None,
+    },
+    CatalogEntry {
+        name: "cart-pendulum",
+        title: "pendulum on a cart held by a spring",
+        equation: "(1 + m)*x'' + m*b''*cos(b) - m*b'^2*sin(b) + k*x = 0; b'' + x''*cos(b) + sin(b) = 0",
+        source: "L. Meirovitch, Methods of Analytical Dynamics, McGraw-Hill 1970",
+        published: None,
+    },
+    CatalogEntry {
+        name: "henon-heiles",
+        title: "star in an axisymmetric galaxy",
+        equation: "x'' + x + 2*x*y = 0; y'' + y + x^2 - y^2 = 0",
+        source: "M. Henon, C. Heiles, Astron. J. 69 (1964) 73-79",
+        published: None,
+    },
+    CatalogEntry {
+        name: "toda-pair",
+        title: "two masses of Toda's lattice between walls",
+        equation: "x'' - exp(-x) + exp(x - y) = 0; y'' - exp(x - y) + exp(y) = 0",
+        source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
+        published: None,
+    },
+    CatalogEntry {
+        name: "fermi-pasta-ulam",
+        title: "three masses of the chain of Fermi, Pasta and Ulam",
+        equation: "x'' + 2*x - y - alpha*((y - x)^2 - x^2) = 0; y'' + 2*y - x - z - alpha*((z - y)^2 - (y - x)^2) = 0; z'' + 2*z - y - alpha*(z^2 - (z - y)^2) = 0",
+        source: "E. Fermi, J. Pasta, S. Ulam, Los Alamos report LA-1940 (1955)",
+        published: None,
+    },
+    CatalogEntry {
+        name: "quadratic-pair",
+        title: "two modes at 1:2 that exchange their energy",
+        equation: "x'' + x - alpha1*x*y = 0; y'' + 4*y - alpha2*x^2 = 0",
+        source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 6.2",
+        published: None,
+    },
+    CatalogEntry {
+        name: "saturation",
+        title: "two modes at 1:2, damped, the faster one driven",
+        equation: "x'' + 2*mu1*x' + x - alpha1*x*y = 0; y'' + 2*mu2*y' + 4*y - alpha2*x^2 = F*cos(2*t)",
+        source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 6.5",
+        published: None,
+    },
+    CatalogEntry {
+        name: "coupled-van-der-pol",
+        title: "two oscillators of van der Pol that lock or die",
+        equation: "x'' - eps*(1 - x^2)*x' + x - eps*kappa*(y' - x') = 0; y'' - eps*(1 - y^2)*y' + (1 + eps*delta)*y - eps*kappa*(x' - y') = 0",
+        source: "D. G. Aronson, G. B. Ermentrout, N. Kopell, Physica D 41 (1990) 403-449",
+        published: None,
+    },
 ];
 
 /// The entry of this name, regardless of case; `None` if there is none.
@@ -277,8 +377,8 @@ pub fn find(name: &str) -> Option<&'static CatalogEntry> {
     CATALOG.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
 }
 
-/// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does
-/// not.
+/// Every method at its default order on an entry: `Ok` where it applies, the reason in words where it
+/// does not. Coupled equations have the methods that are for them.
 ///
 /// ```
 /// use lindstedt::catalog::{find, methods};
@@ -287,11 +387,38 @@ pub fn find(name: &str) -> Option<&'static CatalogEntry> {
 /// let answers = methods(van_der_pol);
 /// assert!(answers.iter().any(|(_, answer)| answer.is_ok()) && answers.iter().any(|(_, answer)| answer.is_err()));
 /// ```
-pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), Refusal>)> {
-    let attempt = |method| {
+pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), String>)> {
+    if entry.is_coupled() {
+        let methods = [Method::LindstedtPoincare, Method::HarmonicBalance, Method::MultipleScales];
+        return methods.map(|method| (method, of_coupled(entry.equation, method))).to_vec();
+    }
+    let attempt = |method: Method| {
         let options = Options { method: Some(method), ..Options::default() };
-        let oscillator = Oscillator::parse(entry.equation)?;
-        solve(&oscillator, &options).map(|_| ())
+        let oscillator = Oscillator::parse(entry.equation).map_err(|error| error.to_string())?;
+        solve(&oscillator, &options).map(|_| ()).map_err(|refusal| refusal.without_title(method))
     };
     Method::ALL.into_iter().map(|method| (method, attempt(method))).collect()
+}
+
+/// A method of coupled equations on these.
+fn of_coupled(equations: &str, method: Method) -> Result<(), String> {
+    let in_words = |error: &dyn fmt::Display| error.to_string();
+    if method == Method::MultipleScales {
+        let system = CoupledSystem::parse(equations).map_err(|error| in_words(&error))?;
+        let slow = multiple_scales::derive(&system, &MultipleScalesOptions::default());
+        return slow.map(|_| ()).map_err(|error| in_words(&error));
+    }
+    let system = FreeSystem::parse(equations).map_err(|error| in_words(&error))?;
+    let found = match method {
+        Method::HarmonicBalance => modes::one_harmonic_modes(&system).map(|_| ()),
+        _ => modes::derive(&system, &ModeOptions::default()).and_then(|found| {
+            // One mode with a formula is an answer.
+            found
+                .modes
+                .into_iter()
+                .reduce(|one, other| one.or(other))
+                .map_or(Ok(()), |mode| mode.map(|_| ()))
+        }),
+    };
+    found.map_err(|error| in_words(&error))
 }

@@ -25,7 +25,9 @@ pub fn text(entries: &[CatalogEntry]) -> String {
     let width = |text: fn(&CatalogEntry) -> &str| {
         entries.iter().map(|entry| text(entry).chars().count()).max().unwrap_or(0)
     };
-    let (name, equation) = (width(|entry| entry.name), width(|entry| entry.equation));
+    // Several equations are longer than the column of one.
+    let of_one = |entry: &CatalogEntry| if entry.is_coupled() { "" } else { entry.equation };
+    let (name, equation) = (width(|entry| entry.name), width(of_one));
     let line = |entry: &CatalogEntry| {
         format!("{:name$}  {:equation$}  {}\n", entry.name, entry.equation, entry.title)
     };
@@ -77,11 +79,10 @@ fn entry_as_text(entry: &CatalogEntry) -> String {
     lines.extend(entry.published.map(|law| format!("  published: {law}")));
     let (mut applying, mut refused): (Vec<&str>, Vec<(String, Vec<&str>)>) = (vec![], vec![]);
     for (method, result) in methods(entry) {
-        let Err(refusal) = result else {
+        let Err(reason) = result else {
             applying.push(method.name());
             continue;
         };
-        let reason = refusal.without_title(method);
         match refused.iter_mut().find(|known| known.0 == reason) {
             Some(known) => known.1.push(method.name()),
             None => refused.push((reason, vec![method.name()])),

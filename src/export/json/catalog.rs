@@ -25,7 +25,7 @@ pub struct Entry {
     pub name: String,
     /// The name in running text.
     pub title: String,
-    /// The equation of motion, `... = 0`.
+    /// The equation of motion, or several separated by `;`.
     pub equation: String,
     /// Where it is studied.
     pub source: String,
@@ -64,9 +64,10 @@ pub fn catalog(entries: &[catalog::CatalogEntry]) -> CatalogDocument {
 
 fn entry(entry: &catalog::CatalogEntry) -> Entry {
     let applicability =
-        |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
-            let reason = result.err().map(|refusal| refusal.to_string());
-            Applicability { method: method.name().to_owned(), applies: reason.is_none(), reason }
+        |(method, result): (crate::solution::Method, Result<(), String>)| Applicability {
+            method: method.name().to_owned(),
+            applies: result.is_ok(),
+            reason: result.err(),
         };
     Entry {
         name: entry.name.to_owned(),

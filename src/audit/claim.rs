@@ -7,6 +7,7 @@ use super::printed::{Printed, Rounding};
 use crate::expr::Expr;
 use crate::impact::Rule;
 use crate::method::Options;
+use crate::modes::FreeSystem;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::Symbol;
@@ -119,7 +120,7 @@ pub struct ClaimComputation {
     /// The quantity.
     pub quantity: ClaimQuantity,
     /// The equation of motion, for quantities that are derived from one.
-    pub equation: Option<Oscillator>,
+    pub equation: Option<ClaimEquation>,
     /// Method, order and the like.
     pub options: Options,
     /// The rule of the line of equation (15).
@@ -133,6 +134,30 @@ pub struct ClaimComputation {
     /// The relative error that is allowed, in place of digits; for a trend, the relative difference
     /// that counts as none.
     pub tolerance: Option<f64>,
+}
+
+/// The equation of motion of a claim.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ClaimEquation {
+    /// One coordinate.
+    One(Oscillator),
+    /// A mode of coupled equations.
+    Mode {
+        /// The equations.
+        system: FreeSystem,
+        /// The number of the mode, 1 for the slowest.
+        number: usize,
+    },
+}
+
+impl ClaimEquation {
+    /// The letters of the equation beside coordinates and time.
+    pub fn parameters(&self) -> &[Symbol] {
+        match self {
+            Self::One(oscillator) => &oscillator.parameters,
+            Self::Mode { system, .. } => &system.equations.parameters,
+        }
+    }
 }
 
 /// The quantity that is computed.

@@ -107,6 +107,7 @@ struct Section {
     of: Option<Text>,
     term: Option<Text>,
     equation: Option<Text>,
+    mode: Option<Spanned<usize>>,
     method: Option<Text>,
     order: Option<Spanned<Order>>,
     small: Option<Text>,
@@ -185,7 +186,11 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> ReadResult<Claim
     let unknown = unknown(section, &values)?;
     let question = ClaimComputation {
         quantity: quantity(section, kind)?,
-        equation: section.equation.as_ref().map(equation).transpose()?,
+        equation: section
+            .equation
+            .as_ref()
+            .map(|text| equation(text, section.mode.as_ref()))
+            .transpose()?,
         options: options_of(section)?,
         rule: section.linearisation.as_ref().map(rule).transpose()?.unwrap_or_default(),
         values,

@@ -40,8 +40,8 @@ mod unknown;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use claim::{
-    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, PrintedStatement, Supposition, Trend,
-    Unknown, Verdict,
+    Claim, ClaimComputation, ClaimEquation, ClaimQuantity, PrintedEntry, PrintedStatement,
+    Supposition, Trend, Unknown, Verdict,
 };
 pub use printed::{Printed, Relation, Rounding};
 pub use quantity::{Computed, NAMES, NotComputable};

@@ -8,7 +8,7 @@
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::claim::{ClaimComputation, ClaimQuantity};
+use super::claim::{ClaimComputation, ClaimEquation, ClaimQuantity};
 use super::{identity, options};
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
@@ -20,13 +20,14 @@ use crate::impact::{
 };
 use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
-use crate::method::solve;
+use crate::method::{Options, solve};
+use crate::modes::{FreeSystem, ModeOptions, NonlinearMode, derive};
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
-use crate::solution::Solution;
+use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{DEFAULT_TOLERANCE, judge_motion, needed_values};
+use crate::verify::{DEFAULT_TOLERANCE, JudgedMode, judge_mode, judge_motion, needed_values};
 
 /// The quantities that the program computes by name, in addition to the values in a file: the name,
 /// its arguments, its meaning.
@@ -121,7 +122,7 @@ pub enum NotComputable {
 /// Computes one quantity, for any entry and any value of an unknown.
 pub(super) struct Evaluator<'a> {
     question: &'a ClaimComputation,
-    law: OnceCell<Result<(Oscillator, Solution), String>>,
+    law: OnceCell<Result<DerivedLaw, String>>,
     swing: OnceCell<Result<(Oscillator, Solution), String>>,
 }
 
@@ -187,28 +188,33 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The derived law.
-    fn law(&self) -> Result<&(Oscillator, Solution), NotComputable> {
+    fn law(&self) -> Result<&DerivedLaw, NotComputable> {
         let Some(equation) = &self.question.equation else {
             return Err(missing("equation"));
         };
-        let found = self.law.get_or_init(|| {
-            let solution =
-                solve(equation, &self.question.options).map_err(|error| error.to_string())?;
-            Ok((equation.clone(), solution))
+        let found = self.law.get_or_init(|| match equation {
+            ClaimEquation::One(oscillator) => {
+                let solution =
+                    solve(oscillator, &self.question.options).map_err(|error| error.to_string())?;
+                Ok(DerivedLaw::One(oscillator.clone(), Box::new(solution)))
+            }
+            ClaimEquation::Mode { system, number } => mode(system, *number, &self.question.options),
         });
         found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
 
     /// omega or omega^2 as a polynomial.
     fn polynomial(&self, squared: bool) -> Result<Polynomial, NotComputable> {
-        let (_, solution) = self.law()?;
-        let found = match squared {
-            true => solution.law.frequency_squared(),
-            false => solution.law.frequency(),
+        let law = self.law()?;
+        let found = match (law, squared) {
+            (DerivedLaw::One(_, solution), true) => solution.law.frequency_squared().cloned(),
+            (DerivedLaw::One(_, solution), false) => solution.law.frequency().cloned(),
+            (DerivedLaw::Mode(_, mode), true) => written_out(mode),
+            (DerivedLaw::Mode(..), false) => None,
         };
-        found.cloned().ok_or_else(|| {
+        found.ok_or_else(|| {
             let name = if squared { "omega^2" } else { "omega" };
-            NotComputable::Refused(format!("{} gives no polynomial for {name}", solution.title()))
+            NotComputable::Refused(format!("{} gives no polynomial for {name}", law.title()))
         })
     }
 
@@ -218,7 +224,10 @@ impl<'a> Evaluator<'a> {
         let found = self.swing.get_or_init(|| {
             let words = |error: &dyn std::error::Error| error.to_string();
             let equation = match &self.question.equation {
-                Some(equation) => equation.clone(),
+                Some(ClaimEquation::One(oscillator)) => oscillator.clone(),
+                Some(ClaimEquation::Mode { .. }) => {
+                    return Err("an impact is of one coordinate".to_owned());
+                }
                 None => Oscillator::parse("x'' + sin(x) = 0").map_err(|error| words(&error))?,
             };
             let mut options = self.question.options.clone();
@@ -230,6 +239,55 @@ impl<'a> Evaluator<'a> {
         });
         found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
+}
+
+/// A derived law.
+enum DerivedLaw {
+    /// The law of one coordinate.
+    One(Oscillator, Box<Solution>),
+    /// The law of a mode of coupled equations.
+    Mode(Box<FreeSystem>, Box<NonlinearMode>),
+}
+
+impl DerivedLaw {
+    /// The method and its order in words.
+    fn title(&self) -> String {
+        match self {
+            Self::One(_, solution) => solution.title(),
+            Self::Mode(_, mode) => format!("mode {} to order {}", mode.number, mode.order),
+        }
+    }
+}
+
+/// A mode of coupled equations by these options.
+fn mode(system: &FreeSystem, number: usize, options: &Options) -> Result<DerivedLaw, String> {
+    let usual = ModeOptions::default();
+    let method = options.method.unwrap_or(Method::LindstedtPoincare);
+    if method != Method::LindstedtPoincare || options.small.is_some() || options.taylor.is_some() {
+        return Err(format!(
+            "the law of a mode is an expansion in its amplitude by {}",
+            Method::LindstedtPoincare.name()
+        ));
+    }
+    let options = ModeOptions {
+        mode: Some(number),
+        order: options.order,
+        amplitude: options.amplitude.unwrap_or(usual.amplitude),
+        ..usual
+    };
+    let found = derive(system, &options).map_err(|error| error.to_string())?;
+    let mode = found.modes.into_iter().next();
+    let mode = mode.ok_or("there is no such mode")?.map_err(|error| error.to_string())?;
+    Ok(DerivedLaw::Mode(Box::new(found.system), Box::new(mode)))
+}
+
+/// omega^2 of a mode in the letters of the equations; `None` if a definition is no polynomial.
+fn written_out(mode: &NonlinearMode) -> Option<Polynomial> {
+    let mut law = Expr::from(&mode.frequency_squared);
+    for definition in mode.definitions.iter().rev() {
+        law = law.substitute(definition.symbol, &definition.meaning).ok()?;
+    }
+    law.expand().ok()?.to_polynomial(&mut |_| None).ok()?
 }
 
 fn missing(name: &str) -> NotComputable {
@@ -345,13 +403,11 @@ impl EvaluationScope<'_, '_> {
     fn computed(&mut self, name: &str) -> Result<f64, NotComputable> {
         match name {
             "frequency" => self.frequency(),
-            "true_frequency" => Ok(self.judged()?.true_frequency),
-            "max_deviation" => {
-                let judged = self.judged()?;
-                judged
-                    .max_deviation
-                    .ok_or_else(|| NotComputable::Refused("the formula has no motion".to_owned()))
-            }
+            "true_frequency" => Ok(self.true_frequency_and_deviation()?.0),
+            "max_deviation" => self
+                .true_frequency_and_deviation()?
+                .1
+                .ok_or_else(|| NotComputable::Refused("the formula has no motion".to_owned())),
             "hertz_factor" => Ok(hertz::duration_factor()),
             "rest_time" => self.rest_time(true),
             "rest_time_without_barrier" => self.rest_time(false),
@@ -410,7 +466,14 @@ impl EvaluationScope<'_, '_> {
     }
 
     fn frequency(&mut self) -> Result<f64, NotComputable> {
-        let (equation, solution) = self.evaluator.law()?;
+        let (equation, solution) = match self.evaluator.law()? {
+            DerivedLaw::One(equation, solution) => (equation, solution),
+            law @ DerivedLaw::Mode(..) => {
+                let no_frequency =
+                    || NotComputable::Refused(format!("{} gives no frequency here", law.title()));
+                return self.judged_mode()?.frequency.ok_or_else(no_frequency);
+            }
+        };
         let numbers = self.all(&needed_values(solution))?;
         let square =
             frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
@@ -424,12 +487,28 @@ impl EvaluationScope<'_, '_> {
         }
     }
 
-    /// The verification of the formula at the values, without its range.
-    fn judged(&mut self) -> Result<crate::verify::Verification, NotComputable> {
-        let (equation, solution) = self.evaluator.law()?;
+    /// The frequency of the true motion, and the largest deviation of the formula from it.
+    fn true_frequency_and_deviation(&mut self) -> Result<(f64, Option<f64>), NotComputable> {
+        let DerivedLaw::One(equation, solution) = self.evaluator.law()? else {
+            let judged = self.judged_mode()?;
+            return Ok((judged.true_frequency, Some(judged.max_deviation)));
+        };
         let numbers = self.all(&needed_values(solution))?;
-        let at = exact(&numbers)?;
-        judge_motion(equation, solution, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
+        let judged = judge_motion(equation, solution, &exact(&numbers)?, DEFAULT_TOLERANCE);
+        let judged = judged.map_err(|error| refused(&error))?;
+        Ok((judged.true_frequency, judged.max_deviation))
+    }
+
+    /// The verdict on a mode at the values.
+    fn judged_mode(&mut self) -> Result<JudgedMode, NotComputable> {
+        let DerivedLaw::Mode(system, mode) = self.evaluator.law()? else {
+            return Err(missing("mode"));
+        };
+        let needed: Vec<Symbol> = std::iter::once(mode.amplitude.symbol())
+            .chain(system.equations.parameters.iter().copied())
+            .collect();
+        let at = exact(&self.all(&needed)?)?;
+        judge_mode(system, mode, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.
@@ -478,11 +557,17 @@ impl EvaluationScope<'_, '_> {
         if self.impact.is_none() {
             let [amplitude, barrier, stiffness] = self.numbers(["A", "xc", "gamma"])?;
             let question = self.evaluator.question;
-            let parameters =
-                question.equation.as_ref().map_or(vec![], |equation| equation.parameters.clone());
+            let swing = match &question.equation {
+                Some(ClaimEquation::One(oscillator)) => Some(oscillator.clone()),
+                Some(ClaimEquation::Mode { .. }) => {
+                    return Err(refused(&"an impact is of one coordinate"));
+                }
+                None => None,
+            };
+            let parameters = swing.as_ref().map_or(vec![], |swing| swing.parameters.clone());
             let values = exact(&self.all(&parameters)?)?;
             let setup = Setup {
-                swing: question.equation.clone(),
+                swing,
                 values,
                 release: -amplitude,
                 barrier,

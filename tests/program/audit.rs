@@ -529,3 +529,32 @@ fn an_equation_of_motion_follows_from_its_energies() {
     assert_eq!(none.verdict, Verdict::NotReproducible);
     assert!(none.evidence[0].contains("without inertia"), "{:?}", none.evidence);
 }
+
+/// The modes of coupled equations are audited like other laws: the classical frequencies are
+/// reproduced, each tampered digit is found, and what a mode has not is refused by name.
+#[test]
+fn claims_about_modes_of_coupled_equations() {
+    const MODES: &str = include_str!("../../examples/audit/modes.toml");
+    let found = audit(claims(MODES));
+    assert_eq!(found.findings.len(), 4);
+    for finding in &found.findings {
+        assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.claim.id);
+    }
+    for (old, new) in [("0.585786", "0.585736"), ("3.414214", "3.414219"), ("\"3/4\"", "\"3/8\"")] {
+        assert!(MODES.contains(old));
+        let found = audit(claims(&MODES.replace(old, new)));
+        let wrong = found.findings.iter().filter(|one| one.verdict == Verdict::Inconsistent);
+        assert_eq!(wrong.count(), 1, "{old}");
+    }
+    for (old, new, words) in [
+        ("mode = 2", "mode = 3", "there is no mode 3: there are 2"),
+        ("order = 2", "order = 2\nmethod = \"pade\"", "by lindstedt-poincare"),
+        ("order = 2", "order = 2\nof = \"frequency\"", "gives no polynomial for omega"),
+        ("a = \"1/100000\"", "b = \"1/100000\"", "`b`"),
+    ] {
+        let output = of_file("modes", &MODES.replacen(old, new, 1), &["--format", "json"]);
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8(said).expect("text");
+        assert!(said.contains(words), "{new}: {said}");
+    }
+}

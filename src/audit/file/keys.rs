@@ -20,8 +20,8 @@ pub(super) const KINDS: [&str; 9] = [
 ];
 
 /// Keys that only some quantities read.
-pub(super) const OF_A_LAW: [&str; 6] =
-    ["equation", "method", "order", "small", "amplitude", "taylor"];
+pub(super) const OF_A_LAW: [&str; 7] =
+    ["equation", "mode", "method", "order", "small", "amplitude", "taylor"];
 
 /// The keys of the computation that a quantity reads.
 pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
@@ -78,7 +78,7 @@ pub(super) fn kind(section: &Section) -> ReadResult<&str> {
 /// Refuses keys that this quantity does not read.
 pub(super) fn check_keys(section: &Section, kind: &str) -> ReadResult<()> {
     let span = |text: &Option<Text>| text.as_ref().map(Spanned::span);
-    let given: [(&str, Option<Range<usize>>); 19] = [
+    let given: [(&str, Option<Range<usize>>); 20] = [
         ("formula", span(&section.formula)),
         ("kinetic", span(&section.kinetic)),
         ("potential", span(&section.potential)),
@@ -86,6 +86,7 @@ pub(super) fn check_keys(section: &Section, kind: &str) -> ReadResult<()> {
         ("of", span(&section.of)),
         ("term", span(&section.term)),
         ("equation", span(&section.equation)),
+        ("mode", section.mode.as_ref().map(Spanned::span)),
         ("method", span(&section.method)),
         ("order", section.order.as_ref().map(Spanned::span)),
         ("small", span(&section.small)),

@@ -2,10 +2,9 @@
 
 use super::values::{number, symbol};
 use super::{ReadResult, Section, helped, mistake};
-use crate::audit::claim::{Claim, ClaimQuantity, PrintedStatement, Supposition};
+use crate::audit::claim::{Claim, ClaimEquation, ClaimQuantity, PrintedStatement, Supposition};
 use crate::audit::quantity::{NAMES, is_a_name};
 use crate::expr::Expr;
-use crate::oscillator::Oscillator;
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
 use std::collections::BTreeSet;
@@ -88,6 +87,7 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> ReadResult<()> {
         section.small.as_ref().map(|text| ("small", text.span())),
         section.amplitude.as_ref().map(|text| ("amplitude", text.span())),
         section.taylor.as_ref().map(|degree| ("taylor", degree.span())),
+        section.mode.as_ref().map(|number| ("mode", number.span())),
     ];
     if let (Some((key, span)), false) =
         (keys.into_iter().flatten().next(), asks(&of_a_law) || asks(&of_an_impact))
@@ -115,7 +115,7 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> ReadResult<()> {
 /// The names that a computed number needs.
 pub(super) fn asked_by<'a>(
     name: Symbol,
-    equation: Option<&'a Oscillator>,
+    equation: Option<&'a ClaimEquation>,
 ) -> impl Iterator<Item = Symbol> + 'a {
     let needs = NAMES.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
     let words = needs.into_iter().flat_map(|needs| needs.split(", "));
@@ -124,7 +124,7 @@ pub(super) fn asked_by<'a>(
     let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
     // An impact has the parameters of its swing, and the amplitude of a law has either symbol.
     let parameters =
-        equation.filter(|_| needs.is_some()).into_iter().flat_map(|equation| &equation.parameters);
+        equation.filter(|_| needs.is_some()).into_iter().flat_map(|equation| equation.parameters());
     let letter = of_a_law.then(|| Symbol::new("a"));
     own.map(Symbol::new).chain(parameters.copied()).chain(letter)
 }

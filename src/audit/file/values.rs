@@ -1,12 +1,13 @@
 //! Single values of a claims file: expressions, equations, methods, verdicts, each with its
 //! position for messages.
 
-use super::{Mistake, NamedValues, ReadResult, Text, mistake};
-use crate::audit::claim::Verdict;
+use super::{Mistake, NamedValues, ReadResult, Text, helped, mistake};
+use crate::audit::claim::{ClaimEquation, Verdict};
 use crate::audit::printed::Rounding;
 use crate::catalog;
 use crate::expr::{Expr, ParseError, parse_expression};
 use crate::impact::Rule;
+use crate::modes::FreeSystem;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
@@ -62,15 +63,30 @@ pub(super) fn equal_to_zero(text: &Text) -> ReadResult<Expr> {
     }
 }
 
-pub(super) fn equation(text: &Text) -> ReadResult<Oscillator> {
+/// The equation of a claim, or the mode of this number of coupled ones.
+pub(super) fn equation(text: &Text, mode: Option<&Spanned<usize>>) -> ReadResult<ClaimEquation> {
     let equation =
         catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
-    Oscillator::parse(equation).or_else(|error| {
-        // The picture of the position in the error refers to the text alone, so that it is left
-        // out.
-        let what = error.to_string();
-        mistake(text.span(), what.lines().next().unwrap_or_default())
-    })
+    // The picture of the position in an error refers to the text alone, so that it is left out.
+    let refused = |error: &dyn std::fmt::Display| {
+        mistake(text.span(), error.to_string().lines().next().unwrap_or_default())
+    };
+    match (equation.contains(';'), mode) {
+        (false, None) => match Oscillator::parse(equation) {
+            Ok(oscillator) => Ok(ClaimEquation::One(oscillator)),
+            Err(error) => refused(&error),
+        },
+        (true, Some(number)) => match FreeSystem::parse(equation) {
+            Ok(system) => Ok(ClaimEquation::Mode { system, number: *number.get_ref() }),
+            Err(error) => refused(&error),
+        },
+        (false, Some(number)) => {
+            mistake(number.span(), "`mode` says nothing here: one coordinate has one mode")
+        }
+        (true, None) => {
+            helped(text.span(), "coupled equations have several modes", "mode = 1 is the slowest")
+        }
+    }
 }
 
 pub(super) fn method(text: &Text) -> ReadResult<Method> {

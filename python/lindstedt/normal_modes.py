@@ -43,11 +43,13 @@ class Modes(ModesDocument):
         >>> ls.modes("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", order=2).to_sympy(1)
         Eq(omega**2, 3*a**2/16 + 1)
         """
-        from .symbolic import sympy
+        from .symbolic import expression, sympy
 
         s = sympy()
         mode = self.mode(number)
-        square = self._defined(mode, mode.omega_squared.to_sympy())
+        law = mode.approximant
+        square = mode.omega_squared.to_sympy() if law is None else expression(law)
+        square = self._defined(mode, square)
         return s.Eq(s.Symbol("omega", real=True) ** 2, square, evaluate=False)
 
     def lines_to_sympy(self, number: int = 1) -> dict[str, Any]:
@@ -78,8 +80,9 @@ class Modes(ModesDocument):
 def modes(
     problem: Problem,
     *,
+    method: Literal["lindstedt-poincare", "pade"] = "lindstedt-poincare",
     mode: int | None = None,
-    order: int | None = None,
+    order: int | str | None = None,
     amplitude: Literal["initial", "first-harmonic"] | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
@@ -93,8 +96,9 @@ def modes(
 
     Args:
         problem: Equations separated by `;`, the path of a problem file, or the tables of one.
+        method: A series in the amplitude, or a quotient of polynomials for omega^2 on top.
         mode: Which mode, 1 for the slowest; without it all of them.
-        order: Highest power of the amplitude in omega^2.
+        order: Highest power of the amplitude in omega^2; degrees "2,1" of a quotient.
         amplitude: What the amplitude measures.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
@@ -107,7 +111,7 @@ def modes(
         UsageError: The problem is one equation of one coordinate.
     """
     options = {
-        "method": "lindstedt-poincare",
+        "method": method,
         "mode": mode,
         "order": order,
         "amplitude": amplitude,

@@ -7,7 +7,7 @@ use crate::expr::{Expr, excerpt_of};
 use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
 use crate::problem::{Order, Problem, ReadingCommand};
 use crate::report::{self, ModesReport};
-use crate::solution::{AmplitudeConvention, Method};
+use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
 
@@ -37,20 +37,33 @@ pub(super) fn run(
     if method == Some(Method::HarmonicBalance.name()) {
         return super::one_harmonic::run(arguments, equations, problem);
     }
-    if let Some(name) = method.filter(|name| *name != Method::LindstedtPoincare.name()) {
+    let is_pade = method == Some(Method::Pade.name());
+    if let Some(name) = method.filter(|name| !is_pade && *name != Method::LindstedtPoincare.name())
+    {
         return Err(Failure::Usage(format!(
-            "--method {name}: the modes of coupled equations are derived by {}, with one harmonic by {}; their slow equations by {}",
+            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {}",
             Method::LindstedtPoincare.name(),
+            Method::Pade.name(),
             Method::HarmonicBalance.name(),
             Method::MultipleScales.name()
         )));
     }
-    let order = match question.order.or(problem.order) {
-        None => None,
-        Some(Order::Power(order)) => Some(order),
-        Some(Order::Degrees(_)) => {
+    let order = question.order.or(problem.order);
+    let (order, pade) = match (order, is_pade) {
+        (None, false) => (None, None),
+        (Some(Order::Power(order)), false) => (Some(order), None),
+        (None, true) => (None, Some((2, 1))),
+        (Some(Order::Degrees(Degrees::Quotient(above, below))), true) => {
+            (None, Some((above, below)))
+        }
+        (Some(_), true) => {
             return Err(Failure::Usage(
-                "--order: the order of modes is the highest power of the amplitude in omega^2"
+                "--order: an approximant has two degrees, those of numerator and denominator: --order 2,1".to_owned(),
+            ));
+        }
+        (Some(_), false) => {
+            return Err(Failure::Usage(
+                "--order: the order of modes is the highest power of the amplitude in omega^2; degrees are those of --method pade"
                     .to_owned(),
             ));
         }
@@ -62,6 +75,7 @@ pub(super) fn run(
     let options = ModeOptions {
         mode: arguments.mode.map(|mode| mode as usize),
         order,
+        pade,
         amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
         steps: arguments.steps,
         supervision: session::supervision(),

@@ -12,7 +12,7 @@ use crate::expr::Expr;
 use crate::modes::{NonlinearMode, NormalModes};
 use crate::solution::Sum;
 use crate::symbol::letters::FREQUENCY;
-use crate::symbol::{Symbol, phase_beside};
+use crate::symbol::{Symbol, fresh, phase_beside};
 use crate::verify::JudgedMode;
 
 /// Nonlinear normal modes to be reported.
@@ -68,8 +68,12 @@ pub fn modes<'a>(report: &ModesReport<'a>) -> Document<'a> {
         Block::Note(format!("{name} is counted from its place of rest, {place}"))
     }));
     let amplitude = modes.amplitude.symbol();
+    let approximants = modes.modes.iter().flatten().find_map(|mode| mode.approximant.as_ref());
+    let approximant = approximants.map_or(String::new(), |approximant| {
+        format!(", omega^2 by its approximant {} in {amplitude}^2", approximant.degrees)
+    });
     let title = Block::Heading(format!(
-        "Nonlinear normal modes by Lindstedt-Poincare to order {} in {amplitude}; {} = {FREQUENCY}*t",
+        "Nonlinear normal modes by Lindstedt-Poincare to order {} in {amplitude}{approximant}; {} = {FREQUENCY}*t",
         modes.order,
         report.phase()
     ));
@@ -119,7 +123,21 @@ fn one_mode<'a>(
     ];
     let law = |left: Expr, right: Sum| Block::Law { left, right };
     let omega = Expr::from(FREQUENCY);
-    blocks.push(law(&omega * &omega, mode.ordered(&mode.frequency_squared)));
+    let squared = &omega * &omega;
+    match &mode.approximant {
+        // A quotient of rounded numbers would be one of long whole numbers.
+        Some(own) if mode.rounded => {
+            let taken = report.modes.system.names();
+            let names = ["p", "q"].map(|letter| fresh(letter, &taken));
+            let [p, q] = names.map(Expr::from);
+            let quotient = Expr::divide(&p, &q).unwrap_or_else(|_| p.clone());
+            blocks.push(Block::Line(Cow::Owned(DerivationLine::equation(squared, quotient))));
+            let parts = [(p, &own.above), (q, &own.below)];
+            blocks.extend(parts.map(|(name, part)| law(name, mode.ordered(part))));
+        }
+        Some(own) => blocks.push(Block::Equality { left: squared, right: &own.value }),
+        None => blocks.push(law(squared, mode.ordered(&mode.frequency_squared))),
+    }
     for (coordinate, series) in coordinates.iter().zip(&mode.motion) {
         blocks.push(Block::Harmonics {
             coordinate: *coordinate,

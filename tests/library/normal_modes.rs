@@ -525,3 +525,33 @@ fn localised_modes_branch_off_where_it_was_published() {
         ModeError::NotTwo(3)
     ));
 }
+
+/// An approximant agrees with the series of its order, and at an amplitude where the terms of the series
+/// no longer fall it is nearer to the true frequency.
+#[test]
+fn an_approximant_agrees_with_its_series_and_reaches_further() {
+    let system = FreeSystem::parse(PAIR).expect("equations");
+    let mode = |options: &ModeOptions| {
+        let mut found = derive(&system, options).expect("modes").modes;
+        found.swap_remove(0).expect("a formula")
+    };
+    let [series, quotient] =
+        [mode(&to_order(6)), mode(&ModeOptions { pade: Some((2, 1)), ..ModeOptions::default() })];
+    let own = quotient.approximant.clone().expect("an approximant");
+    // numerator = denominator * series + O(a^8), exactly.
+    let rest = own.below.product(&series.frequency_squared) + own.above.map(|number| -number);
+    let amplitude = quotient.amplitude.symbol();
+    assert!(rest.terms().next().is_some());
+    assert!(rest.terms().all(|(term, _)| term.exponent(amplitude) >= 8));
+    let error = |mode: &NonlinearMode| {
+        let judged = judge_mode(&system, mode, &"a = 6/5".parse().expect("a value"), 0.01);
+        judged.expect("a motion").relative_error.expect("a frequency").abs()
+    };
+    assert!(5.0 * error(&quotient) < error(&series));
+    let refused = derive(
+        &FreeSystem::parse("x'' + 2*x - y = 0; y'' + 2*y - x = 0").expect("equations"),
+        &ModeOptions { pade: Some((1, 1)), ..ModeOptions::default() },
+    );
+    let reason = refused.expect("modes").modes[0].clone().expect_err("a linear law is no quotient");
+    assert!(reason.to_string().contains("approximant [1/1]"), "{reason}");
+}

@@ -11,9 +11,10 @@ use super::program::{
 };
 use super::{Program, Routine, Statement, Value};
 use crate::exact::{Polynomial, Rational};
+use crate::expr::Expr;
 use crate::modes::NonlinearMode;
 use crate::report::{Block, Document, ModesReport};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, fresh};
 
 /// The program of all modes that have a formula.
 pub(super) fn program(report: &ModesReport) -> Program {
@@ -28,7 +29,13 @@ pub(super) fn program(report: &ModesReport) -> Program {
 fn header(report: &ModesReport) -> Vec<String> {
     let mut document: Document = crate::report::modes(report);
     let is_formula = |block: &Block| {
-        matches!(block, Block::Law { .. } | Block::Harmonics { .. } | Block::Definition(_))
+        matches!(
+            block,
+            Block::Law { .. }
+                | Block::Equality { .. }
+                | Block::Harmonics { .. }
+                | Block::Definition(_)
+        )
     };
     for section in &mut document.sections {
         section.retain(|block| !is_formula(block));
@@ -43,10 +50,20 @@ fn one_mode(report: &ModesReport, mode: &NonlinearMode) -> Vec<Routine> {
     let defined = mode.definitions.iter().map(|definition| definition.symbol);
     let taken: Vec<Symbol> = system.names().into_iter().chain(defined).collect();
     let names = ProgramNames::new(mode.amplitude.symbol(), report.phase(), &taken);
-    let (definitions, of_frequency) =
-        resolved(&mode.definitions, &names, mode.frequency_squared.symbols());
-    let law = in_order(&mode.ordered(&mode.frequency_squared));
-    let before = variables(definitions).collect();
+    let in_terms = |polynomial: &Polynomial| in_order(&mode.ordered(polynomial));
+    let (parts, law, symbols) = match &mode.approximant {
+        Some(own) => {
+            let [p, q] = ["p", "q"].map(|letter| fresh(letter, &taken));
+            let quotient = Expr::divide(&Expr::from(p), &Expr::from(q));
+            let value = Value::Expression(quotient.unwrap_or_else(|_| own.value.clone()));
+            let parts = [(p, &own.above), (q, &own.below)]
+                .map(|(name, part)| Statement::Variable(name, in_terms(part)));
+            (parts.into(), value, &own.above.symbols() | &own.below.symbols())
+        }
+        None => (vec![], in_terms(&mode.frequency_squared), mode.frequency_squared.symbols()),
+    };
+    let (definitions, of_frequency) = resolved(&mode.definitions, &names, symbols);
+    let before = variables(definitions).chain(parts).collect();
     let mut routines = vec![root_of_square(&names, of_frequency.clone(), before, law, vec![])];
     for (index, name) in coordinates.iter().enumerate() {
         let mut motion = motion(mode, index, &names, &of_frequency);

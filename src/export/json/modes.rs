@@ -9,6 +9,7 @@ use super::number::{Constant, Map, Polynomial, constants, finite, meanings, name
 use super::solution::Harmonic;
 use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
+use crate::solution::Method;
 use crate::symbol::Symbol;
 use crate::verify::JudgedMode;
 
@@ -26,7 +27,7 @@ pub struct ModesDocument {
     pub rest: Map<String>,
     /// The letters of the equations, in alphabetical order.
     pub parameters: Vec<String>,
-    /// The method: `lindstedt-poincare`.
+    /// The method: `lindstedt-poincare`, or `pade`, with an approximant of omega^2 on top.
     pub method: String,
     /// The highest power of the amplitude in omega^2 that was asked for.
     pub order: u32,
@@ -61,6 +62,10 @@ pub struct ModeDocument {
     pub modal_coordinate: Map<Polynomial>,
     /// omega^2 in powers of the amplitude.
     pub omega_squared: Polynomial,
+    /// A quotient of polynomials that agrees with omega_squared and stands for it, as text; left out
+    /// where it was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approximant: Option<String>,
     /// The law in one line.
     pub formula: String,
     /// The harmonics of each coordinate in theta = omega*t.
@@ -126,7 +131,10 @@ pub fn modes(report: &ModesReport) -> ModesDocument {
             equations.coordinates.iter().zip(modes.system.rest.iter().map(ToString::to_string)),
         ),
         parameters: texts(&equations.parameters),
-        method: crate::solution::Method::LindstedtPoincare.name().to_owned(),
+        method: match modes.modes.iter().flatten().any(|mode| mode.approximant.is_some()) {
+            true => Method::Pade.name().to_owned(),
+            false => Method::LindstedtPoincare.name().to_owned(),
+        },
         order: modes.order,
         amplitude: modes.amplitude.name().to_owned(),
         amplitude_symbol: modes.amplitude.symbol().to_string(),
@@ -172,6 +180,7 @@ fn one_mode(
         shape: each(&mode.linear.shape),
         modal_coordinate: each(&mode.linear.modal),
         omega_squared: polynomial(&mode.frequency_squared),
+        approximant: mode.approximant.as_ref().map(|_| mode.formula().replace("omega^2 = ", "")),
         formula: mode.formula(),
         motion: named(coordinates.iter().zip(motion)),
         along: coordinates[mode.along].to_string(),

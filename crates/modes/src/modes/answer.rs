@@ -13,9 +13,11 @@ use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
+use crate::expr::Expr;
 use crate::interrupt::Supervision;
+use crate::method::pade::approximant;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Sum, definitions_behind};
+use crate::solution::{AmplitudeConvention, Definition, Degrees, Sum, definitions_behind};
 
 /// The order without a choice.
 const USUAL_ORDER: u32 = 4;
@@ -34,8 +36,11 @@ const KEPT_DIGITS: usize = 15;
 pub struct ModeOptions {
     /// The mode, 1 for the slowest; all of them without it.
     pub mode: Option<usize>,
-    /// The highest power of the amplitude in omega^2; 4 without it.
+    /// The highest power of the amplitude in omega^2; 4 without it, and without `pade`.
     pub order: Option<u32>,
+    /// The degrees in a^2 of numerator and denominator of an approximant of omega^2, in place of its
+    /// series.
+    pub pade: Option<(u32, u32)>,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
     /// Whether the derivation is kept, order by order.
@@ -49,6 +54,7 @@ impl Default for ModeOptions {
         Self {
             mode: None,
             order: None,
+            pade: None,
             amplitude: AmplitudeConvention::FirstHarmonic,
             steps: false,
             supervision: Supervision::default(),
@@ -84,6 +90,19 @@ pub struct LinearShape {
     pub modal: Vec<Polynomial>,
 }
 
+/// A quotient of polynomials that agrees with a series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Approximant {
+    /// The degrees of numerator and denominator in a^2.
+    pub degrees: Degrees,
+    /// The numerator.
+    pub above: Polynomial,
+    /// The denominator.
+    pub below: Polynomial,
+    /// omega^2, the quotient of both.
+    pub value: Expr,
+}
+
 /// A nonlinear normal mode in formulas.
 ///
 /// Polynomials are in the parameters of the equations, the amplitude symbol and the symbols of
@@ -100,6 +119,8 @@ pub struct NonlinearMode {
     pub linear: LinearShape,
     /// omega^2 in powers of the amplitude.
     pub frequency_squared: Polynomial,
+    /// A quotient of polynomials in place of that series; `None` if it was not asked for.
+    pub approximant: Option<Approximant>,
     /// The motion of each coordinate, a series of cosines of `theta = omega t`.
     pub motion: Vec<FourierSeries<Polynomials>>,
     /// The coordinate in which the modal lines are written: the first that moves in the linear mode.
@@ -127,7 +148,14 @@ impl NonlinearMode {
 
     /// The law in one line.
     pub fn formula(&self) -> String {
-        format!("omega^2 = {}", self.ordered(&self.frequency_squared))
+        match &self.approximant {
+            Some(own) if self.rounded => {
+                let [above, below] = [&own.above, &own.below].map(|part| self.ordered(part));
+                format!("omega^2 = ({above})/({below})")
+            }
+            Some(own) => format!("omega^2 = {}", own.value),
+            None => format!("omega^2 = {}", self.ordered(&self.frequency_squared)),
+        }
     }
 }
 
@@ -151,7 +179,9 @@ impl NonlinearMode {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes, ModeError> {
-    let order = options.order.unwrap_or(USUAL_ORDER);
+    let of_approximant =
+        options.pade.map(|(above, below)| above.saturating_add(below).saturating_mul(2));
+    let order = of_approximant.or(options.order).unwrap_or(USUAL_ORDER);
     if order > HIGHEST_ORDER {
         return Err(ModeError::Order(order, HIGHEST_ORDER));
     }
@@ -242,6 +272,16 @@ fn one_mode(
         false => derivation,
     };
     found.definitions = used(&found, &definitions);
+    if let Some((above, below)) = options.pade.filter(|_| found.order == order) {
+        let degrees = Degrees::Quotient(above, below);
+        let series = found.frequency_squared.clone();
+        let refused = |reason| ModeError::Approximant { number, degrees, reason };
+        let parts = approximant(series, options.amplitude.symbol(), (above, below));
+        let [above, below] = parts.map_err(refused)?;
+        let value = Expr::divide(&Expr::from(&above), &Expr::from(&below));
+        let value = value.map_err(|_| refused("its denominator is zero"))?;
+        found.approximant = Some(Approximant { degrees, above, below, value });
+    }
     Ok(found)
 }
 
@@ -318,6 +358,7 @@ fn in_amplitude(
             modal: rounded_all(&modal_coordinate(&system.mass, mode)),
         },
         frequency_squared: round(&frequency_squared),
+        approximant: None,
         motion: motion
             .map(|series| series.map(POLYNOMIALS, |coefficient, _| round(coefficient)))
             .collect(),

@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::coupled::CoupledError;
 use crate::expr::{Expr, ExprError};
 use crate::series::TaylorError;
+use crate::solution::Degrees;
 use crate::symbol::Symbol;
 
 /// The reason why there is no formula of a mode, or of any.
@@ -121,6 +122,16 @@ pub enum ModeError {
     /// The equations of the balance cannot be solved in closed form.
     #[error("the balance of one harmonic has no closed form")]
     NoClosedForm,
+    /// Degrees without an approximant.
+    #[error("omega^2 of mode {number} has no approximant {degrees}: {reason}")]
+    Approximant {
+        /// The number of the mode.
+        number: usize,
+        /// The degrees.
+        degrees: Degrees,
+        /// The reason.
+        reason: &'static str,
+    },
     /// An order that is too high.
     #[error("order {0} is above the limit of {1}")]
     Order(u32, u32),
@@ -171,6 +182,7 @@ impl ModeError {
                 "--method multiple-scales has the slow equations of both modes; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
                     .to_owned(),
             ),
+            Self::Approximant { .. } => Some("other degrees may have one: --order 1,1".to_owned()),
             Self::NoStiffness { .. } => Some(
                 "`lindstedt response --vary omega=FROM:TO` finds the motions in numbers".to_owned(),
             ),

@@ -32,7 +32,7 @@ mod one_harmonic;
 pub(crate) mod reading;
 mod steps;
 
-pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
+pub use answer::{Approximant, LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;
 pub use free_system::FreeSystem;
 pub use linear::NearResonance;

@@ -42,7 +42,7 @@ pub mod motion;
 pub mod multiple_scales;
 pub mod numbers;
 pub(crate) mod one_term;
-pub(crate) mod pade;
+pub mod pade;
 pub(crate) mod parameter_expansion;
 pub mod power_series;
 mod quotation;

@@ -93,6 +93,36 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(resummed.answer(degrees, (value, vec![]), (notes, derivation)))
 }
 
+/// Numerator and denominator of these degrees whose quotient agrees with a series in the square of its
+/// amplitude.
+///
+/// # Errors
+/// The reason why there is none, in words.
+///
+/// ```
+/// # use lindstedt_oscillator as lindstedt;
+/// use lindstedt::expr::{Expr, parse_expression};
+/// use lindstedt::{Symbol, method::pade::approximant};
+///
+/// let series = parse_expression("1 - a^2/8 + 7*a^4/1536")?.to_polynomial(&mut |_| None)?;
+/// let [above, below] = approximant(series.expect("a polynomial"), Symbol::new("a"), (1, 1))?;
+/// assert_eq!(Expr::from(&above).to_string(), "1 - 17*a^2/192");
+/// assert_eq!(Expr::from(&below).to_string(), "1 + 7*a^2/192");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn approximant(
+    series: Polynomial,
+    amplitude: Symbol,
+    degrees: (u32, u32),
+) -> Result<[Polynomial; 2], &'static str> {
+    let series = PowerSeries { law: series, small: amplitude, step: 2 };
+    let Quotient { above, below } = quotient(&series, degrees)?;
+    let parts = [above, below].map(|part| series.with_powers(&part));
+    let [above, below] = parts.each_ref().map(Expr::from);
+    let value = Expr::divide(&above, &below).map_err(|_| SINGULAR)?;
+    if has_values(&value) { Ok(parts) } else { Err(TOO_LONG) }
+}
+
 /// The coefficients of numerator and denominator.
 struct Quotient {
     above: Vec<Polynomial>,

@@ -202,7 +202,10 @@ fn formula_at(
     let values = symbol_values(mode, numbers)?;
     let value_of = |name: Symbol| values.get(&name).copied();
     let missing = |name| VerificationError::Missing(vec![name]);
-    let frequency_squared = mode.frequency_squared.evaluate(value_of).map_err(missing)?;
+    let frequency_squared = match &mode.approximant {
+        Some(approximant) => approximant.value.evaluate(&values).unwrap_or(f64::NAN),
+        None => mode.frequency_squared.evaluate(value_of).map_err(missing)?,
+    };
     let motion = mode.motion.iter().map(|series| {
         series.map(Doubles, |coefficient, _| coefficient.evaluate(value_of).unwrap_or(f64::NAN))
     });

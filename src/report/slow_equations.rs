@@ -8,6 +8,7 @@ use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
 use crate::expr::{Expr, ExprError};
 use crate::multiple_scales::SlowMotion;
+use crate::symbol::fresh;
 use crate::verify::{JudgedSlowMotion, JudgedSteadyMotion};
 
 /// Slow equations to be reported.
@@ -54,6 +55,7 @@ pub fn slow_equations<'a>(report: &SlowReport<'a>) -> Result<Document<'a>, ExprE
     }
     rates.extend(self::rates(slow)?);
     sections.push(rates);
+    sections.extend(constants(slow)?);
     sections.extend(relations(slow));
     sections.extend(report.judged.map(|judged| beside_true_motions(slow, judged)));
     sections.push(validity(slow));
@@ -129,6 +131,19 @@ fn linear_modes<'a>(slow: &SlowMotion) -> Vec<Block<'a>> {
     blocks
 }
 
+/// What stays constant where nothing damps or drives the modes.
+fn constants<'a>(slow: &SlowMotion) -> Result<Option<Vec<Block<'a>>>, ExprError> {
+    let (Some(invariants), Some((phase, _))) = (slow.invariants(), slow.slow_phases.first()) else {
+        return Ok(None);
+    };
+    let taken = &slow.system.equations.parameters;
+    let names = (1..).map(|number: usize| fresh(&format!("E{number}"), taken));
+    let all = names.zip(invariants.expressions(*phase)?);
+    let heading = Block::Heading("Constants of the slow motion".to_owned());
+    let lines = all.map(|(name, expression)| line(Expr::from(name), expression));
+    Ok(Some(std::iter::once(heading).chain(lines).collect()))
+}
+
 /// The closed relations of steady motions, a section for each choice of modes at rest.
 fn relations<'a>(slow: &SlowMotion) -> Vec<Vec<Block<'a>>> {
     let mut sections: Vec<Vec<Block>> = Vec::new();
@@ -170,6 +185,23 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
                 format!("{} of the largest displacement", size_in_percent(transient.error)),
             ),
         ];
+        if let Some(exchange) = &transient.exchange {
+            let ranges = slow.amplitudes.iter().zip(&exchange.amplitudes);
+            let ranges: Vec<String> = ranges
+                .map(|(name, [least, most])| {
+                    format!("{name} from {} to {}", decimal(*least), decimal(*most))
+                })
+                .collect();
+            facts.push(("exchange", ranges.join(", ")));
+            facts.push((
+                "its period",
+                format!(
+                    "{}, a multiple of K(m) at m = {}",
+                    decimal(exchange.period),
+                    decimal(exchange.parameter)
+                ),
+            ));
+        }
         facts.extend(verdict);
         return vec![
             Block::Heading(format!(

@@ -11,11 +11,12 @@ use std::collections::BTreeMap;
 use lindstedt::expr::{CompiledList, Expr, parse_expression};
 use lindstedt::method::{Options, solve};
 use lindstedt::multiple_scales::{
-    CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion, derive,
+    CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion, SlowNumbers, derive,
 };
 use lindstedt::solution::Method;
 use lindstedt::verify::judge_slow_motion;
-use lindstedt::{Oscillator, Symbol, Verdict};
+use lindstedt::{Oscillator, Symbol, Values, Verdict};
+use num_complex::Complex;
 
 fn options(order: Option<usize>, resonance: &str) -> MultipleScalesOptions {
     let resonance = (!resonance.is_empty()).then(|| resonance.to_owned());
@@ -412,4 +413,80 @@ fn no_steady_motion_is_passed_over() {
             .map(|expression| expression.evaluate(&Default::default()).expect("a number"));
         assert!((reference / frequency - 1.0).abs() < 0.061, "{reference} {frequency}");
     }
+}
+
+/// Along the slow equations of several resonances, by Runge and Kutta, the constants stay what they are,
+/// the amplitudes go between the ends of the exchange, and they come back after its period.
+#[test]
+fn modes_exchange_their_energy_in_the_period_of_the_closed_form() {
+    for (equations, order, at) in [
+        ("x'' + x - 2*x*y/5 = 0; y'' + 4*y - 3*x^2/10 = 0", 1, [0.05, 0.02, 0.7]),
+        ("x'' + x - 2*x*y/5 = 0; y'' + 4*y - 3*x^2/10 = 0", 2, [0.05, 0.02, 0.7]),
+        ("x'' + x + x^2*y/5 = 0; y'' + 9*y + x^3/7 = 0", 2, [0.3, 0.1, 1.0]),
+        ("x'' + x + x^2*y/5 + x^3 = 0; y'' + 9*y + x^3/15 = 0", 2, [0.3, 0.1, 1.0]),
+        ("x'' + x + 2*x*y = 0; y'' + y + x^2 - y^2 = 0", 2, [0.1, 0.02, 0.5]),
+    ] {
+        let slow = slow(equations, "", Some(order));
+        let invariants = slow.invariants().unwrap_or_else(|| panic!("{equations}: no constants"));
+        let values: Values =
+            format!("a1 = {}, a2 = {}, phi1 = {}", at[0], at[1], at[2]).parse().expect("values");
+        let judged = judge_slow_motion(&slow, &values, 0.05).expect(equations);
+        let exchange = judged.transient.and_then(|transient| transient.exchange);
+        let exchange = exchange.unwrap_or_else(|| panic!("{equations}: no exchange"));
+        let numbers = slow.in_numbers(&|_| None).expect("numbers");
+        let (phase, turns) = &slow.slow_phases[0];
+        let constants = invariants.expressions(*phase).expect("formulas");
+        assert_eq!(constants.len(), 2, "{equations}");
+        let named = |state: &[Complex<f64>]| -> BTreeMap<Symbol, f64> {
+            let angle = turns.iter().zip(state).map(|(turn, b)| f64::from(*turn) * b.arg()).sum();
+            let amplitudes =
+                slow.amplitudes.iter().copied().zip(state.iter().map(|b| 2.0 * b.norm()));
+            amplitudes.chain([(*phase, angle)]).collect()
+        };
+        let of = |state: &[Complex<f64>]| -> Vec<f64> {
+            let at = named(state);
+            constants.iter().map(|own| own.evaluate(&at).expect("a value")).collect()
+        };
+        let start =
+            [Complex::from_polar(at[0] / 2.0, at[2]), Complex::from_polar(at[1] / 2.0, 0.0)];
+        let mut state = start.to_vec();
+        const STEPS: usize = 20_000;
+        let step = exchange.period / STEPS as f64;
+        let first = of(&start);
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for _ in 0..STEPS {
+            state = stepped(&numbers, &state, step);
+            least = least.min(2.0 * state[0].norm());
+            most = most.max(2.0 * state[0].norm());
+        }
+        for (before, after) in first.iter().zip(of(&state)) {
+            assert!((before - after).abs() < 1e-10 * before.abs(), "{equations}: {before} {after}");
+        }
+        let [low, high] = exchange.amplitudes[0];
+        assert!(high - low > 0.01 * high, "{equations}: nothing is exchanged");
+        assert!(
+            (least - low).abs() < 1e-6 * high && (most - high).abs() < 1e-6 * high,
+            "{equations}"
+        );
+        for (before, after) in start.iter().zip(&state) {
+            assert!((before.norm() - after.norm()).abs() < 1e-8, "{equations}: {before} {after}");
+        }
+    }
+    // Damping and drives leave no constants.
+    let damped = slow("x'' + x'/50 + x - 2*x*y/5 = 0; y'' + 4*y - 3*x^2/10 = 0", "", None);
+    assert_eq!(damped.invariants(), None);
+}
+
+/// A step of slow equations by the classical method of Runge and Kutta.
+fn stepped(numbers: &SlowNumbers, from: &[Complex<f64>], step: f64) -> Vec<Complex<f64>> {
+    let moved = |rates: &[Complex<f64>], part: f64| -> Vec<Complex<f64>> {
+        from.iter().zip(rates).map(|(b, rate)| b + rate * (part * step)).collect()
+    };
+    let first = numbers.rates(from);
+    let second = numbers.rates(&moved(&first, 0.5));
+    let third = numbers.rates(&moved(&second, 0.5));
+    let fourth = numbers.rates(&moved(&third, 1.0));
+    let mean =
+        |mode: usize| (first[mode] + (second[mode] + third[mode]) * 2.0 + fourth[mode]) / 6.0;
+    from.iter().enumerate().map(|(mode, b)| b + mean(mode) * step).collect()
 }

@@ -16,7 +16,7 @@ pub use lindstedt_dynamics::{coupled, mechanics};
 #[doc(no_inline)]
 pub use lindstedt_expr::{decimal, exact, expr, symbol};
 #[doc(no_inline)]
-pub use lindstedt_numeric::interrupt;
+pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::{derivation, method, solution};
 #[doc(no_inline)]

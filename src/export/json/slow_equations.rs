@@ -43,6 +43,10 @@ pub struct SlowEquationsDocument {
     /// What the formulas name, each by those before it; detunings, `sigma`, are reference frequency less
     /// linear frequency.
     pub definitions: Map<String>,
+    /// What stays constant along the slow motion, formulas in amplitudes and slow phases; empty where
+    /// something damps or drives it, or no one phase decides.
+    #[serde(default)]
+    pub constants: Vec<String>,
     /// The relations of steady motions with the phases eliminated.
     pub relations: Vec<SteadyRelationDocument>,
     /// Waves that are near the frequency of a mode they are not in resonance with, where values are known: a
@@ -139,6 +143,21 @@ pub struct TransientDocument {
     pub until: f64,
     /// The largest deviation of a coordinate, as a part of the largest displacement.
     pub error: f64,
+    /// The exchange of energy between the modes; null where there is none in closed form.
+    #[serde(default)]
+    pub exchange: Option<ExchangeDocument>,
+}
+
+/// The exchange of energy between modes in resonance, by the slow equations.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "EnergyExchange"))]
+pub struct ExchangeDocument {
+    /// The period, a number times K(m).
+    pub period: f64,
+    /// The parameter m of the complete elliptic integral K(m).
+    pub parameter: f64,
+    /// The least and the greatest amplitude of each mode.
+    pub amplitudes: Map<[f64; 2]>,
 }
 
 /// The document of kind `slow-equations`.
@@ -208,6 +227,12 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
         slow_phases: phases.collect(),
         motion: formulas(&slow.motion),
         definitions: meanings(&definitions),
+        constants: match (slow.invariants(), slow.slow_phases.first()) {
+            (Some(invariants), Some((phase, _))) => {
+                invariants.expressions(*phase)?.iter().map(ToString::to_string).collect()
+            }
+            _ => vec![],
+        },
         relations: relations.collect(),
         near: slow
             .near
@@ -226,7 +251,9 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
             .map(|motion| steady(report, motion))
             .collect(),
         has_families: judged.is_some_and(|judged| judged.has_families),
-        transient: judged.and_then(|judged| judged.transient.as_ref()).map(transient),
+        transient: judged
+            .and_then(|judged| judged.transient.as_ref())
+            .map(|own| transient(report, own)),
         verdict: judged.and_then(|judged| judged.verdict).map(|verdict| verdict.name().to_owned()),
         tolerance: judged.map(|judged| judged.tolerance),
     })
@@ -246,6 +273,11 @@ fn steady(report: &SlowReport, motion: &JudgedSteadyMotion) -> SlowSteadyDocumen
     }
 }
 
-fn transient(judged: &JudgedTransient) -> TransientDocument {
-    TransientDocument { until: judged.until, error: judged.error }
+fn transient(report: &SlowReport, judged: &JudgedTransient) -> TransientDocument {
+    let exchange = judged.exchange.as_ref().map(|exchange| ExchangeDocument {
+        period: exchange.period,
+        parameter: exchange.parameter,
+        amplitudes: named(report.slow.amplitudes.iter().zip(exchange.amplitudes.iter().copied())),
+    });
+    TransientDocument { until: judged.until, error: judged.error, exchange }
 }

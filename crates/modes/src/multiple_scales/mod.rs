@@ -22,6 +22,7 @@
 //! - `expansion`: the orders, as waves in all frequencies.
 //! - `slow_equations`: the rates of amplitudes and phases, and the motion.
 //! - `relations`: steady motions in closed form, their phases eliminated.
+//! - `exchange`: constants of motions that nothing damps, and the period of their exchange.
 //! - `steady`: steady motions in numbers, with their stability.
 //!
 //! Cost: the products of the force in as many orders, `O(order^2)` products of waves with
@@ -29,6 +30,7 @@
 
 mod answer;
 mod error;
+mod exchange;
 mod expansion;
 mod modal;
 mod relations;
@@ -39,6 +41,7 @@ mod system;
 
 pub use answer::{MultipleScalesOptions, NearDivisor, SlowMotion, derive};
 pub use error::MultipleScalesError;
+pub use exchange::{EnergyExchange, SlowInvariants};
 pub use relations::SteadyRelation;
 pub use resonance::{Resonance, ResonanceError};
 pub use slow_equations::{PhaseWaves, SlowRate};

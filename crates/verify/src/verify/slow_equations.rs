@@ -17,7 +17,7 @@ use num_complex::Complex;
 use super::{Verdict, VerificationError};
 use crate::expr::{CompiledList, Expr};
 use crate::interrupt::Interrupt;
-use crate::multiple_scales::{SlowMotion, SlowNumbers, SlowSteadyState};
+use crate::multiple_scales::{EnergyExchange, SlowMotion, SlowNumbers, SlowSteadyState};
 use crate::symbol::Symbol;
 
 use crate::system::{PathEnd, Solver, System, SystemOptions, Variations};
@@ -66,6 +66,9 @@ pub struct JudgedTransient {
     pub until: f64,
     /// The largest deviation of a coordinate, as a part of the largest displacement.
     pub error: f64,
+    /// The exchange of energy between the modes by the slow equations; `None` where there is none in
+    /// closed form.
+    pub exchange: Option<EnergyExchange>,
     /// The times, and the coordinates by the formula and in truth at each.
     pub times: Vec<f64>,
     /// By the formula, a row for each time.
@@ -319,6 +322,9 @@ impl<'a> TrueMotion<'a> {
         } else {
             longest
         };
+        let exchange = self.exchange(&values);
+        // A whole exchange is compared where it is not too long.
+        let until = exchange.as_ref().map_or(until, |own| until.max(own.period.min(longest)));
         let start = self.at(0.0, &amplitudes);
         // Some thirty points a wave of the fastest mode, each reached by steps of the slow equations.
         let points = (32.0 * until * fastest / TAU).ceil().clamp(64.0, 40_000.0) as usize;
@@ -339,7 +345,22 @@ impl<'a> TrueMotion<'a> {
         let count = self.slow.motion.len();
         formula.iter_mut().for_each(|place| place.truncate(count));
         let error = deviation(&formula, &truth).unwrap_or(f64::INFINITY);
-        Ok(JudgedTransient { until, error, times, formula, truth })
+        Ok(JudgedTransient { until, error, exchange, times, formula, truth })
+    }
+
+    /// The exchange of energy from the amplitudes and phases that were given.
+    fn exchange(&self, values: &BTreeMap<Symbol, f64>) -> Option<EnergyExchange> {
+        let value = |name: &Symbol| values.get(name).copied();
+        let amplitudes: Vec<(Symbol, f64)> = self
+            .slow
+            .amplitudes
+            .iter()
+            .map(|name| Some((*name, value(name)?)))
+            .collect::<Option<_>>()?;
+        let (_, turns) = self.slow.slow_phases.first()?;
+        let phases = turns.iter().zip(&self.slow.phases);
+        let phase = phases.map(|(turn, name)| f64::from(*turn) * value(name).unwrap_or(0.0)).sum();
+        self.slow.invariants()?.exchange(&amplitudes, phase, &|name| value(&name))
     }
 
     /// A step of the slow equations by the classical method of Runge and Kutta.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
 
 from ._call import Problem, Progress, Value, Values, ask
 from .documents.slow_equations import SlowEquations as SlowEquationsDocument
@@ -58,6 +58,7 @@ class SlowEquations(SlowEquationsDocument):
 def slow_equations(
     problem: Problem,
     *,
+    method: Literal["multiple-scales", "averaging"] = "multiple-scales",
     order: int | None = None,
     small: str | None = None,
     resonance: str | None = None,
@@ -73,6 +74,7 @@ def slow_equations(
 
     Args:
         problem: Equations separated by `;`, the path of a problem file, or the tables of one.
+        method: Multiple scales, or averaging to first order.
         order: The highest order of the slow equations.
         small: The small parameter; the amplitudes without it.
         resonance: Relations between frequencies, `"omega2 = 2*omega1, Omega = omega2"`, or `"none"`; without it
@@ -89,7 +91,7 @@ def slow_equations(
         UsageError: The problem is one equation of one coordinate.
     """
     options = {
-        "method": "multiple-scales",
+        "method": method,
         "order": order,
         "small": small,
         "resonance": resonance,

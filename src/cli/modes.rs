@@ -41,11 +41,12 @@ pub(super) fn run(
     if let Some(name) = method.filter(|name| !is_pade && *name != Method::LindstedtPoincare.name())
     {
         return Err(Failure::Usage(format!(
-            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {}",
+            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {} or {}",
             Method::LindstedtPoincare.name(),
             Method::Pade.name(),
             Method::HarmonicBalance.name(),
-            Method::MultipleScales.name()
+            Method::MultipleScales.name(),
+            Method::Averaging.name()
         )));
     }
     let order = question.order.or(problem.order);

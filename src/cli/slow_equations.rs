@@ -28,7 +28,7 @@ pub(super) fn is_asked(
 ) -> bool {
     let method = arguments.question.method.as_deref().or(problem.method.as_deref());
     match method {
-        Some(name) => name == Method::MultipleScales.name(),
+        Some(name) => [Method::MultipleScales, Method::Averaging].map(Method::name).contains(&name),
         None => matches!(
             FreeSystem::new(equations.clone()),
             Err(ModeError::Driven(_) | ModeError::Damped(_))
@@ -69,6 +69,14 @@ pub(super) fn run(
             return Err(Failure::Usage("--order: a single number is expected".to_owned()));
         }
     };
+    let method = question.method.as_deref().or(problem.method.as_deref());
+    let averaging = method == Some(Method::Averaging.name());
+    if averaging && order.is_some() {
+        return Err(Failure::Usage(
+            "--order: averaging of coupled equations is of the first order; --method multiple-scales has others"
+                .to_owned(),
+        ));
+    }
     let text = problem.equation.as_deref();
     let refused = |error: MultipleScalesError| refused(&error, text);
     let small = question.small.as_deref().or(problem.small.as_deref()).map(value_name);
@@ -84,6 +92,7 @@ pub(super) fn run(
     let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
     let options = MultipleScalesOptions {
         order,
+        averaging,
         resonance: question.resonance.clone().or_else(|| problem.resonance.clone()),
         values: values.as_ref().map(Values::numbers).unwrap_or_default(),
         supervision: session::supervision(),

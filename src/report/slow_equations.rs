@@ -89,7 +89,7 @@ fn listed<T: ToString>(names: impl IntoIterator<Item = T>) -> String {
 
 fn title<'a>(slow: &SlowMotion) -> Block<'a> {
     Block::Title {
-        words: format!("Multiple scales to order {} in {}", slow.order, small(slow)),
+        words: format!("{} in {}", slow.title(), small(slow)),
         amplitude: format!(
             "{} = amplitudes of the first harmonics of the modes",
             listed(&slow.amplitudes)
@@ -282,7 +282,13 @@ fn validity(slow: &SlowMotion) -> Vec<Block<'static>> {
             slow.order, slow.small_order
         ),
     }));
-    if slow.leaves_out {
+    if slow.averaging {
+        notes.push(Block::Note(
+            "means of the forces along the linear motion; --method multiple-scales has the harmonics of the motion and higher orders"
+                .to_owned(),
+        ));
+    }
+    if slow.leaves_out && !slow.averaging {
         notes.push(Block::Note(format!(
             "terms of the equations are of a higher order and left out: --order {} has the next ones",
             slow.order + 1

@@ -490,3 +490,53 @@ fn stepped(numbers: &SlowNumbers, from: &[Complex<f64>], step: f64) -> Vec<Compl
         |mode: usize| (first[mode] + (second[mode] + third[mode]) * 2.0 + fourth[mode]) / 6.0;
     from.iter().enumerate().map(|(mode, b)| b + mean(mode) * step).collect()
 }
+
+/// Averaging has the means of the forces along the linear motion, over a common period of both modes:
+/// `a' = -<f sin theta>/omega`, `a phi' = -<f cos theta>/omega`.
+#[test]
+fn averaged_rates_are_means_along_the_linear_motion() {
+    let system = CoupledSystem::parse(
+        "x'' + x + x'/50 - 2*x*y/5 + x'*y'/7 = 0; y'' + 4*y + y'/30 - 3*x^2/10 = cos(2*t)/100",
+    )
+    .expect("equations");
+    let averaging = MultipleScalesOptions { averaging: true, ..MultipleScalesOptions::default() };
+    let slow = derive(&system, &averaging).expect("slow equations");
+    let state: [f64; 4] = [0.3, 0.4, 0.2, -0.9];
+    let names = slow.amplitudes.iter().zip(&slow.phases).flat_map(|(a, phase)| [*a, *phase]);
+    let mut values: BTreeMap<Symbol, f64> = names.zip(state).collect();
+    for index in 0..slow.slow_phases.len() {
+        if let Some(meaning) = slow.meaning(index) {
+            let value = meaning.evaluate(&values).expect("a value");
+            values.insert(slow.slow_phases[index].0, value);
+        }
+    }
+    let [a1, phi1, a2, phi2] = state;
+    const COUNT: u32 = 64;
+    let mut means = [0.0; 4];
+    for k in 0..COUNT {
+        let t = std::f64::consts::TAU * f64::from(k) / f64::from(COUNT);
+        let (theta1, theta2) = (t + phi1, 2.0 * t + phi2);
+        let (x, v) = (a1 * theta1.cos(), -a1 * theta1.sin());
+        let (y, w) = (a2 * theta2.cos(), -2.0 * a2 * theta2.sin());
+        let f = -v / 50.0 + 0.4 * x * y - v * w / 7.0;
+        let g = -w / 30.0 + 0.3 * x * x + (2.0 * t).cos() / 100.0;
+        let parts = [
+            -f * theta1.sin(),
+            -f * theta1.cos() / a1,
+            -0.5 * g * theta2.sin(),
+            -0.5 * g * theta2.cos() / a2,
+        ];
+        for (mean, part) in means.iter_mut().zip(parts) {
+            *mean += part / f64::from(COUNT);
+        }
+    }
+    for mode in 0..2 {
+        let rates = slow.rate(mode).expect("rates");
+        for (rate, mean) in rates.iter().zip(&means[2 * mode..]) {
+            let rate = rate.evaluate(&values).expect("a value");
+            assert!((rate - mean).abs() < 1e-14, "{mode}: {rate} {mean}");
+        }
+    }
+    let linear = slow.motion.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(linear, ["a1*cos(t + phi1)", "a2*cos(2*t + phi2)"]);
+}

@@ -71,7 +71,11 @@ fn a_mode_is_chosen_by_its_number() {
     for (more, words) in [
         (&["--mode", "3"][..], "there is no mode 3: there are 2"),
         (&["--taylor", "3"], "--taylor: it is of one coordinate"),
-        (&["--method", "averaging"], "are derived by lindstedt-poincare"),
+        (&["--method", "max-min"], "are derived by lindstedt-poincare"),
+        (
+            &["--method", "averaging", "--order", "3"],
+            "averaging of coupled equations is of the first order",
+        ),
         (&["--steps", "--method", "harmonic-balance"], "--steps: one harmonic has no orders"),
     ] {
         let output = run(&[&["derive", pair], more].concat());

@@ -8,6 +8,7 @@ use super::DocumentKind;
 use super::number::{Constant, Map, constants, finite, meanings, named, texts};
 use crate::expr::ExprError;
 use crate::report::SlowReport;
+use crate::solution::Method;
 use crate::verify::{JudgedSteadyMotion, JudgedTransient};
 
 /// The slow equations of coupled equations by multiple scales.
@@ -24,7 +25,7 @@ pub struct SlowEquationsDocument {
     pub rest: Map<String>,
     /// The letters of the equations, in alphabetical order.
     pub parameters: Vec<String>,
-    /// The method: `multiple-scales`.
+    /// The method: `multiple-scales`, or `averaging`.
     pub method: String,
     /// The highest order of the slow equations.
     pub order: usize,
@@ -218,7 +219,10 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
         coordinates: texts(&equations.coordinates),
         rest: formulas(&slow.system.rest),
         parameters: texts(&equations.parameters),
-        method: crate::solution::Method::MultipleScales.name().to_owned(),
+        method: match slow.averaging {
+            true => Method::Averaging.name().to_owned(),
+            false => Method::MultipleScales.name().to_owned(),
+        },
         order: slow.order,
         small_order: slow.small_order,
         small_parameter: slow.system.small.map(|name| name.to_string()),

@@ -36,6 +36,9 @@ pub struct MultipleScalesOptions {
     /// The highest order of the slow equations; without it the lowest at which damping, detuning and
     /// the nonlinear forces act.
     pub order: Option<usize>,
+    /// Whether the slow equations are those of averaging to first order: of the means of forces along
+    /// the motion of the linear system, which is the motion.
+    pub averaging: bool,
     /// The resonances, such as `omega2 = 2*omega1, Omega = omega2`, or `none`; without them those
     /// that are near, where the frequencies are numbers.
     pub resonance: Option<String>,
@@ -53,6 +56,8 @@ pub struct SlowMotion {
     pub system: CoupledSystem,
     /// The highest order.
     pub order: usize,
+    /// Whether these are the equations of averaging to first order.
+    pub averaging: bool,
     /// The order as which damping, detunings and drives at a resonance count.
     pub small_order: usize,
     /// The resonances, as people write them.
@@ -112,7 +117,10 @@ pub struct NearDivisor {
 impl SlowMotion {
     /// The method and its order.
     pub fn title(&self) -> String {
-        format!("Multiple scales to order {}", self.order)
+        match self.averaging {
+            true => "Averaging to first order".to_owned(),
+            false => format!("Multiple scales to order {}", self.order),
+        }
     }
 
     /// Whether the drive fixes the phases of all modes that are locked to it, so that steady motions of
@@ -224,10 +232,20 @@ pub fn derive(
         known: known_values(&form, &options.values),
     };
     form.near.clear();
-    let expansion = problem.expand(&mut form)?;
+    let mut expansion = problem.expand(&mut form)?;
+    if options.averaging {
+        let lowest = problem.terms.iter().flatten().map(|term| term.order).filter(|own| *own > 0);
+        if order > small_order || lowest.min().is_some_and(|lowest| lowest < small_order) {
+            return Err(MultipleScalesError::NoMean);
+        }
+        expansion.displacement.iter_mut().for_each(|orders| orders.truncate(1));
+    }
     let written = resonances.iter().map(|resonance| frequencies.written(resonance)).collect();
-    Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem }
-        .answer(&expansion, written, leaves_out)
+    let derivation =
+        Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem };
+    let mut slow = derivation.answer(&expansion, written, leaves_out)?;
+    slow.averaging = options.averaging;
+    Ok(slow)
 }
 
 /// The parts of a derivation.
@@ -304,6 +322,7 @@ impl Derivation<'_> {
         let mut slow = SlowMotion {
             system: (*system).clone(),
             order: problem.order,
+            averaging: false,
             small_order: problem.small_order,
             resonances,
             frequencies: form

@@ -56,6 +56,11 @@ pub enum MultipleScalesError {
         /// The lowest order that does.
         lowest: usize,
     },
+    /// Averaging to an order beyond the first.
+    #[error(
+        "averaging is of the first order here: means of the forces along the linear motion, and those of the lowest degree have none"
+    )]
+    NoMean,
     /// A derivation that was interrupted.
     #[error("interrupted")]
     Interrupted,
@@ -78,6 +83,9 @@ impl MultipleScalesError {
             Self::Resonance(error) => error.help(),
             Self::Divisor { .. } => {
                 Some("name the resonance that makes it vanish, such as --resonance \"omega2 = 2*omega1\"; drives of one frequency need one letter".to_owned())
+            }
+            Self::NoMean => {
+                Some("--method multiple-scales has the equations of higher orders".to_owned())
             }
             Self::BelowBalance { lowest, .. } => Some(format!("--order {lowest}")),
             Self::Term(_) | Self::Taylor(_) | Self::Gyroscopic(_) => {

@@ -317,3 +317,11 @@ fn what_is_not_followed_is_refused() {
     let error = respond(&question(place, "w", [0.8, 0.9])).expect_err("chatter");
     assert_eq!(error, ResponseError::Chatters("x".to_owned()));
 }
+
+/// A drive that friction bears moves nothing, and it is said of one coordinate too.
+#[test]
+fn a_drive_that_friction_bears_moves_nothing() {
+    let equation = "x'' + x'/10 + x + sgn(x')/2 = 3*cos(Omega*t)/10";
+    let found = respond(&question(equation, "Omega", [0.9, 1.1]));
+    assert!(matches!(found, Err(ResponseError::NothingMoves { .. })), "{found:?}");
+}

@@ -485,7 +485,12 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
     match &question.equations {
         Equations::Coupled(equations) => coupled::respond(question, equations),
         Equations::One(oscillator) => {
-            let mut response = respond_one(question, oscillator)?;
+            let mut response = match respond_one(question, oscillator) {
+                Err(error @ ResponseError::NotFollowed { .. }) => {
+                    return followed_from_jump_to_jump(question).unwrap_or(Err(error));
+                }
+                found => found?,
+            };
             response.set_hopf_criticality();
             if response.bifurcations.is_empty() && question.along.is_none() {
                 return Ok(response);
@@ -504,6 +509,19 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
                 }
             }
         }
+    }
+}
+
+/// The response of a single coordinate as of several, where its motions could not be followed
+/// otherwise: `None` if that does not help either.
+fn followed_from_jump_to_jump(
+    question: &ResponseRequest,
+) -> Option<Result<ResponseDiagram, ResponseError>> {
+    let equations = CoupledEquations::new(question.equations.sides()).ok()?;
+    match coupled::respond(question, &equations) {
+        Ok(response) => Some(Ok(response)),
+        Err(error @ ResponseError::NothingMoves { .. }) => Some(Err(error)),
+        Err(_) => None,
     }
 }
 

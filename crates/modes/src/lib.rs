@@ -14,17 +14,19 @@
 #[doc(no_inline)]
 pub use lindstedt_dynamics::{coupled, mechanics};
 #[doc(no_inline)]
-pub use lindstedt_expr::{decimal, exact, expr, symbol};
+pub use lindstedt_expr::{decimal, exact, expr, symbol, values};
 #[doc(no_inline)]
 pub use lindstedt_numeric::interrupt;
 #[doc(no_inline)]
-pub use lindstedt_oscillator::{method, solution};
+pub use lindstedt_oscillator::{derivation, method, solution};
 #[doc(no_inline)]
 pub use lindstedt_series::series;
 
 pub mod modes;
 
 pub mod multiple_scales;
+
+pub mod absorber;
 
 pub use interrupt::Supervision;
 pub use symbol::Symbol;

@@ -208,7 +208,7 @@ fn first_harmonic(cosines: i32, sines: i32) -> Rational {
 }
 
 /// The coefficients of a polynomial by powers of a symbol, from zero on.
-fn by_powers(polynomial: &Polynomial, name: Symbol) -> InRatio {
+pub(crate) fn by_powers(polynomial: &Polynomial, name: Symbol) -> Vec<Polynomial> {
     let highest = polynomial.exponent_range(name).map_or(0, |(_, high)| high.max(0));
     let mut rows = vec![Polynomial::zero(); highest as usize + 1];
     for (monomial, number) in polynomial.terms() {

@@ -2,12 +2,12 @@
 //!
 //! In: equations of several coordinates. Out: of those that nothing drives or damps the nonlinear
 //! normal modes, each with its frequency law, the motion of every coordinate and the modal line; of
-//! all the slow equations of amplitudes and phases; or a refusal that names the term, or the two
+//! all the slow equations of amplitudes and phases; of absorbers the designs; or a refusal that names the term, or the two
 //! modes that resonate.
 //!
 //! Five names to know: [`modes::FreeSystem`], the question; [`modes::derive`] and
 //! [`modes::NonlinearMode`], the answer for one mode; [`multiple_scales::CoupledSystem`] and
-//! [`multiple_scales::SlowMotion`], the same with damping and drives.
+//! [`multiple_scales::SlowMotion`], the same with damping and drives. Absorbers are in [`absorber`].
 
 #![warn(missing_docs)]
 

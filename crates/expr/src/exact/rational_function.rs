@@ -394,7 +394,12 @@ impl QuadraticSurd {
     pub fn sqrt_expr(&self, letter: Symbol) -> Result<Expr, ExprError> {
         let Some((factor, sum)) = self.parts(letter)? else { return Ok(Expr::zero()) };
         let (outer, inner) = factor.square_parts();
-        let root = (inner.to_expr(letter)? * sum).sqrt()?;
+        let inside = inner.to_expr(letter)? * sum;
+        // Rather 1/sqrt(a) than sqrt(1/a).
+        let root = match inner.numerator.as_slice() {
+            [number] if number.is_one() => inside.integer_power(-1)?.sqrt()?.integer_power(-1)?,
+            _ => inside.sqrt()?,
+        };
         Ok(outer.to_expr(letter)? * root)
     }
 
@@ -404,18 +409,13 @@ impl QuadraticSurd {
         let Some((factor, [rational, coefficient])) = self.common_factor() else {
             return Ok(None);
         };
-        let sign = |part: &RationalFunction, is_sign: fn(&Rational) -> bool| {
-            part.numerator.iter().all(|c| c.is_zero() || is_sign(c))
-        };
-        let is_difference = sign(&rational, Rational::is_positive)
-            && sign(&coefficient, Rational::is_negative)
-            || sign(&rational, Rational::is_negative) && sign(&coefficient, Rational::is_positive);
+        let lowest = |part: &RationalFunction| part.numerator.first().cloned();
+        let signs = lowest(&rational).zip(lowest(&coefficient));
+        let is_difference = signs.is_some_and(|(one, other)| (one * other).is_negative());
         let norm = rational
             .product(&rational)
             .difference(&coefficient.product(&coefficient).product(&self.radicand));
-        let cancels = is_difference
-            && !coefficient.is_zero()
-            && norm.numerator.first().is_some_and(Zero::is_zero);
+        let cancels = is_difference && norm.numerator.first().is_some_and(Zero::is_zero);
         let (factor, coefficient) = match cancels {
             true => (factor.product(&norm), coefficient.negative()),
             false => (factor, coefficient),

@@ -4,7 +4,11 @@
 //! letters of the equations, derived from them.
 //!
 //! - `tuned`: the tuned mass damper, by exact algebra of its frequency response.
+//! - `impact_sink`: a ball in a cavity, by the conditions of its impacts.
+//! - `cubic_sink`: a light mass on a cubic spring, by the first harmonic of its motion.
 
+mod cubic_sink;
+mod impact_sink;
 mod tuned;
 
 use std::ops::{Bound, RangeBounds as _};
@@ -12,8 +16,8 @@ use std::ops::{Bound, RangeBounds as _};
 use thiserror::Error;
 
 use crate::coupled::CoupledError;
-use crate::derivation::DerivationLine;
 use crate::expr::{Expr, ExprError};
+use crate::solution::{Definition, defined_values};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -32,6 +36,10 @@ pub enum Excitation {
 pub enum AbsorberKind {
     /// The tuned mass damper on a main mass without damping.
     Tuned(Excitation),
+    /// The vibro-impact sink, a ball in a cavity.
+    ImpactSink,
+    /// The nonlinear energy sink, a light mass on a cubic spring.
+    CubicSink,
 }
 
 impl AbsorberKind {
@@ -39,6 +47,8 @@ impl AbsorberKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Tuned(_) => "tuned",
+            Self::ImpactSink => "impact-sink",
+            Self::CubicSink => "cubic-sink",
         }
     }
 
@@ -47,6 +57,8 @@ impl AbsorberKind {
         match self {
             Self::Tuned(Excitation::Force) => &[tuned::MASS_RATIO],
             Self::Tuned(Excitation::Ground) => &[tuned::MASS_RATIO_BELOW_TWO],
+            Self::ImpactSink => &impact_sink::LETTERS,
+            Self::CubicSink => &cubic_sink::LETTERS,
         }
     }
 }
@@ -73,12 +85,25 @@ pub struct AbsorberLaws {
     pub equations: Vec<(Expr, Expr)>,
     /// What the letters of the equations and the formulas mean.
     pub meanings: Vec<(Symbol, &'static str)>,
+    /// The symbols that shorten the formulas.
+    pub definitions: Vec<Definition>,
     /// The relations that the designs are derived from.
-    pub relations: Vec<DerivationLine>,
+    pub relations: Vec<AbsorberRelation>,
     /// The designs.
     pub designs: Vec<AbsorberDesign>,
     /// What the formulas leave out.
     pub validity: &'static str,
+}
+
+/// An equation on the way to the designs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AbsorberRelation {
+    /// The left side.
+    pub left: Expr,
+    /// The right side.
+    pub right: Expr,
+    /// What it says, in words.
+    pub words: &'static str,
 }
 
 /// A way to choose the absorber, or a property of it.
@@ -196,6 +221,8 @@ impl AbsorberError {
 pub fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> {
     match kind {
         AbsorberKind::Tuned(excitation) => tuned::derive(excitation),
+        AbsorberKind::ImpactSink => impact_sink::derive(),
+        AbsorberKind::CubicSink => cubic_sink::derive(),
     }
 }
 
@@ -236,11 +263,19 @@ impl AbsorberLaws {
     }
 }
 
-impl AbsorberDesign {
-    /// The value of the formula of this name at these values; `None` if there is no such formula, or
-    /// it has no finite value there.
-    pub fn value(&self, name: &str, values: &Values) -> Option<f64> {
-        let formula = self.formulas.iter().find(|formula| formula.name == name)?;
-        formula.formula.evaluate(&values.numbers()).ok().filter(|value| value.is_finite())
+impl AbsorberLaws {
+    /// The value of a formula at these values; `None` if it has no finite one.
+    pub fn value(&self, formula: &Expr, values: &Values) -> Option<f64> {
+        let known = values.with(Symbol::new("pi"), std::f64::consts::PI);
+        let defined = defined_values(&self.definitions, &|name| known.get(&name).copied()).ok()?;
+        let known = known.into_iter().chain(defined).collect();
+        formula.evaluate(&known).ok().filter(|value| value.is_finite())
+    }
+
+    /// The value of the formula with these names of design and quantity.
+    pub fn named_value(&self, design: &str, quantity: &str, values: &Values) -> Option<f64> {
+        let formulas = &self.design(design)?.formulas;
+        let formula = formulas.iter().find(|formula| formula.name == quantity)?;
+        self.value(&formula.formula, values)
     }
 }

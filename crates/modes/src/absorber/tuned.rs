@@ -23,10 +23,9 @@ use num_traits::{One, Zero};
 
 use super::{
     AbsorberDesign, AbsorberError, AbsorberFormula, AbsorberKind, AbsorberLaws, AbsorberLetter,
-    Excitation,
+    AbsorberRelation, Excitation,
 };
 use crate::coupled::CoupledEquations;
-use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, QuadraticSurd, Rational, RationalFunction};
@@ -109,10 +108,16 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
     let lowest_variance = lowest_variance(&transfer, &names)?;
     let x = Expr::symbol("X");
     let relations = vec![
-        DerivationLine::equation(&x * &x, response.written(&names)?)
-            .because("the squared amplitude of x"),
-        DerivationLine::equation(Expr::zero(), names.written(&points)?)
-            .because("the fixed points, through which the curve of every damping goes"),
+        AbsorberRelation {
+            left: &x * &x,
+            right: response.written(&names)?,
+            words: "the squared amplitude of x",
+        },
+        AbsorberRelation {
+            left: Expr::zero(),
+            right: names.written(&points)?,
+            words: "the fixed points, through which the curve of every damping goes",
+        },
     ];
     let meanings = vec![
         (names.mu, "mass of the absorber over the main mass"),
@@ -125,6 +130,7 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
                 Excitation::Ground => "frequency of the ground over that of the main mass alone",
             },
         ),
+        (Symbol::new("X"), "amplitude of x"),
         (Symbol::new("h"), "amplitude of x over the static one, where it is largest"),
         (Symbol::new("V"), "variance of x, the right side white noise of intensity 1"),
     ];
@@ -132,6 +138,7 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
         kind: AbsorberKind::Tuned(excitation),
         equations: equations.equations,
         meanings,
+        definitions: vec![],
         relations,
         designs: [Some(equal_peaks), lowest_peak, Some(lowest_variance)]
             .into_iter()
@@ -401,8 +408,8 @@ fn equal_peaks(
                 formula("tuning", "f", written(&p.rational)?),
                 formula("damping", "zeta", written(&damping)?),
                 formula("height", "h", written(&relative)?),
-                formula("lower_frequency", "g_1", point.conjugate().sqrt_expr(names.mu)?),
-                formula("upper_frequency", "g_2", point.sqrt_expr(names.mu)?),
+                formula("lower_frequency", "g1", point.conjugate().sqrt_expr(names.mu)?),
+                formula("upper_frequency", "g2", point.sqrt_expr(names.mu)?),
             ],
         },
     ))

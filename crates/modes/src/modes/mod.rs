@@ -34,7 +34,7 @@ pub use answer::{LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;
 pub use free_system::FreeSystem;
 pub use linear::NearResonance;
-pub(crate) use one_harmonic::by_powers;
 pub use one_harmonic::{
     OneHarmonicBranchPoint, OneHarmonicFamily, OneHarmonicModes, one_harmonic_modes,
 };
+pub(crate) use one_harmonic::{by_powers, first_harmonic};

@@ -194,7 +194,7 @@ fn even_term(system: &FreeSystem, term: &ForceTerm) -> Expr {
 }
 
 /// The first harmonic of `cos^m sin^n`, m odd and n even: `2 m!! (n - 1)!!/(m + n + 1)!!`.
-fn first_harmonic(cosines: i32, sines: i32) -> Rational {
+pub(crate) fn first_harmonic(cosines: i32, sines: i32) -> Rational {
     let double = |from: i32| -> Rational {
         let mut product = Rational::one();
         let mut factor = from;

@@ -85,11 +85,11 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
     ];
     if let Some(motion) = &judged.motion {
         blocks.push(Block::Note(format!(
-            "{}: C from {} to {}, at most {} of the start from the manifold",
+            "{}: C from {} to {}, never farther from it than {} of the start",
             motion.words,
             decimal(motion.start),
             decimal(motion.end),
-            size_in_percent(motion.largest_difference)
+            size_in_percent(motion.largest_distance)
         )));
     }
     let within = size_in_percent(judged.tolerance);

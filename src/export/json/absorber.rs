@@ -94,8 +94,9 @@ pub struct AbsorberMotionDocument {
     pub start: f64,
     /// The amplitude of the main mass where the motion leaves the manifold.
     pub end: f64,
-    /// The largest difference between its amplitude and that on the manifold, over the start.
-    pub largest_difference: f64,
+    /// The largest distance of its two amplitudes from those on the manifold, over those of the
+    /// start.
+    pub largest_distance: f64,
 }
 
 /// The document of kind `absorber`.
@@ -157,7 +158,7 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
             words: motion.words.to_owned(),
             start: motion.start,
             end: motion.end,
-            largest_difference: motion.largest_difference,
+            largest_distance: motion.largest_distance,
         }),
         verdict: judged.map(|judged| judged.verdict.name().to_owned()),
         tolerance: judged.map(|judged| judged.tolerance),

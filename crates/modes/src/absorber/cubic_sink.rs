@@ -224,7 +224,20 @@ mod tests {
             formulas.map(|own| format!("{} = {}", own.symbol, own.formula)).collect();
         let relations: Vec<String> =
             laws.relations.iter().map(|own| format!("{} = {}", own.left, own.right)).collect();
-        assert_eq!(written, ["C_1 = ",]);
+        assert_eq!(
+            written,
+            [
+                "C_1 = sqrt(8/81 + 8*lambda^2/9 + 8*(1 - 3*lambda^2)^(3/2)/81)/sqrt(k)",
+                "N_1 = 2*sqrt(2 - sqrt(1 - 3*lambda^2))/(3*sqrt(k))",
+                "M_1 = sqrt(8/9 + 8*sqrt(1 - 3*lambda^2)/9)/sqrt(k)",
+                "F_1 = 2*sqrt(14 - sqrt(1 - 3*lambda^2)*(13 + 6*lambda^2))/(9*sqrt(k))",
+                "F_0 = lambda*sqrt(2/(1 + sqrt(1 - 3*lambda^2)))/sqrt(k)",
+                "C_2 = lambda*sqrt(8/(3*(1 + 9*lambda^2 + (1 - 3*lambda^2)^(3/2))))*(1 + lambda^2)/sqrt(k)",
+                "N_2 = 2*sqrt(2 + sqrt(1 - 3*lambda^2))/(3*sqrt(k))",
+                "M_2 = lambda*sqrt(8/(3*(1 + sqrt(1 - 3*lambda^2))))/sqrt(k)",
+                "F_2 = 2*sqrt(14 + sqrt(1 - 3*lambda^2)*(13 + 6*lambda^2))/(9*sqrt(k))",
+            ]
+        );
         assert_eq!(
             relations,
             ["C^2 = lambda^2*N^2 + (4*N - 3*k*N^3)^2/16", "F^2 = lambda^2*N^2 + 9*k^2*N^6/16"]

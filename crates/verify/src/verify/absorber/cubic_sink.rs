@@ -197,15 +197,9 @@ fn curves(
         let rows = slide(damping, mass_ratio, *start, upper[1] / unit);
         rows.into_iter().map(|(amplitude, relative)| (amplitude * unit, relative * unit)).collect()
     });
-    let first = slide.first().map_or(f64::NAN, |row| row.0);
-    let differences = slide.iter().map(|row| (row.0 - manifold(row.1)).abs() / first);
-    let motion = slide.first().zip(slide.last()).map(|(first, last)| AbsorberMotion {
-        words: "both masses set free on the manifold, until the sink is at the upper fold",
-        start: first.0,
-        end: last.0,
-        largest_difference: differences.fold(0.0, f64::max),
-    });
     let largest = slide.iter().map(|row| row.1).fold(1.1 * lower[2], f64::max);
+    let words = "both masses set free on the manifold, until the sink is at the upper fold";
+    let motion = AbsorberMotion::along(&part(upper[1], largest), &slide, words);
     let curves = vec![
         curve("two masses set free", AbsorberCurveKind::Truth, slide),
         curve("manifold, stable", AbsorberCurveKind::Formula, part(0.0, lower[1])),

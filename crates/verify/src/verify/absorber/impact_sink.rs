@@ -242,14 +242,12 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     };
     let slide = heavy.slide(start, balls.map_or(0.0, |(least, _)| least));
     let manifold = |ball: f64| on_manifold(ball).amplitude;
-    let differences =
-        slide.iter().map(|(amplitude, ball)| (amplitude - manifold(*ball)).abs() / start.amplitude);
-    let motion = slide.first().zip(slide.last()).map(|(first, last)| AbsorberMotion {
-        words: "both masses set free on the manifold, as long as there are two impacts a period",
-        start: first.0,
-        end: last.0,
-        largest_difference: differences.fold(0.0, f64::max),
-    });
+    let words = "both masses set free on the manifold, as long as there are two impacts a period";
+    let points: Vec<(f64, f64)> = (0..=2_000)
+        .map(|step| end * f64::from(step) / 2_000.0)
+        .map(|ball| (manifold(ball), ball))
+        .collect();
+    let motion = AbsorberMotion::along(&points, &slide, words);
     Truth { values, curves: curves(&manifold, balls, end, slide), motion }
 }
 

@@ -60,8 +60,24 @@ pub struct AbsorberMotion {
     pub start: f64,
     /// The amplitude of the main mass where the motion leaves the manifold.
     pub end: f64,
-    /// The largest difference between its amplitude and that on the manifold, over the start.
-    pub largest_difference: f64,
+    /// The largest distance of its two amplitudes from those on the manifold, over those of the
+    /// start.
+    pub largest_distance: f64,
+}
+
+impl AbsorberMotion {
+    /// The motion through these amplitudes of main mass and sink beside points of a manifold; `None`
+    /// if there is none.
+    fn along(manifold: &[(f64, f64)], motion: &[(f64, f64)], words: &'static str) -> Option<Self> {
+        let (first, last) = (motion.first()?, motion.last()?);
+        let size = first.0.hypot(first.1);
+        let distance = |point: &(f64, f64)| {
+            let each = manifold.iter().map(|own| (own.0 - point.0).hypot(own.1 - point.1));
+            each.fold(f64::INFINITY, f64::min) / size
+        };
+        let largest_distance = motion.iter().map(distance).fold(0.0, f64::max);
+        Some(Self { words, start: first.0, end: last.0, largest_distance })
+    }
 }
 
 /// A curve of the picture of an absorber.

@@ -162,10 +162,12 @@ impl TwoMasses {
 
     /// The absorber with the least cost, and the cost.
     fn best(self, cost: &dyn Fn(Absorber) -> f64) -> (Absorber, f64) {
-        let damped =
-            |tuning: f64| find_minimum(|damping| cost(Absorber { tuning, damping }), 1e-4, 2.0);
-        let around = 1.0 / (1.0 + self.mass_ratio);
-        let (tuning, least) = find_minimum(|tuning| damped(tuning).1, 0.05 * around, 1.7 * around);
+        let scale = self.scale();
+        let damped = |tuning: f64| {
+            find_minimum(|damping| cost(Absorber { tuning, damping }), 0.05 * scale, 3.0 * scale)
+        };
+        let [from, to] = self.tunings();
+        let (tuning, least) = find_minimum(|tuning| damped(tuning).1, from, to);
         (Absorber { tuning, damping: damped(tuning).0 }, least)
     }
 }

@@ -249,6 +249,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
 fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
+        Some("lindstedt/absorber/1") => "/designs/0/formulas/0",
         Some("lindstedt/modes/1") => "/modes/0",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",

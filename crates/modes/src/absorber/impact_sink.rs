@@ -144,7 +144,8 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                 ],
             },
         ],
-        validity: "a light ball, whose impacts take little from the main mass in a period; an impact takes no time",
+        validity: "a light ball, whose impacts take little from the main mass in a period; an impact takes no time; where r is below 0.09 or so, the ball \
+                   hits the same wall twice before C_max is reached",
     })
 }
 

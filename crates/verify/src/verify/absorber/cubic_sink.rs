@@ -89,12 +89,12 @@ fn harmonic(damping: f64, motion: SinkMotion) -> Option<([f64; 2], f64)> {
     Some((first, square))
 }
 
-/// The periodic motions from small to large starts.
+/// The periodic motions from rest to large starts.
 fn motions(damping: f64) -> Vec<SinkMotion> {
     const STEP: f64 = 0.03;
     const LARGEST: f64 = 2.5;
-    let mut found: Vec<SinkMotion> = Vec::new();
     let mut last = SinkMotion { start: 0.0, drive: [0.0, 0.0] };
+    let mut found = vec![last];
     while last.start < LARGEST {
         match periodic(damping, last.start + STEP, last) {
             Some(next) => last = next,

@@ -46,9 +46,13 @@ fn run(arguments: &AbsorberArguments) -> Result<Outcome, Failure> {
     let laws = derive(kind(arguments)?)?;
     let common = &arguments.common;
     let values = exact_values(&arguments.at, Ok(Values::default()))?;
-    let is_table = common.draws() || common.format() == Format::Csv;
-    if values.is_none() && (is_table || common.tolerance.is_some()) {
-        let what = if is_table { "a picture or a table" } else { "a verdict" };
+    let needed = match common.format() {
+        _ if common.draws() => Some("a picture"),
+        Format::Csv => Some("--format csv: a table"),
+        _ if common.tolerance.is_some() => Some("--tolerance: a verdict"),
+        _ => None,
+    };
+    if let (None, Some(what)) = (&values, needed) {
         return Err(Failure::refused(
             &format!("{what} of an absorber needs numbers"),
             Some(format!("add --at {}", usual_values(&laws))),

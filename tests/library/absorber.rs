@@ -8,10 +8,14 @@
 use std::f64::consts::PI;
 
 use lindstedt::absorber::{AbsorberError, AbsorberKind, AbsorberLaws, Excitation, derive};
+use lindstedt::numeric::ode::root::find_root;
+use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::{ResponseRequest, respond};
 use lindstedt::verify::{JudgedAbsorber, judge_absorber};
 use lindstedt::{Values, Verdict};
+use nalgebra::{Matrix4, Vector4};
+use num_complex::Complex64;
 
 const TUNED: AbsorberKind = AbsorberKind::Tuned(Excitation::Force);
 const SHAKEN: AbsorberKind = AbsorberKind::Tuned(Excitation::Ground);
@@ -232,6 +236,73 @@ fn folds_of_the_sink_are_those_of_a_driven_oscillator() {
         for own in &judged.formulas {
             assert!(own.relative_error.is_some_and(|error| error.abs() < 0.06), "{at}: {own:?}");
         }
+    }
+}
+
+/// The state of both masses of a cubic sink, lambda = 1/5 and k = 1, after a period of the force.
+fn after_a_period(state: [f64; 4], force: f64, mass_ratio: f64) -> [f64; 4] {
+    let rates = |t: f64, state: &[f64; 4], out: &mut [f64; 4]| {
+        let [x, y, u, v] = *state;
+        let link = (u - v) / 5.0 + (x - y).powi(3);
+        *out = [u, v, mass_ratio * (force * t.cos() - link) - x, link];
+    };
+    let start = Point { t: 0.0, y: state };
+    let options = IntegrationOptions::with_tolerance(1e-12);
+    integrate_first_order(rates, start, 2.0 * PI, &[], &options).expect("a path").end().y
+}
+
+/// The largest multiplier of the steady motion near that of one harmonic.
+fn largest_multiplier(force: f64, mass_ratio: f64) -> f64 {
+    // S (lambda^2 + 9 S^2/16) = F^2, Z = F/(i lambda + 3 S/4), X = Z (1 - 3 S/4 - i lambda).
+    let balance = |square: f64| square * (0.04 + 0.5625 * square * square) - force * force;
+    let square = find_root(balance, 0.0, 4.0).expect("a root");
+    let z = force / Complex64::new(0.75 * square, 0.2);
+    let x = z * Complex64::new(1.0 - 0.75 * square, -0.2);
+    let y = x - z;
+    let mut state = Vector4::new(x.re, y.re, -x.im, -y.im) * 0.988;
+    let jacobian = |state: &Vector4<f64>| {
+        const STEP: f64 = 1e-5;
+        let mut jacobian = Matrix4::zeros();
+        for column in 0..4 {
+            let shifted = |sign: f64| {
+                let mut state = *state;
+                state[column] += sign * STEP;
+                Vector4::from(after_a_period(state.into(), force, mass_ratio))
+            };
+            jacobian.set_column(column, &((shifted(1.0) - shifted(-1.0)) / (2.0 * STEP)));
+        }
+        jacobian
+    };
+    for _ in 0..20 {
+        let left = Vector4::from(after_a_period(state.into(), force, mass_ratio)) - state;
+        let step = (jacobian(&state) - Matrix4::identity()).lu().solve(&left).expect("a step");
+        state -= step;
+        if step.norm() < 1e-9 {
+            let multipliers = jacobian(&state).complex_eigenvalues();
+            return multipliers.iter().map(|own| own.norm()).fold(0.0, f64::max);
+        }
+    }
+    f64::NAN
+}
+
+/// The steady motions of both masses, in full, are stable up to the force of the lower fold and from
+/// that of the upper fold on.
+#[test]
+fn no_steady_motion_is_stable_between_the_forces_of_the_folds() {
+    let judged = judged(AbsorberKind::CubicSink, "lambda = 1/5, k = 1, eps = 1/500");
+    let (lower, upper) =
+        (truth(&judged, "upward-jump", "force"), truth(&judged, "downward-jump", "force"));
+    for (force, is_stable) in [
+        (0.9 * lower, true),
+        (0.98 * lower, true),
+        (1.02 * lower, false),
+        ((lower + upper) / 2.0, false),
+        (0.98 * upper, false),
+        (1.02 * upper, true),
+    ] {
+        let multiplier = largest_multiplier(force, 1.0 / 500.0);
+        assert_eq!(multiplier < 1.0, is_stable, "F = {force}: {multiplier}");
+        assert!(multiplier.is_finite());
     }
 }
 

@@ -314,6 +314,7 @@ RESULTS = {
     "impact": "Impact | ImpactCertificate | ImpactComparison",
     "simulate": "Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep",
     "response": "Response",
+    "absorber": "Absorber",
     "friction": "Friction",
     "lagrange": "Lagrangian",
     "materials": "Materials",
@@ -375,6 +376,11 @@ def option_type(argument: dict[str, Any]) -> str:
     return named
 
 
+def place_name(argument: dict[str, Any]) -> str:
+    """The name of what a command is about: its own, where it is one of a few words."""
+    return str(argument["name"]) if argument["choices"] else "problem"
+
+
 def command_text(command: dict[str, Any], of_equation: bool) -> str:
     """The text of the function of a command, or of the method."""
     name, result = command["name"], RESULTS[command["name"]]
@@ -387,8 +393,9 @@ def command_text(command: dict[str, Any], of_equation: bool) -> str:
     signature, told = ["self"] if of_equation else [], []
     if place is not None and not of_equation:
         none = "" if place["required"] else " | None = None"
-        signature.append(f"problem: Problem{none}")
-        told.append(f"problem: {TOLD.get(place['name'], place['help'])}.")
+        kind = option_type(place) if place["choices"] else "Problem"
+        signature.append(f"{place_name(place)}: {kind}{none}")
+        told.append(f"{place_name(place)}: {TOLD.get(place['name'], place['help'])}.")
     for argument in [*first, *after]:
         if argument in after and "*" not in signature:
             signature.append("*")
@@ -408,7 +415,7 @@ def command_text(command: dict[str, Any], of_equation: bool) -> str:
         told.append("**values: The values of symbols, exact where they are text or fractions.")
     names = [field_name(a["name"].replace("-", "_")) for a in [*first, *after]]
     given = ", ".join(f'"{n}": {n}' for n in names + (["at"] if takes_values else []))
-    problem = "self" if of_equation else "problem" if place is not None else "None"
+    problem = "self" if of_equation else place_name(place) if place is not None else "None"
     values = "values" if takes_values else "{}"
     if of_equation:
         body = [f'return ask("{name}", self.problem, {{{given}}}, {values}, progress)']

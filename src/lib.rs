@@ -28,6 +28,7 @@
 //! | [`solution`] | what a method returns: law, motion, notes, the derivation line by line | [`Solution`] |
 //! | [`modes`] | derives the nonlinear normal modes of coupled equations | [`modes::derive`](modes::derive()) |
 //! | [`multiple_scales`] | derives the slow equations of coupled equations | [`multiple_scales::derive`](multiple_scales::derive()) |
+//! | [`absorber`] | derives the designs of vibration absorbers: tuned mass dampers, nonlinear sinks | [`absorber::derive`] |
 //! | [`verify`] | judges a formula by the true motion, compares methods | [`judge`], [`verify::comparison::compare`] |
 //! | [`certificate`] | proves how far a formula is from the true motion | [`certificate::certify`] |
 //! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
@@ -73,7 +74,7 @@ pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]
 pub use lindstedt_impact::{impact, optimize};
 #[doc(inline)]
-pub use lindstedt_modes::{modes, multiple_scales};
+pub use lindstedt_modes::{absorber, modes, multiple_scales};
 #[doc(inline)]
 pub use lindstedt_numeric::{genetic, numeric};
 #[doc(inline)]

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .catalogue import catalog as catalog
+    from .commands import absorber as absorber
     from .commands import audit as audit
     from .commands import certify as certify
     from .commands import check as check
@@ -77,8 +78,8 @@ PLACES = {
     ),
     **dict.fromkeys(
         (
-            "audit", "certify", "check", "compare", "derive", "friction", "impact", "lagrange",
-            "materials", "optimize", "paper", "response", "simulate", "stability",
+            "absorber", "audit", "certify", "check", "compare", "derive", "friction", "impact",
+            "lagrange", "materials", "optimize", "paper", "response", "simulate", "stability",
         ),
         "commands",
     ),

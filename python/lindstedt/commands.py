@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .certificates import Certificate
     from .comparison import Comparison
     from .designs import Optimization
+    from .documents.absorber import Absorber
     from .documents.certificate import DampedCertificateDocument
     from .documents.certificate_range import CertificateRange
     from .documents.impact_certificate import ImpactCertificate
@@ -273,6 +274,36 @@ def response(
         UsageError: An option has a value that it cannot have.
     """
     return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def absorber(
+    kind: Literal["tuned", "impact-sink", "cubic-sink"],
+    *,
+    excitation: Literal["force", "ground"] | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Absorber:
+    """Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, thresholds of a ball in a cavity and of a light mass on a cubic spring.
+
+    Args:
+        kind: The kind of absorber: a tuned mass damper; a vibro-impact sink, a ball in a
+            cavity; a light mass on a cubic spring.
+        excitation: What shakes the main mass of a tuned mass damper: a force on it, or the
+            ground; force without it.
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
+        timeout: Give up after so many seconds.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("absorber", kind, {"excitation": excitation, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def friction(

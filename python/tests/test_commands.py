@@ -44,6 +44,7 @@ CALLS = {
     "response": lambda: ls.response(
         "x'' + x'/10 + x + x^3/10 = F*cos(W*t)", vary={"W": (0.8, 1.2)}, F="1/10"
     ),
+    "absorber": lambda: ls.absorber("tuned", mu="1/20"),
     "friction": lambda: ls.friction(),
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),

@@ -721,7 +721,7 @@ pub(super) fn given_values(at: &[String]) -> Result<Vec<(Symbol, Expr)>, Failure
 
 /// The parts of `A=1,eps=0.1`. A comma or a space before another name and its equals sign separates
 /// two values; the comma of `max(1, 2)` does not.
-fn separate_values(text: &str) -> Vec<&str> {
+pub(super) fn separate_values(text: &str) -> Vec<&str> {
     let mut ends: Vec<usize> = vec![];
     for (equals, _) in text.match_indices('=').skip(1) {
         let before = text[..equals].trim_end();

@@ -8,6 +8,7 @@
 //! 0 done, 1 refused or failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a
 //! partial result, 70 internal error.
 
+mod absorber;
 mod answer;
 mod audit;
 mod call;
@@ -76,7 +77,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 19] = [
+static COMMANDS: [Command; 20] = [
     Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
@@ -91,6 +92,8 @@ static COMMANDS: [Command; 19] = [
     Command::new::<response::ResponseArguments>("response")
         .showing(include_str!("help/response.txt"))
         .waiting(one_minute),
+    Command::new::<absorber::AbsorberArguments>("absorber")
+        .showing(include_str!("help/absorber.txt")),
     Command::new::<friction::FrictionArguments>("friction")
         .showing(include_str!("help/friction.txt")),
     Command::new::<lagrange::LagrangeArguments>("lagrange")

@@ -6,6 +6,7 @@
 //! and simulations take the results themselves. Out goes text in one format. The content was chosen
 //! before; a format determines only the layout.
 
+pub mod absorber;
 pub mod catalog;
 pub mod code;
 pub mod comparison;

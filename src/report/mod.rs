@@ -7,6 +7,7 @@
 //! every format of `export` handles each kind of block and does not depend on the results. The
 //! choice of the displayed law, of omissions and of the order is made here, once.
 
+mod absorber;
 mod audit;
 mod certificate;
 mod comparison;
@@ -27,6 +28,7 @@ mod solution;
 mod stability;
 mod trajectory;
 
+pub use absorber::{AbsorberReport, absorber};
 pub use audit::audit;
 #[cfg(feature = "json")]
 pub(crate) use audit::{

@@ -1,6 +1,7 @@
 //! The library held against independent truth: one file a subject, all in one program, so that they
 //! share the processor's cores.
 
+mod absorber;
 mod averaging;
 mod certificate;
 mod conformance;

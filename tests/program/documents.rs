@@ -8,13 +8,13 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
-    ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
-    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OneHarmonicDocument,
-    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
-    SweepDocument,
+    self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
+    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
+    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
+    LagrangianDocument, MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -103,6 +103,7 @@ fn reads_back(document: &Value) {
         DocumentKind::ImpactCertificate => again::<ImpactCertificateDocument>(document),
         DocumentKind::Simulation => again::<SimulationDocument>(document),
         DocumentKind::Sweep => again::<SweepDocument>(document),
+        DocumentKind::Absorber => again::<AbsorberDocument>(document),
         DocumentKind::Friction => again::<FrictionDocument>(document),
         DocumentKind::Lagrangian => again::<LagrangianDocument>(document),
         DocumentKind::MotionSweep => again::<MotionSweepDocument>(document),
@@ -163,6 +164,9 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/audit", ".toml") {
         add(&["audit", &file.to_string_lossy()]);
     }
+    add(&["absorber", "tuned", "--excitation", "ground"]);
+    add(&["absorber", "tuned", "--at", "mu=1/20"]);
+    add(&["absorber", "impact-sink", "--at", "r=0.65,b=1,mu=1/100"]);
     add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["impact", "--certify"]);
@@ -245,6 +249,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
 fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
+        Some("lindstedt/absorber/1") => "/designs/0/formulas/0",
         Some("lindstedt/modes/1") => "/modes/0",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",

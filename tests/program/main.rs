@@ -1,6 +1,7 @@
 //! The program as its users run it: one file a subject, all in one program, so that they share the
 //! processor's cores.
 
+mod absorber;
 mod audit;
 mod catalog;
 mod certificates;

@@ -14,7 +14,7 @@ pub use lindstedt_dynamics::{coupled, mechanics, system};
 #[doc(no_inline)]
 pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]
-pub use lindstedt_modes::{modes, multiple_scales};
+pub use lindstedt_modes::{absorber, modes, multiple_scales};
 #[doc(no_inline)]
 pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]

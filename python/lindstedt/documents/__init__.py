@@ -5,6 +5,7 @@ Made by `python/generate.py` from the JSON schemas: change those.
 
 #: The module and the classes of each kind, by what stands under `schema`.
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "lindstedt/absorber/1": ("absorber", ("Absorber",)),
     "lindstedt/audit/1": ("audit", ("Audit",)),
     "lindstedt/catalog/1": ("catalog", ("Catalog",)),
     "lindstedt/certificate-range/1": ("certificate_range", ("CertificateRange",)),

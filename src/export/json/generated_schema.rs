@@ -8,13 +8,13 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
-    ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
-    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OneHarmonicDocument,
-    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
-    SweepDocument,
+    AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
+    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
+    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
+    LagrangianDocument, MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -40,6 +40,7 @@ impl DocumentKind {
             Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
+            Self::Absorber => generator.into_root_schema_for::<AbsorberDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),

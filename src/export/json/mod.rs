@@ -13,6 +13,7 @@
 //! The documentation of a field is its description in the schema, [`DocumentKind::json_schema`]. A
 //! missing value is null: a key is never left out.
 
+mod absorber;
 pub mod audit;
 pub mod catalog;
 pub mod certificate;
@@ -49,6 +50,10 @@ use std::io;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use absorber::{
+    AbsorberDesignDocument, AbsorberDocument, AbsorberFormulaDocument, AbsorberMotionDocument,
+    AbsorberRelationDocument, absorber,
+};
 pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};
 pub use certificate::{CertificateDocument, certificate};

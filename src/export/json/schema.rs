@@ -35,6 +35,8 @@ pub enum DocumentKind {
     Sweep,
     /// `response`.
     Response,
+    /// `absorber`.
+    Absorber,
     /// `friction`.
     Friction,
     /// `lagrange`.
@@ -61,7 +63,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::Solution,
         Self::Modes,
         Self::OneHarmonic,
@@ -77,6 +79,7 @@ impl DocumentKind {
         Self::PrimarySweep,
         Self::Sweep,
         Self::Response,
+        Self::Absorber,
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
@@ -120,6 +123,7 @@ impl DocumentKind {
             }
             Self::Sweep => ["lindstedt/sweep/1", include_str!("schemas/sweep.json")],
             Self::Response => ["lindstedt/response/1", include_str!("schemas/response.json")],
+            Self::Absorber => ["lindstedt/absorber/1", include_str!("schemas/absorber.json")],
             Self::Friction => ["lindstedt/friction/1", include_str!("schemas/friction.json")],
             Self::Lagrangian => ["lindstedt/lagrangian/1", include_str!("schemas/lagrangian.json")],
             Self::Materials => ["lindstedt/materials/1", include_str!("schemas/materials.json")],

@@ -111,7 +111,7 @@ pub fn remainder(dividend: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
     divide(dividend, divisor).1
 }
 
-fn quotient(dividend: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
+pub(super) fn quotient(dividend: &[Rational], divisor: &[Rational]) -> Vec<Rational> {
     divide(dividend, divisor).0
 }
 
@@ -135,7 +135,7 @@ fn divide(dividend: &[Rational], divisor: &[Rational]) -> (Vec<Rational>, Vec<Ra
 }
 
 /// The monic greatest common divisor.
-fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+pub(super) fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let (mut a, mut b) = (trimmed(a.to_vec()), trimmed(b.to_vec()));
     while !b.is_empty() {
         let next = remainder(&a, &b);
@@ -147,7 +147,7 @@ fn gcd(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     }
 }
 
-fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+pub(super) fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let mut sum = vec![Rational::zero(); (a.len() + b.len()).saturating_sub(1)];
     for (i, left) in a.iter().enumerate() {
         for (k, right) in b.iter().enumerate() {
@@ -157,12 +157,12 @@ fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     trimmed(sum)
 }
 
-fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+pub(super) fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let at = |list: &[Rational], k: usize| list.get(k).cloned().unwrap_or_else(Rational::zero);
     trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
 }
 
-fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
+pub(super) fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
     while polynomial.last().is_some_and(Zero::is_zero) {
         polynomial.pop();
     }
@@ -171,7 +171,7 @@ fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
 
 /// Returns the primitive polynomial: whole numbers without common divisor in the ratio of the
 /// coefficients, with the same signs.
-fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
+pub(super) fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
     let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
     without_content(polynomial.iter().map(|c| (c * &common).to_integer()).collect())
 }

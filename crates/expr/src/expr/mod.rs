@@ -49,6 +49,7 @@ mod overflow;
 mod parse;
 mod polynomial;
 mod print;
+mod rational_function;
 mod rounding;
 mod typed;
 

@@ -39,3 +39,4 @@ pub use linear::NearResonance;
 pub use one_harmonic::{
     OneHarmonicBranchPoint, OneHarmonicFamily, OneHarmonicModes, one_harmonic_modes,
 };
+pub(crate) use one_harmonic::{by_powers, first_harmonic};

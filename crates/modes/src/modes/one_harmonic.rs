@@ -194,7 +194,7 @@ fn even_term(system: &FreeSystem, term: &ForceTerm) -> Expr {
 }
 
 /// The first harmonic of `cos^m sin^n`, m odd and n even: `2 m!! (n - 1)!!/(m + n + 1)!!`.
-fn first_harmonic(cosines: i32, sines: i32) -> Rational {
+pub(crate) fn first_harmonic(cosines: i32, sines: i32) -> Rational {
     let double = |from: i32| -> Rational {
         let mut product = Rational::one();
         let mut factor = from;
@@ -208,7 +208,7 @@ fn first_harmonic(cosines: i32, sines: i32) -> Rational {
 }
 
 /// The coefficients of a polynomial by powers of a symbol, from zero on.
-fn by_powers(polynomial: &Polynomial, name: Symbol) -> InRatio {
+pub(crate) fn by_powers(polynomial: &Polynomial, name: Symbol) -> Vec<Polynomial> {
     let highest = polynomial.exponent_range(name).map_or(0, |(_, high)| high.max(0));
     let mut rows = vec![Polynomial::zero(); highest as usize + 1];
     for (monomial, number) in polynomial.terms() {

@@ -1,0 +1,187 @@
+//! The formulas of absorbers beside searches, quadratures and simulations.
+//!
+//! In: the formulas of a kind of absorber, and values of its letters. Out: each formula in numbers
+//! beside the truth, and the curves of a picture.
+//!
+//! - `tuned`: the frequency response of the two masses, searched for its lowest peak and variance.
+//! - `impact_sink`: the two masses from impact to impact.
+//! - `cubic_sink`: periodic motions of the sink by Runge-Kutta, and the two masses set free.
+
+mod cubic_sink;
+mod impact_sink;
+mod tuned;
+
+use super::Verdict;
+use crate::absorber::{AbsorberError, AbsorberKind, AbsorberLaws};
+use crate::symbol::Symbol;
+use crate::values::Values;
+
+/// The formulas of an absorber at values of its letters, judged.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct JudgedAbsorber {
+    /// The values.
+    pub at: Values,
+    /// The relative error up to which a formula passes.
+    pub tolerance: f64,
+    /// The formulas, design by design.
+    pub formulas: Vec<JudgedAbsorberFormula>,
+    /// A simulated motion of a sink; `None` for a tuned mass damper.
+    pub motion: Option<AbsorberMotion>,
+    /// The curves of a picture: of responses over frequency, or of motions over amplitude.
+    pub curves: Vec<AbsorberCurve>,
+    /// Whether all formulas are within the tolerance.
+    pub verdict: Verdict,
+}
+
+/// A formula of a design in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedAbsorberFormula {
+    /// The name of the design.
+    pub design: &'static str,
+    /// The name of the quantity.
+    pub name: &'static str,
+    /// The symbol of the quantity.
+    pub symbol: Symbol,
+    /// Its value by the formula.
+    pub value: Option<f64>,
+    /// The true value.
+    pub truth: Option<f64>,
+    /// `value/truth - 1`.
+    pub relative_error: Option<f64>,
+}
+
+/// A simulated motion that follows the manifold of a sink.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AbsorberMotion {
+    /// What is simulated.
+    pub words: &'static str,
+    /// The amplitude of the main mass at the start.
+    pub start: f64,
+    /// The amplitude of the main mass where the motion leaves the manifold.
+    pub end: f64,
+    /// The largest distance of its two amplitudes from those on the manifold, over those of the
+    /// start.
+    pub largest_distance: f64,
+}
+
+impl AbsorberMotion {
+    /// The motion through these amplitudes of main mass and sink beside points of a manifold; `None`
+    /// if there is none.
+    fn along(manifold: &[(f64, f64)], motion: &[(f64, f64)], words: &'static str) -> Option<Self> {
+        let (first, last) = (motion.first()?, motion.last()?);
+        let size = first.0.hypot(first.1);
+        let distance = |point: &(f64, f64)| {
+            let each = manifold.iter().map(|own| (own.0 - point.0).hypot(own.1 - point.1));
+            each.fold(f64::INFINITY, f64::min) / size
+        };
+        let largest_distance = motion.iter().map(distance).fold(0.0, f64::max);
+        Some(Self { words, start: first.0, end: last.0, largest_distance })
+    }
+}
+
+/// A curve of the picture of an absorber.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AbsorberCurve {
+    /// What it is, in words.
+    pub label: String,
+    /// How it came about.
+    pub kind: AbsorberCurveKind,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How a curve came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AbsorberCurveKind {
+    /// A true response with the values of a design, or a true motion.
+    Truth,
+    /// The same with other values, for comparison.
+    Background,
+    /// A formula.
+    Formula,
+    /// A part of a formula that is an unstable motion.
+    Unstable,
+    /// Single points by formulas.
+    Points,
+}
+
+impl AbsorberCurveKind {
+    /// The name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Truth => "truth",
+            Self::Background => "background",
+            Self::Formula => "formula",
+            Self::Unstable => "unstable",
+            Self::Points => "points",
+        }
+    }
+}
+
+/// True values by design and quantity, and the curves.
+struct Truth {
+    values: Vec<(&'static str, &'static str, Option<f64>)>,
+    curves: Vec<AbsorberCurve>,
+    motion: Option<AbsorberMotion>,
+}
+
+/// Judges the formulas of an absorber at values of its letters.
+///
+/// # Errors
+/// [`AbsorberError`] for values that are missing, unknown or outside their range.
+///
+/// ```
+/// # use lindstedt_verify as lindstedt;
+/// use lindstedt::absorber::{AbsorberKind, Excitation, derive};
+/// use lindstedt::verify::{Verdict, judge_absorber};
+///
+/// let laws = derive(AbsorberKind::Tuned(Excitation::Force))?;
+/// let judged = judge_absorber(&laws, &"mu = 1/20".parse()?, 0.01)?;
+/// let height = judged.formulas.iter().find(|own| own.name == "height").ok_or("no height")?;
+/// assert!(height.truth.is_some_and(|truth| (truth - 6.403124).abs() < 1e-6));
+/// assert_eq!(judged.verdict, Verdict::Pass);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn judge_absorber(
+    laws: &AbsorberLaws,
+    at: &Values,
+    tolerance: f64,
+) -> Result<JudgedAbsorber, AbsorberError> {
+    laws.check(at)?;
+    let truth = match laws.kind {
+        AbsorberKind::Tuned(excitation) => tuned::truth(laws, excitation, at),
+        AbsorberKind::ImpactSink => impact_sink::truth(laws, at),
+        AbsorberKind::CubicSink => cubic_sink::truth(laws, at),
+    };
+    let mut formulas = Vec::new();
+    for design in &laws.designs {
+        for own in &design.formulas {
+            let value = laws.value(&own.formula, at);
+            let known = truth.values.iter().find(|row| (row.0, row.1) == (design.name, own.name));
+            let truth = known.and_then(|row| row.2).filter(|truth| truth.is_finite());
+            let relative_error = value.zip(truth).map(|(value, truth)| value / truth - 1.0);
+            formulas.push(JudgedAbsorberFormula {
+                design: design.name,
+                name: own.name,
+                symbol: own.symbol,
+                value,
+                truth,
+                relative_error: relative_error.filter(|error| error.is_finite()),
+            });
+        }
+    }
+    let within = |own: &JudgedAbsorberFormula| {
+        own.relative_error.is_some_and(|error| error.abs() <= tolerance)
+    };
+    let verdict = Verdict::from_passed(formulas.iter().all(within));
+    let curves = truth.curves.into_iter().filter(|curve| !curve.points.is_empty()).collect();
+    Ok(JudgedAbsorber {
+        at: at.clone(),
+        tolerance,
+        formulas,
+        motion: truth.motion,
+        curves,
+        verdict,
+    })
+}

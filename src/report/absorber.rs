@@ -1,0 +1,101 @@
+//! The formulas of an absorber: equations, relations, designs, verdicts.
+
+use std::borrow::Cow;
+
+use super::driven::values_in_words;
+use super::{Block, Document, percent, size_in_percent};
+use crate::absorber::AbsorberLaws;
+use crate::decimal::decimal;
+use crate::derivation::DerivationLine;
+use crate::expr::Expr;
+use crate::verify::JudgedAbsorber;
+
+/// The formulas of an absorber to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct AbsorberReport<'a> {
+    /// The formulas.
+    pub laws: &'a AbsorberLaws,
+    /// The formulas in numbers beside the truth; `None` without values.
+    pub judged: Option<&'a JudgedAbsorber>,
+}
+
+/// The document of an absorber.
+///
+/// ```
+/// use lindstedt::absorber::{AbsorberKind, Excitation, derive};
+/// use lindstedt::report::{AbsorberReport, absorber};
+///
+/// let laws = derive(AbsorberKind::Tuned(Excitation::Force))?;
+/// let document = absorber(&AbsorberReport { laws: &laws, judged: None });
+/// let text = lindstedt::export::text::document(&document, 100);
+/// assert!(text.contains("f = 1/(1 + mu)"), "{text}");
+/// # Ok::<(), lindstedt::absorber::AbsorberError>(())
+/// ```
+pub fn absorber<'a>(report: &AbsorberReport<'a>) -> Document<'a> {
+    let laws = report.laws;
+    let equations = laws.equations.iter();
+    let question = equations.map(|(left, right)| line(left.clone(), right.clone())).collect();
+    let meanings = laws.meanings.iter().map(|(name, words)| (name.name(), (*words).to_owned()));
+    let relations = laws.relations.iter().map(|relation| {
+        let line = DerivationLine::equation(relation.left.clone(), relation.right.clone());
+        Block::Line(Cow::Owned(line.because(relation.words)))
+    });
+    let mut sections = vec![question, vec![Block::Facts(meanings.collect())], relations.collect()];
+    if !laws.definitions.is_empty() {
+        sections.push(laws.definitions.iter().map(Block::Definition).collect());
+    }
+    for design in &laws.designs {
+        let title = Block::Title {
+            words: capitalised(&design.name.replace('-', " ")),
+            amplitude: design.words.to_owned(),
+        };
+        let formulas =
+            design.formulas.iter().map(|own| line(Expr::from(own.symbol), own.formula.clone()));
+        sections.push(std::iter::once(title).chain(formulas).collect());
+    }
+    sections.extend(report.judged.map(beside_the_truth));
+    sections
+        .push(vec![Block::Heading("Validity".to_owned()), Block::Note(laws.validity.to_owned())]);
+    Document { sections }
+}
+
+fn line<'a>(left: Expr, right: Expr) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
+}
+
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
+    let number = |value: Option<f64>| value.map_or("not found".to_owned(), decimal);
+    let rows = judged.formulas.iter().map(|own| {
+        vec![
+            own.design.replace('-', " "),
+            own.symbol.to_string(),
+            number(own.value),
+            number(own.truth),
+            own.relative_error.map_or("-".to_owned(), percent),
+        ]
+    });
+    let mut blocks = vec![
+        Block::Heading(format!("Beside the truth{}", values_in_words(&judged.at))),
+        Block::table(["design", "quantity", "formula", "truth", "relative error"], rows),
+    ];
+    if let Some(motion) = &judged.motion {
+        blocks.push(Block::Note(format!(
+            "{}: C from {} to {}, never farther from it than {} of the start",
+            motion.words,
+            decimal(motion.start),
+            decimal(motion.end),
+            size_in_percent(motion.largest_distance)
+        )));
+    }
+    let within = size_in_percent(judged.tolerance);
+    blocks.push(Block::Facts(vec![(
+        "verdict",
+        format!("{} (|relative error| <= {within})", judged.verdict.name()),
+    )]));
+    blocks
+}

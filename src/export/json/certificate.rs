@@ -327,6 +327,7 @@ impl CertificateFormula {
             frequency: integer(&self.omega, "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
             sines: vec![],
+            others: vec![],
             deviation: range(&self.phase_error, "phase_error")?,
             frequency_error: range(&self.frequency_error, "frequency_error")?,
             drift: range(&self.drift, "drift")?,

@@ -30,7 +30,7 @@ const LONGEST_NUMBER: usize = 200;
 const LONGEST_VALUES: usize = 10_000;
 
 /// A force has at most so many.
-const LONGEST_FORCE: usize = 2000;
+pub(super) const LONGEST_FORCE: usize = 2000;
 
 /// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is
 /// off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`.

@@ -89,9 +89,7 @@ pub enum NotCertified {
     )]
     Start(String),
     /// An amplitude of a mode that is not a fraction.
-    #[error(
-        "{symbol} = {value} is no fraction: a certificate needs to know the amplitude exactly"
-    )]
+    #[error("{symbol} = {value} is no fraction: a certificate needs to know the amplitude exactly")]
     Amplitude {
         /// The symbol of the amplitude.
         symbol: String,
@@ -316,11 +314,10 @@ impl ProofTarget {
         let start = &equilibrium + &amplitude;
         let start =
             start.as_number().ok_or_else(|| NotCertified::Start(start.to_string()))?.clone();
-        let force =
-            written_out(
-                force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?,
-                &[coordinate()],
-            )?;
+        let force = written_out(
+            force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?,
+            &[coordinate()],
+        )?;
         // In one of two wells beside each other a motion has all harmonics, whatever the symmetry
         // of the force.
         let odd = equilibrium.is_zero() && super::force::is_odd(&force, &[coordinate()])?;

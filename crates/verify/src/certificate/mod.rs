@@ -41,9 +41,7 @@ pub use damped::{
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
-pub use modes::{
-    ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode,
-};
+pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{RangeEnd, Validity, validity};
 

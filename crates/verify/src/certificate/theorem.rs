@@ -103,9 +103,7 @@ impl ConservativeProblem<'_> {
     /// The harmonics of the block, coordinate by coordinate.
     pub(super) fn block(&self) -> Vec<Wave> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
-        let of = |coordinate| {
-            harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic })
-        };
+        let of = |coordinate| harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic });
         (0..self.coordinates.len()).flat_map(of).collect()
     }
 
@@ -237,9 +235,8 @@ pub(super) fn prove_around(
     let harmonics: Bound = direction.harmonics.iter().map(FourierSeries::norm).sum();
     let size = sigma * WORKING.magnitude(&direction.mu) + harmonics;
     let apart = (left + turned * size).over(contracts);
-    let around = |proof: &Proof| {
-        widened(&theorem.system.problem.mu, proof.radius.over(sigma.value()))
-    };
+    let around =
+        |proof: &Proof| widened(&theorem.system.problem.mu, proof.radius.over(sigma.value()));
     Ok(Neighbours {
         mu: around(&of_all),
         mu_in_middle: around(&of_middle),
@@ -358,9 +355,8 @@ impl Slope {
         let halved = |(k, ball): (usize, &Ball)| {
             if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) }
         };
-        let double = |(k, ball): (usize, &Ball)| {
-            WORKING.nearest(ball) * if k == 0 { 1.0 } else { 0.5 }
-        };
+        let double =
+            |(k, ball): (usize, &Ball)| WORKING.nearest(ball) * if k == 0 { 1.0 } else { 0.5 };
         let cosines = || series.cosines.iter().enumerate();
         let (halves, doubles) = (cosines().map(halved).collect(), cosines().map(double).collect());
         Self { series, halves, doubles }
@@ -399,9 +395,7 @@ struct Slopes {
 impl Slopes {
     fn new(problem: &ConservativeProblem) -> Result<Self, NotProved> {
         let expressions = problem.slopes()?;
-        let value = |slope: &Expr| {
-            Ok(Slope::new(problem.values_along(slope, &problem.motions)?))
-        };
+        let value = |slope: &Expr| Ok(Slope::new(problem.values_along(slope, &problem.motions)?));
         let row = |row: &Vec<Expr>| row.iter().map(value).collect();
         let values = expressions.iter().map(row).collect::<Result<_, NoValue>>()?;
         Ok(Self { expressions, values })
@@ -449,8 +443,7 @@ struct BoundData<'a> {
 impl<'a> BoundData<'a> {
     fn new(problem: ConservativeProblem<'a>) -> Result<Self, NotProved> {
         let forces = forces_along(&problem)?;
-        let inverse =
-            Inverse::from_entries(problem.inverse, problem.inverse_bits, problem.sigma);
+        let inverse = Inverse::from_entries(problem.inverse, problem.inverse_bits, problem.sigma);
         let block = problem.block();
         let start = inverse.norm_of_column(0);
         let columns = (1..=block.len()).map(|column| inverse.norm_of_column(column));
@@ -475,9 +468,8 @@ impl<'a> BoundData<'a> {
     /// The harmonics of all coordinates from one up to another.
     fn waves(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
         let harmonics = self.harmonics(from, to);
-        let of = move |coordinate| {
-            harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic })
-        };
+        let of =
+            move |coordinate| harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic });
         (0..self.forces.len()).flat_map(of)
     }
 

@@ -114,7 +114,10 @@ impl ModeCertificate {
             ModeAmplitude::FirstHarmonic(factors) => {
                 let unknown = || Ball { middle: Integer::zero(), radius: Bound::UNKNOWN };
                 let factor = |factor: &Expr| law::exact_number(factor).unwrap_or_else(unknown);
-                Condition::FirstHarmonic { factors: factors.iter().map(factor).collect(), amplitude }
+                Condition::FirstHarmonic {
+                    factors: factors.iter().map(factor).collect(),
+                    amplitude,
+                }
             }
         };
         ConservativeProblem {

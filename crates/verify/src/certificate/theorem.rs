@@ -294,7 +294,10 @@ impl<'a> Theorem<'a> {
     /// The proof for every value of the condition within `spread`.
     fn proof(&self, spread: Bound) -> Result<Proof, NotProved> {
         let defect = self.defect + spread * self.system.start;
-        let curvature = |within| self.system.curvature(&self.slopes.expressions, within);
+        let curvature = |within| {
+            let [by_mu, by_motion] = self.system.curvature(&self.slopes.expressions, within)?;
+            Ok(by_mu.max(by_motion))
+        };
         let distinct =
             |radius: Bound| self.system.problem.is_distinct(radius, self.system.inverse.sigma);
         radius(defect, self.contraction, curvature, distinct)
@@ -664,8 +667,9 @@ impl<'a> BoundData<'a> {
         self.inverse.distance_from_unit(&vector, place) + tail
     }
 
-    /// Z2 on the ball of this radius.
-    fn curvature(&self, slopes: &[Vec<Expr>], radius: Bound) -> Result<Bound, NotProved> {
+    /// The parts of Z2 on the ball of this radius: of directions of which one is that of mu, and of
+    /// two of the motion.
+    fn curvature(&self, slopes: &[Vec<Expr>], radius: Bound) -> Result<[Bound; 2], NotProved> {
         let problem = &self.problem;
         let ball: Vec<FourierSeries> =
             problem.motions.iter().map(|motion| motion.clone().widened(radius)).collect();
@@ -690,6 +694,297 @@ impl<'a> BoundData<'a> {
         }
         let sigma = self.inverse.sigma.value();
         let mu = WORKING.magnitude(&problem.mu) + radius.over(sigma);
-        Ok(self.size * first.over(sigma).max(mu * second))
+        Ok([self.size * first.over(sigma), self.size * (mu * second)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_traits::Zero as _;
+
+    use super::*;
+    use crate::certificate::{ModeCertificate, certify_mode};
+    use crate::exact::ratio;
+    use crate::modes::{FreeSystem, ModeOptions, derive};
+    use crate::solution::AmplitudeConvention;
+
+    /// The certificate of a mode of some equations.
+    fn certificate(
+        equations: &str,
+        number: usize,
+        amplitude: AmplitudeConvention,
+        at: &str,
+    ) -> ModeCertificate {
+        let system = FreeSystem::parse(equations).expect("equations");
+        let options = ModeOptions { mode: Some(number), amplitude, ..ModeOptions::default() };
+        let modes = derive(&system, &options).expect("modes");
+        let mode = modes.modes[0].as_ref().expect("a mode");
+        let proved = certify_mode(&modes.system, mode, &at.parse().expect("values"));
+        proved.unwrap_or_else(|error| panic!("{equations}: {error}")).0
+    }
+
+    /// Odd polynomials and the first harmonic, a force with a tail and all harmonics and the start of
+    /// a coordinate, and three coordinates.
+    fn certificates() -> Vec<ModeCertificate> {
+        use AmplitudeConvention::{FirstHarmonic, Initial};
+        let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+        let smooth = "x'' + exp(x) - 1 + x/5 - y = 0; 3*y'' + sin(2*y) + y^2/4 - x/2 = 0";
+        let three = "x'' + 2*x - y = 0; y'' + 3*y - x - z + y^3 = 0; z'' + 2*z - y + z^3/3 = 0";
+        vec![
+            certificate(pair, 1, FirstHarmonic, "a = 4/5"),
+            certificate(pair, 2, Initial, "A = 4/5"),
+            certificate(smooth, 2, Initial, "A = 1/5"),
+            certificate(smooth, 2, FirstHarmonic, "a = 1/5"),
+            certificate(three, 3, FirstHarmonic, "a = 1/2"),
+        ]
+    }
+
+    /// The cosine of a harmonic.
+    fn cosine(harmonic: usize) -> FourierSeries {
+        let mut balls = vec![Ball::zero(); harmonic];
+        balls.push(WORKING.integer(1));
+        FourierSeries::exactly(balls, vec![])
+    }
+
+    /// DF at a motion, along the direction of mu, `None`, or of a harmonic: of the condition, and of
+    /// the equations.
+    fn derivative(
+        problem: &ConservativeProblem,
+        motions: &[FourierSeries],
+        mu: &Ball,
+        direction: Option<Wave>,
+    ) -> (Ball, Vec<FourierSeries>) {
+        let value = |force: &Expr| problem.values_along(force, motions).expect("a value");
+        let Some(wave) = direction else {
+            return (Ball::zero(), problem.forces.iter().map(|force| value(force)).collect());
+        };
+        let mu = FourierSeries::constant(mu.clone());
+        let own = cosine(wave.harmonic);
+        let row = |(index, force): (usize, &&Expr)| {
+            let slope = force.differentiate(problem.coordinates[wave.coordinate]).expect("a slope");
+            let bent = mu.product(&value(&slope).product(&own));
+            match index == wave.coordinate {
+                true => bent.sum(&own.derivative().derivative()),
+                false => bent,
+            }
+        };
+        let condition = match &problem.condition {
+            Condition::Start { coordinate, .. } if *coordinate == wave.coordinate => {
+                WORKING.integer(1)
+            }
+            Condition::FirstHarmonic { factors, .. } if wave.harmonic == 1 => {
+                factors[wave.coordinate].clone()
+            }
+            _ => Ball::zero(),
+        };
+        (condition, problem.forces.iter().enumerate().map(row).collect())
+    }
+
+    /// The norm of B of values of the condition and the equations, less a direction.
+    fn size_of_image(
+        system: &BoundData,
+        (condition, equations): &(Ball, Vec<FourierSeries>),
+        less: Option<Option<Wave>>,
+    ) -> f64 {
+        let (mut start, mut beyond) = (WORKING.nearest(condition), 0.0);
+        for wave in system.beyond(BoundData::longest(equations) + 1) {
+            let value = WORKING.nearest(&equations[wave.coordinate].cosine(wave.harmonic));
+            let y = -value / f64::from(wave.squared());
+            let own = if less == Some(Some(wave)) { 1.0 } else { 0.0 };
+            beyond += (y - own).abs();
+            if let Condition::Start { coordinate, .. } = &system.problem.condition
+                && *coordinate == wave.coordinate
+            {
+                start -= y;
+            }
+        }
+        let start = crate::exact::rational::from_f64(start).expect("a number");
+        let mut vector = vec![WORKING.fraction(&start)];
+        let entry = |wave: &Wave| equations[wave.coordinate].cosine(wave.harmonic);
+        vector.extend(system.block.iter().map(entry));
+        let mut image = system.inverse.image(&vector, WORKING);
+        let place = |direction: Option<Wave>| match direction {
+            None => Some(0),
+            Some(wave) => place_of(system, wave),
+        };
+        if let Some(place) = less.and_then(place) {
+            image[place] = WORKING.difference(&image[place], &WORKING.integer(1));
+        }
+        beyond + system.inverse.norm(&image, WORKING).value()
+    }
+
+    fn place_of(system: &BoundData, wave: Wave) -> Option<usize> {
+        system.block.iter().position(|other| *other == wave).map(|place| place + 1)
+    }
+
+    /// Every direction up to a harmonic, each with its weight in the norm.
+    fn directions(system: &BoundData, highest: usize) -> Vec<(Option<Wave>, f64)> {
+        let waves = system.waves(0, highest).map(|wave| (Some(wave), 1.0));
+        std::iter::once((None, system.inverse.sigma.value())).chain(waves).collect()
+    }
+
+    #[test]
+    fn no_column_is_larger_than_its_bound() {
+        for sound in certificates() {
+            let mut spoilt = sound.clone();
+            for row in &mut spoilt.inverse {
+                row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+            }
+            let mut light = sound.clone();
+            light.sigma = -40;
+            for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
+                let system = BoundData::new(certificate.problem()).expect("a system");
+                let slopes = Slopes::new(&system.problem).expect("slopes");
+                let contraction = system.contraction(&slopes).expect("a bound").value();
+                // With half of a column too much, the bound is at least a half.
+                assert_eq!(contraction < 0.45, is_proved, "{contraction}");
+                let problem = &system.problem;
+                for (direction, weight) in directions(&system, 3 * certificate.highest + 90) {
+                    let image = derivative(problem, &problem.motions, &problem.mu, direction);
+                    let size = size_of_image(&system, &image, Some(direction)) / weight;
+                    let bound = match direction {
+                        None => system.column_of_mu(),
+                        Some(wave) => system.column(&slopes, wave, place_of(&system, wave)),
+                    };
+                    let bound = bound.value();
+                    // The truncated part of f' is in the norm `size`, not in the column.
+                    assert!(size <= bound * (1.0 + 1e-9) + 1e-9, "{direction:?}: {size}, {bound}");
+                    assert!(size > 0.99 * bound - 1e-9, "{direction:?}: {size}, {bound}");
+                    assert!(size <= contraction + 1e-9, "{direction:?}: {size}, {contraction}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_series_leaves_out_counts() {
+        for certificate in certificates() {
+            let more = Bound::exactly(0.001);
+            let own = BoundData::new(certificate.problem()).expect("a system");
+            let (size, mu) = (own.size.value(), WORKING.nearest(&own.problem.mu));
+            let last = certificate.coordinates.len() - 1;
+            let mut wider = BoundData::new(certificate.problem()).expect("a system");
+            wider.forces[last].tail += more;
+            let by = wider.defect().value() - own.defect().value();
+            assert!((by / (0.001 * size * mu) - 1.0).abs() < 1e-9, "{by}");
+            let by = wider.column_of_mu().value() - own.column_of_mu().value();
+            let expected = 0.001 * size / own.inverse.sigma.value();
+            assert!((by / expected - 1.0).abs() < 1e-9, "{by}");
+            let slopes = || Slopes::new(&own.problem).expect("slopes");
+            let contraction =
+                |slopes: &Slopes| own.contraction(slopes).expect("a contraction").value();
+            // Two forces by one coordinate: the column has both.
+            let mut wide = slopes();
+            for force in [0, last] {
+                wide.values[force][last].series.tail += more;
+            }
+            let by = contraction(&wide) - contraction(&slopes());
+            assert!((by / (0.002 * size * mu) - 1.0).abs() < 1e-6, "{by}");
+        }
+    }
+
+    #[test]
+    fn what_is_off_is_in_the_defect() {
+        for certificate in certificates() {
+            let defect = |certificate: &ModeCertificate| {
+                let system = BoundData::new(certificate.problem()).expect("a system");
+                system.defect().value() * f64::from(1 << 20)
+            };
+            assert!(defect(&certificate) < 1e-9);
+            let last = certificate.coordinates.len() - 1;
+            let unit = Integer::from(1) << (certificate.bits - 20);
+            // A harmonic beyond the block, of a coordinate that the condition does not feel.
+            let mut shaken = certificate.clone();
+            shaken.coefficients[last].resize(42, Integer::zero());
+            shaken.coefficients[last][41] += unit.clone();
+            assert!((defect(&shaken) - 1.0).abs() < 0.2, "{}", defect(&shaken));
+            // One in the block, the frequency and the amplitude: B is nearly the inverse.
+            let mut shaken = certificate.clone();
+            shaken.coefficients[last][3] += unit.clone();
+            assert!((defect(&shaken) - 1.0).abs() < 0.45, "{}", defect(&shaken));
+            let mut shaken = certificate.clone();
+            shaken.mu += unit;
+            let weight = Bound::power_of_two(certificate.sigma).value();
+            assert!((defect(&shaken) / weight - 1.0).abs() < 0.45, "{}", defect(&shaken));
+            let mut shaken = certificate.clone();
+            shaken.amplitude = &shaken.amplitude + ratio(1, 1 << 20);
+            let system = BoundData::new(certificate.problem()).expect("a system");
+            let expected = system.start.value();
+            assert!((defect(&shaken) / expected - 1.0).abs() < 1e-6, "{}", defect(&shaken));
+        }
+    }
+
+    #[test]
+    fn the_second_derivative_is_no_larger_than_its_bound() {
+        for certificate in certificates() {
+            let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
+            let system = BoundData::new(certificate.problem()).expect("a system");
+            let problem = &system.problem;
+            let slopes = Slopes::new(problem).expect("slopes");
+            let [by_mu, by_motion] =
+                system.curvature(&slopes.expressions, h).expect("a bound").map(Bound::value);
+            let all = directions(&system, certificate.highest + 6);
+            let mut largest = [0.0_f64; 2];
+            for (from, weight) in directions(&system, 3) {
+                let (mut motions, mut mu) = (problem.motions.clone(), problem.mu.clone());
+                // So far that the norm of the step is h.
+                match from {
+                    None => mu = WORKING.sum(&mu, &within),
+                    Some(from) => {
+                        let step = FourierSeries::constant(within.clone());
+                        let moved = &mut motions[from.coordinate];
+                        *moved = moved.sum(&cosine(from.harmonic).product(&step));
+                    }
+                }
+                for (along, other) in &all {
+                    let moved = derivative(problem, &motions, &mu, *along);
+                    let own = derivative(problem, &problem.motions, &problem.mu, *along);
+                    let change =
+                        moved.1.iter().zip(&own.1).map(|(moved, own)| moved.difference(own));
+                    let change = (Ball::zero(), change.collect());
+                    let size = size_of_image(&system, &change, None) / (h.value() * weight * other);
+                    let both = [from.is_some(), along.is_some()];
+                    let bound = match both {
+                        [false, false] => 0.0,
+                        [true, true] => by_motion,
+                        _ => by_mu,
+                    };
+                    assert!(
+                        size <= bound * (1.0 + 1e-9) + 1e-9,
+                        "{from:?}, {along:?}: {size}, {bound}"
+                    );
+                    if both != [false, false] {
+                        let kind = usize::from(both == [true, true]);
+                        largest[kind] = largest[kind].max(size);
+                    }
+                }
+            }
+            assert!(largest[0] > 0.1 * by_mu && largest[1] > 0.1 * by_motion, "{largest:?}");
+        }
+    }
+
+    #[test]
+    fn a_ball_with_rest_or_half_the_period_is_refused() {
+        let certificate = certificates().remove(0);
+        let problem = certificate.problem();
+        let sigma = Bound::power_of_two(certificate.sigma);
+        let first = problem.motions.iter().map(|motion| WORKING.nearest(&motion.cosine(1)).abs());
+        let first = first.fold(0.0, f64::max);
+        let mu = WORKING.nearest(&problem.mu) * sigma.value();
+        let least = first.min(mu);
+        assert!(problem.is_distinct(Bound::exactly(0.99 * least), sigma));
+        assert!(!problem.is_distinct(Bound::exactly(1.01 * least), sigma));
+        assert!(!problem.is_distinct(Bound::exactly(1.01 * first), Bound::exactly(1e9)));
+        assert!(problem.is_distinct(Bound::exactly(0.99 * first), Bound::exactly(1e9)));
+    }
+
+    #[test]
+    fn odd_harmonics_are_refused_where_there_are_others() {
+        let mut certificate = certificates().remove(2);
+        certificate.odd = true;
+        assert_eq!(prove(certificate.problem()), Err(NotProved::NotOdd));
+        let mut certificate = certificates().remove(0);
+        certificate.coefficients[1][2] = Integer::from(1);
+        assert_eq!(prove(certificate.problem()), Err(NotProved::NotOdd));
     }
 }

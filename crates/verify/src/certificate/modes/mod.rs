@@ -105,7 +105,7 @@ pub fn check_mode(certificate: &ModeCertificate) -> Result<Certified, CheckError
 impl ModeCertificate {
     /// Returns the equations and the approximate motion of this certificate in the form that the
     /// theorem takes.
-    fn problem(&self) -> ConservativeProblem<'_> {
+    pub(super) fn problem(&self) -> ConservativeProblem<'_> {
         let amplitude = WORKING.fraction(&self.amplitude);
         let condition = match &self.measure {
             ModeAmplitude::Start(coordinate) => {
@@ -240,4 +240,307 @@ const fn last_harmonic_of_largest_block(coordinates: usize, odd: bool) -> usize 
     let each = (MOST_UNKNOWNS - 1) / coordinates;
     let last = if odd { 2 * each - 1 } else { each - 1 };
     if last < HIGHEST_HARMONIC { last } else { HIGHEST_HARMONIC - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{NotCertified, NotProved};
+    use super::*;
+    use crate::exact::{from_f64, ratio, to_f64};
+    use crate::expr::{CompiledFunction, parse_expression};
+    use crate::modes::{FreeSystem, ModeOptions, NonlinearMode, derive};
+    use crate::solution::AmplitudeConvention;
+    use crate::values::Values;
+
+    fn mode_of(
+        equations: &str,
+        number: usize,
+        amplitude: AmplitudeConvention,
+    ) -> (FreeSystem, NonlinearMode) {
+        let system = FreeSystem::parse(equations).expect("equations");
+        let options = ModeOptions { mode: Some(number), amplitude, ..ModeOptions::default() };
+        let modes = derive(&system, &options).expect("modes");
+        let mode = modes.modes.into_iter().next().expect("a mode");
+        (modes.system, mode.expect("no resonance"))
+    }
+
+    fn certified(
+        equations: &str,
+        number: usize,
+        amplitude: AmplitudeConvention,
+        at: &str,
+    ) -> (ModeCertificate, Certified) {
+        let (system, mode) = mode_of(equations, number, amplitude);
+        let at: Values = at.parse().expect("values");
+        let (certificate, proved) = certify_mode(&system, &mode, &at)
+            .unwrap_or_else(|error| panic!("{equations} at {at:?}: {error}"));
+        assert_eq!(check_mode(&certificate).as_ref(), Ok(&proved), "{equations}");
+        (certificate, proved)
+    }
+
+    /// omega of `x'' + k x + e x^3 = 0` from A, an arithmetic-geometric mean in balls.
+    fn duffing(k: &Rational, e: &Rational, start: &Rational) -> Ball {
+        let stiffening = e * start * start;
+        let root = |value: &Rational| WORKING.root(&WORKING.fraction(value), 2).expect("a root");
+        let half = &stiffening / Integer::from(2);
+        let (mut a, mut b) = (root(&(k + &stiffening)), root(&(k + half)));
+        for _ in 0..12 {
+            let product = WORKING.product(&a, &b);
+            (a, b) = (
+                WORKING.divided(&WORKING.sum(&a, &b), 2),
+                WORKING.root(&product, 2).expect("a root"),
+            );
+        }
+        a
+    }
+
+    /// Whether an enclosure holds a number.
+    fn holds(certified: &Certified, truth: &Ball) -> bool {
+        let frequency = &certified.frequency;
+        let apart = WORKING.difference(truth, &WORKING.fraction(&frequency.middle));
+        WORKING.distance_from_zero(&apart) <= frequency.radius.value()
+    }
+
+    #[test]
+    fn similar_modes_swing_as_one_coordinate() {
+        // In phase x = y, out of phase y = -x: each is one Duffing equation.
+        let pair = "x'' + x + x^3/3 + (x - y)/5 + (x - y)^3/7 = 0; \
+                    y'' + y + y^3/3 + (y - x)/5 + (y - x)^3/7 = 0";
+        let of_modes = [(ratio(1, 1), ratio(1, 3)), (ratio(7, 5), ratio(1, 3) + ratio(8, 7))];
+        for (number, (k, e)) in of_modes.into_iter().enumerate() {
+            for start in ["1/3", "5/4", "3"] {
+                let initial = AmplitudeConvention::Initial;
+                let at = format!("A = {start}");
+                let (system, mode) = mode_of(pair, number + 1, initial);
+                let (_, proved) = certify_mode_motion(&system, &mode, &at.parse().expect("values"))
+                    .unwrap_or_else(|error| panic!("{start}: {error}"));
+                let start: Rational = start.parse().expect("a fraction");
+                let truth = duffing(&k, &e, &start);
+                assert!(holds(&proved, &truth), "mode {}, {start}: {proved:?}", number + 1);
+                assert!(proved.frequency.radius.value() < 1e-31);
+            }
+        }
+    }
+
+    /// The velocities half a period after the start of a motion, by Runge-Kutta of fourth order.
+    fn at_the_turn(certificate: &ModeCertificate, frequency: f64) -> Vec<f64> {
+        const STEPS: usize = 8000;
+        let count = certificate.coordinates.len();
+        let compiled = certificate.forces.iter();
+        let forces: Vec<CompiledFunction> = compiled
+            .map(|force| CompiledFunction::new(force, &certificate.coordinates).expect("a force"))
+            .collect();
+        let field = |state: &[f64]| -> Vec<f64> {
+            let rates = forces.iter().map(|force| -force.call(&state[..count]));
+            state[count..].iter().copied().chain(rates).collect()
+        };
+        let starts = certificate.motions();
+        let mut state: Vec<f64> = starts.iter().map(|x| WORKING.nearest(&x.at_zero())).collect();
+        state.resize(2 * count, 0.0);
+        let h = std::f64::consts::PI / frequency / STEPS as f64;
+        for _ in 0..STEPS {
+            let moved = |rate: &[f64], part: f64| -> Vec<f64> {
+                state.iter().zip(rate).map(|(x, v)| x + part * h * v).collect()
+            };
+            let a = field(&state);
+            let b = field(&moved(&a, 0.5));
+            let c = field(&moved(&b, 0.5));
+            let d = field(&moved(&c, 1.0));
+            for index in 0..2 * count {
+                state[index] += h / 6.0 * (a[index] + 2.0 * (b[index] + c[index]) + d[index]);
+            }
+        }
+        state.split_off(count)
+    }
+
+    #[test]
+    fn a_motion_turns_after_half_the_proved_period() {
+        use AmplitudeConvention::{FirstHarmonic, Initial};
+        let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+        let coupled_by_mass =
+            "2*x'' + y'' + 2*x - y + x^3/2 = 0; x'' + 3*y'' + 2*y - x + k*y^2 = 0";
+        let pendulums = "x'' + sin(x) + (x - y)/3 = 0; y'' + 2*sin(y) + (y - x)/3 = 0";
+        let three = "x'' + 2*x - y = 0; y'' + 3*y - x - z + y^3 = 0; z'' + 2*z - y + z^3/3 = 0";
+        for (equations, number, amplitude, at) in [
+            (pair, 1, FirstHarmonic, "a = 3/2"),
+            (pair, 2, Initial, "A = 1"),
+            (coupled_by_mass, 1, FirstHarmonic, "a = 1/4, k = 1/10"),
+            (coupled_by_mass, 2, Initial, "A = 1/4, k = 1/10"),
+            (pendulums, 1, FirstHarmonic, "a = 1"),
+            (three, 2, FirstHarmonic, "a = 1/2"),
+            (three, 3, Initial, "A = 1/4"),
+            ("x'' + k*x - y + x^3/2 = 0; y'' + 2*y - x = 0", 2, FirstHarmonic, "a = 1, k = pi"),
+        ] {
+            let (certificate, proved) = certified(equations, number, amplitude, at);
+            let frequency = to_f64(&proved.frequency.middle);
+            assert!(proved.frequency.radius.value() < 1e-30, "{equations}");
+            for velocity in at_the_turn(&certificate, frequency) {
+                assert!(velocity.abs() < 1e-12, "{equations}, {number}: {velocity}");
+            }
+            // At another frequency it does not turn.
+            let fastest = at_the_turn(&certificate, frequency * (1.0 + 1e-9));
+            assert!(fastest.iter().any(|velocity| velocity.abs() > 1e-11), "{equations}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_formula_is_given_its_true_error() {
+        let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+        let (mut certificate, proved) =
+            certified(pair, 1, AmplitudeConvention::FirstHarmonic, "a = 4/5");
+        let bits = certificate.bits;
+        let truth = to_f64(&proved.frequency.middle);
+        let anything = [Rational::zero(), ratio(100, 1)];
+        let formula = certificate.formula.as_mut().expect("a formula");
+        // omega^2 = 1 + a^2/4 instead of 1 + 3 a^2/16, and 1/8 more of the third harmonic of y.
+        formula.law = "omega^2 = 1 + a^2/4".to_owned();
+        let own = 1.16_f64.sqrt();
+        formula.frequency =
+            WORKING.root(&WORKING.fraction(&ratio(29, 25)), 2).expect("a root").middle
+                >> (WORKING.bits - bits);
+        formula.others[0][3] += Integer::from(1) << (bits - 3);
+        formula.deviation = anything.clone();
+        formula.frequency_error = anything.clone();
+        formula.drift = anything;
+        let errors = check_mode(&certificate).expect("a proof").formula.expect("a formula");
+        assert!((errors.frequency.lower - (own - truth)).abs() < 1e-13, "{errors:?}");
+        assert!((errors.frequency.upper - (own - truth)).abs() < 1e-13, "{errors:?}");
+        assert!(errors.deviation.lower > 0.124 && errors.deviation.upper < 0.127, "{errors:?}");
+        // y~ is the steepest.
+        let unit = Bound::power_of_two(-(bits as i32)).value();
+        let own = &certificate.formula.as_ref().expect("a formula").others[0];
+        let own: Vec<f64> = own.iter().map(|units| to_f64(&units.clone().into()) * unit).collect();
+        let slope = |theta: f64| -> f64 {
+            let parts = own.iter().enumerate();
+            parts.map(|(k, c)| k as f64 * c * (k as f64 * theta).sin()).sum()
+        };
+        let places = (0..10_000).map(|place| slope(f64::from(place) * 1e-3).abs());
+        let steepest = errors.drift.upper / errors.frequency.upper;
+        assert!((steepest / places.fold(0.0, f64::max) - 1.0).abs() < 1e-3, "{steepest}");
+        // Claims of less are refused, and a law that does not give the numbers.
+        let formula = certificate.formula.as_mut().expect("a formula");
+        formula.deviation[1] = ratio(12, 100);
+        let refused = check_mode(&certificate);
+        assert!(matches!(refused, Err(CheckError::ClaimedLess { what: "the deviation", .. })));
+        let formula = certificate.formula.as_mut().expect("a formula");
+        formula.law = "omega^2 = 1 + a^2/5".to_owned();
+        assert!(matches!(check_mode(&certificate), Err(CheckError::Malformed(_))));
+    }
+
+    #[test]
+    fn the_errors_of_a_series_shrink_with_its_order() {
+        let error = |order: u32, amplitude: &str| {
+            let system = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0");
+            let options =
+                ModeOptions { mode: Some(2), order: Some(order), ..ModeOptions::default() };
+            let modes = derive(&system.expect("equations"), &options).expect("modes");
+            let mode = modes.modes[0].as_ref().expect("a mode");
+            let at = format!("a = {amplitude}").parse().expect("values");
+            let (_, proved) = certify_mode(&modes.system, mode, &at).expect("a proof");
+            let errors = proved.formula.expect("a formula");
+            [errors.frequency.upper, errors.deviation.upper]
+        };
+        for order in [2, 4, 6] {
+            let [large, small] = [error(order, "1/10"), error(order, "1/20")];
+            let slopes = [0, 1].map(|kind: usize| (large[kind] / small[kind]).log2());
+            // omega^2 to the power n leaves out n + 2, the motion to n + 1 leaves out n + 3.
+            assert!((slopes[0] - f64::from(order + 2)).abs() < 0.05, "{order}: {slopes:?}");
+            assert!((slopes[1] - f64::from(order + 3)).abs() < 0.05, "{order}: {slopes:?}");
+        }
+    }
+
+    #[test]
+    fn families_and_other_inertia_are_refused_with_the_reason() {
+        // Of two springs without coupling the third harmonic of y may be anything: the derivative
+        // has no inverse.
+        let (system, mode) =
+            mode_of("x'' + x = 0; y'' + 9*y = 0", 1, AmplitudeConvention::FirstHarmonic);
+        let at: Values = "a = 1".parse().expect("values");
+        let error = certify_mode(&system, &mode, &at).expect_err("a family");
+        assert!(
+            matches!(error, NotCertified::NotProved { reason: NotProved::NoContraction(_), .. }),
+            "{error:?}"
+        );
+        // So near the resonance that the inverse of the block is of no use in its digits.
+        let (system, mode) = mode_of(
+            "x'' + x = 0; y'' + (9 + 1/10^20)*y = 0",
+            1,
+            AmplitudeConvention::FirstHarmonic,
+        );
+        assert!(matches!(
+            certify_mode(&system, &mode, &at),
+            Err(NotCertified::NotProved { reason: NotProved::NoContraction(_), .. })
+        ));
+        let (system, mode) = mode_of(
+            "(1 + x^2)*x'' + x*x'^2 + 2*x - y = 0; y'' + 4*y - x = 0",
+            1,
+            AmplitudeConvention::FirstHarmonic,
+        );
+        assert!(matches!(
+            certify_mode(&system, &mode, &at),
+            Err(NotCertified::NotOfPosition { coordinate, .. }) if coordinate == "x"
+        ));
+        let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+        let (system, mode) = mode_of(pair, 1, AmplitudeConvention::FirstHarmonic);
+        assert!(matches!(
+            certify_mode(&system, &mode, &"a = pi/4".parse().expect("values")),
+            Err(NotCertified::Amplitude { .. })
+        ));
+    }
+
+    #[test]
+    fn numbers_that_do_not_fit_are_refused() {
+        let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+        let (sound, _) = certified(pair, 1, AmplitudeConvention::FirstHarmonic, "a = 4/5");
+        let refused = |change: &dyn Fn(&mut ModeCertificate)| {
+            let mut changed = sound.clone();
+            change(&mut changed);
+            check_mode(&changed).expect_err("a refusal")
+        };
+        let expression = |text: &str| parse_expression(text).expect("an expression");
+        let malformed: [&dyn Fn(&mut ModeCertificate); 12] = [
+            &|certificate| certificate.coordinates.clear(),
+            &|certificate| certificate.coordinates[1] = certificate.coordinates[0],
+            &|certificate| certificate.forces.truncate(1),
+            &|certificate| certificate.coefficients.truncate(1),
+            &|certificate| certificate.measure = ModeAmplitude::Start(2),
+            &|certificate| certificate.measure = ModeAmplitude::FirstHarmonic(vec![]),
+            &|certificate| {
+                let factors = vec![expression("z"), expression("1")];
+                certificate.measure = ModeAmplitude::FirstHarmonic(factors);
+            },
+            &|certificate| certificate.forces[0] = expression("x + z"),
+            &|certificate| certificate.highest = 399,
+            &|certificate| certificate.inverse.truncate(3),
+            &|certificate| certificate.formula.as_mut().expect("a formula").others.clear(),
+            &|certificate| certificate.amplitude = -&certificate.amplitude,
+        ];
+        for (place, change) in malformed.into_iter().enumerate() {
+            let error = refused(change);
+            assert!(matches!(error, CheckError::Malformed(_)), "{place}: {error:?}");
+        }
+        let unproved: [&dyn Fn(&mut ModeCertificate); 6] = [
+            &|certificate| certificate.mu += Integer::from(1_000_000_000_000_i64),
+            &|certificate| certificate.coefficients[1][3] += Integer::from(1) << 20,
+            &|certificate| certificate.coefficients[1] = vec![],
+            &|certificate| {
+                certificate.inverse.iter_mut().flatten().for_each(|e| *e = Integer::zero())
+            },
+            &|certificate| certificate.forces[1] = expression("-x + 2*y + y/1000000"),
+            &|certificate| certificate.claim = ratio(1, 1) / Integer::from(10).pow(40),
+        ];
+        for (place, change) in unproved.into_iter().enumerate() {
+            let error = refused(change);
+            assert!(!matches!(error, CheckError::Malformed(_)), "{place}: {error:?}");
+        }
+        // Another amplitude is another question, whose answer is proved from the same numbers with a
+        // larger radius.
+        let mut other = sound;
+        other.formula = None;
+        other.amplitude = &other.amplitude + ratio(1, 1_000_000_000_000);
+        other.claim = ratio(1, 1);
+        let proved = check_mode(&other).expect("a proof");
+        assert!(proved.proof.radius.value() > 1e-13, "{proved:?}");
+        assert!(from_f64(proved.frequency.radius.value()).is_some());
+    }
 }

@@ -10,7 +10,7 @@ use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
     Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, ModeAmplitude,
-    ModeCertificate, RangeEnd, SizeBounds, Validity, coordinate,
+    ModeCertificate, Multipliers, RangeEnd, SizeBounds, Validity, coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
@@ -348,7 +348,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             let of =
                 if harmonic == 1 { String::new() } else { format!("of harmonic {harmonic}: ") };
             facts.push(("amplitude", of + &enclosed(amplitude)));
-            facts.push(("stability", "not proved".to_owned()));
+            facts.push(("stability", stability_of_driven(report.certified.multipliers.as_ref())));
         }
         _ => facts.push((letters.frequency.name(), enclosed(&report.certified.frequency))),
     }
@@ -613,6 +613,29 @@ fn stability(exponent: &Enclosure) -> String {
         _ => "repels, proved",
     };
     format!("{words}: characteristic exponent {}", enclosed(exponent))
+}
+
+/// The proved stability of a driven motion, in words.
+fn stability_of_driven(multipliers: Option<&Multipliers>) -> String {
+    let Some(multipliers) = multipliers else {
+        return "not proved: the variational equation has no series".to_owned();
+    };
+    let both = format!(
+        "multipliers with the sum {} and the product {}",
+        enclosed(&multipliers.trace),
+        enclosed(&multipliers.determinant)
+    );
+    let larger = match &multipliers.largest {
+        Some(largest) => {
+            format!("the larger Floquet multiplier has the modulus {}", enclosed(largest))
+        }
+        None => both.clone(),
+    };
+    match multipliers.attracts {
+        Some(true) => format!("attracts, proved: {larger}"),
+        Some(false) => format!("unstable, proved: {larger}"),
+        None => format!("not proved: |sum| < 1 + product < 2 is not decided, {both}"),
+    }
 }
 
 /// The number with its known digits, and a bound of its distance from the printed one.

@@ -11,10 +11,10 @@ use lindstedt::export::json::{
     self, AuditDocument, CatalogDocument, CertificateDocument, CertificateRangeDocument,
     ComparisonDocument, DampedCertificateDocument, DocumentKind, FrictionDocument,
     ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument, OneHarmonicDocument,
-    OptimizationDocument, PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
-    SweepDocument,
+    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
+    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -116,6 +116,9 @@ fn reads_back(document: &Value) {
         DocumentKind::Catalog => again::<CatalogDocument>(document),
         DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
+        }
+        DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
+            again::<ModeCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
         DocumentKind::CertificateRange => again::<CertificateRangeDocument>(document),

@@ -246,6 +246,7 @@ pub(super) fn certified(
         proof,
         frequency: Enclosure::from_ball(&frequency),
         exponent: None,
+        multipliers: None,
         amplitude: None,
         copies: 1,
         law_is_held: formula

@@ -37,7 +37,8 @@ use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
-    DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
+    DampedCertificate, Drive, Multipliers, certify_cycle, certify_cycle_motion, certify_driven,
+    check_damped,
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
@@ -107,6 +108,9 @@ pub struct Certified {
     /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
     /// energy is conserved.
     pub exponent: Option<Enclosure>,
+    /// Floquet multipliers of a driven motion; `None` for others, and where its variational equation
+    /// has no series.
+    pub multipliers: Option<Multipliers>,
     /// Amplitude of the harmonic of a driven motion that the formula is about.
     pub amplitude: Option<Enclosure>,
     /// The number of images of the proved motion under the symmetries of the equation, itself

@@ -98,17 +98,20 @@ fn fact(said: &str, name: &str) -> String {
 #[test]
 fn the_stability_of_driven_motions_is_proved() {
     let driven = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
-    // The upper branch of the resonance curve attracts, with complex multipliers: both have the
-    // modulus exp(-pi/5/Omega).
-    for omega in [1.5_f64, 1.25] {
-        let said = run(&["certify", driven, "--at", "F=1/2", "--at", &format!("Omega={omega}")]);
-        let said = String::from_utf8_lossy(&said.stdout).into_owned();
-        let stability = fact(&said, "stability");
+    let stability = |arguments: &[&str]| {
+        let said = run(&[arguments, &["--format", "latex"]].concat());
+        fact(&String::from_utf8_lossy(&said.stdout), "% stability:")
+    };
+    // On the upper branch of the resonance curve both multipliers have the modulus
+    // exp(-pi/5/Omega).
+    for omega in [1.0_f64, 1.25] {
+        let at = format!("Omega={omega}");
+        let said = stability(&["certify", driven, "--at", "F=1/2", "--at", &at]);
         let words = "attracts, proved: the larger Floquet multiplier has the modulus ";
-        let number = stability.strip_prefix(words).unwrap_or_else(|| panic!("{stability}"));
+        let number = said.strip_prefix(words).unwrap_or_else(|| panic!("{said}"));
         let (number, radius) = number.split_once(" +- ").expect("a radius");
-        let (number, radius): (f64, f64) =
-            (number.parse().expect("a number"), radius.parse().expect("a number"));
+        let [number, radius]: [f64; 2] =
+            [number, radius].map(|text| text.parse().expect("a number"));
         let expected = (-std::f64::consts::PI / 5.0 / omega).exp();
         assert!((number - expected).abs() < 1e-14, "{number}, {expected}");
         assert!(radius < 1e-12, "{radius}");

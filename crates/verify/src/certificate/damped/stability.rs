@@ -125,6 +125,12 @@ impl Coefficient {
         Self { cosines, sines, remainder }
     }
 
+    /// Whether the odd harmonics are zero.
+    fn has_even_alone(&self) -> bool {
+        let odd = |balls: &[Ball]| balls.iter().skip(1).step_by(2).all(Ball::is_zero);
+        odd(&self.cosines) && odd(&self.sines)
+    }
+
     /// The coefficients of its Taylor polynomial in `tau` about the place of a step, from the cosine
     /// and the sine of the multiples of the angle there, and `(k h)^n/n!`.
     fn polynomial(&self, place: usize, table: &[[Ball; 2]], powers: &[Vec<Ball>]) -> Vec<Ball> {
@@ -211,7 +217,10 @@ fn trace(damping: &FourierSeries, stiffness: &FourierSeries) -> Option<Ball> {
     let lighter = BALLS.fraction(&crate::exact::rational::from_f64(1.0 / scale.value())?);
     let remainder = width * damping.remainder.max(stiffness.remainder * Bound::power_of_two(-unit));
     let mut all: Matrix = [[one.clone(), Ball::zero()], [Ball::zero(), one.clone()]];
-    for place in 0..2 * half {
+    // With even harmonics alone both halves of the period have the same enclosure, also of the part
+    // that is in no harmonic.
+    let repeats = [&damping, &stiffness].iter().all(|series| series.has_even_alone());
+    for place in 0..if repeats { half } else { 2 * half } {
         let [g, h] = [&damping, &stiffness].map(|series| series.polynomial(place, &table, &powers));
         // h A, by powers of tau.
         let rates: Vec<Matrix> = g
@@ -226,6 +235,9 @@ fn trace(damping: &FourierSeries, stiffness: &FourierSeries) -> Option<Ball> {
             })
             .collect();
         all = product(&step_matrix(&rates, remainder), &all);
+    }
+    if repeats {
+        all = product(&all, &all);
     }
     let trace = BALLS.sum(&all[0][0], &all[1][1]);
     Some(WORKING.converted(&trace, BALLS))
@@ -273,6 +285,8 @@ fn step_matrix(rates: &[Matrix], remainder: Bound) -> Matrix {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::candidate::units;
+    use super::super::candidate::proved_by_some_block;
     use super::*;
     use crate::certificate::{certify_driven, check_damped};
     use crate::exact::rational::to_f64;
@@ -416,20 +430,69 @@ mod tests {
         }
     }
 
+    /// The motion of `x'' + x'/5 + x + x^3/4 = cos(8 t/5)` near the harmonic of an amplitude whose
+    /// square is that of a balance with one harmonic.
+    fn of_square(square: f64) -> Multipliers {
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = "F = 1, Omega = 8/5".parse().expect("values");
+        let found = certify_driven(&oscillator, &solution, &at);
+        let (mut certificate, _) = found.expect("a certificate");
+        certificate.formula = None;
+        let stiffness = 1.0 - 2.56 + 3.0 * square / 16.0;
+        let waves = [square * stiffness, square * 0.32];
+        let in_units =
+            |value: f64| vec![units(0.0, certificate.bits), units(value, certificate.bits)];
+        [certificate.cosines, certificate.sines] = waves.map(in_units);
+        // Each attempt takes a step of Newton's iteration with an inverse of its own.
+        let mut attempts = (0..20).map(|_| proved_by_some_block(&mut certificate, 20).ok());
+        let certified = attempts.find_map(|proved| proved).expect("a proof");
+        let motion = certificate.motion();
+        let [a, b] = [motion.cosine(1), motion.sine(1)].map(|ball| WORKING.nearest(&ball));
+        assert!(((a * a + b * b) / square - 1.0).abs() < 0.25, "{a}, {b}, {square}");
+        certified.multipliers.expect("multipliers")
+    }
+
     #[test]
-    fn unstable_motions_are_proved_to_be() {
-        // The state of rest of a driven equation whose force is zero there: x = 0 is a motion, and
-        // inside the first tongue it is unstable. Its multipliers are real.
-        let ball = |value: f64| {
-            WORKING.fraction(&crate::exact::rational::from_f64(value).expect("a number"))
-        };
-        let (g, h, wave) = (0.02, 1.0, 0.4);
-        let found = trace(&series(g, 0.0), &series(h, wave)).expect("a trace");
-        let determinant = (-std::f64::consts::TAU * g).exp();
-        assert!(WORKING.distance_from_zero(&found) > 1.0 + determinant);
-        let larger = largest(&ball(determinant), &found).expect("real ones");
-        let size = WORKING.nearest(&found).abs();
-        let expected = (size + (size * size - 4.0 * determinant).sqrt()) / 2.0;
-        assert!((WORKING.nearest(&larger) - expected).abs() < 1e-12 && expected > 1.0);
+    fn of_three_steady_motions_the_middle_one_is_unstable() {
+        // u ((3 u/16 - 1.56)^2 + 0.1024) = 1 for the square u of the amplitude: three roots.
+        let balance = |u: f64| u * ((3.0 * u / 16.0 - 1.56).powi(2) + 0.1024) - 1.0;
+        let mut roots = vec![];
+        for place in 1..1200 {
+            let [low, high] = [f64::from(place) * 0.01, f64::from(place + 1) * 0.01];
+            if (balance(low) < 0.0) != (balance(high) < 0.0) {
+                roots.push((low + high) / 2.0);
+            }
+        }
+        assert_eq!(roots.len(), 3, "{roots:?}");
+        let [low, middle, high] = [0, 1, 2].map(|place| of_square(roots[place]));
+        let determinant = (-std::f64::consts::TAU / 8.0).exp();
+        for (found, attracts) in [(&low, true), (&middle, false), (&high, true)] {
+            assert_eq!(found.attracts, Some(attracts), "{found:?}");
+            assert!((to_f64(&found.determinant.middle) - determinant).abs() < 1e-13);
+            assert!(found.trace.radius.value() < 1e-10, "{found:?}");
+        }
+        let trace = to_f64(&middle.trace.middle);
+        assert!(trace > 1.0 + determinant, "{trace}");
+        let largest = to_f64(&middle.largest.expect("real ones").middle);
+        assert!((largest * (trace - largest) - determinant).abs() < 1e-12 && largest > 1.0);
+    }
+
+    #[test]
+    fn what_is_not_decided_is_not_said() {
+        // A motion that is known too roughly, and one without damping, whose multipliers are on the
+        // circle.
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = "F = 1/2, Omega = 3/2".parse().expect("values");
+        let (certificate, _) = certify_driven(&oscillator, &solution, &at).expect("a certificate");
+        let rough = multipliers(&certificate.problem(), Bound::exactly(0.2));
+        assert!(rough.is_none_or(|rough| rough.attracts.is_none()));
+        let mut undamped = certificate;
+        undamped.damping = crate::expr::Expr::zero();
+        let found = multipliers(&undamped.problem(), Bound::ZERO).expect("multipliers");
+        assert_eq!(found.attracts, None, "{found:?}");
     }
 }

@@ -320,6 +320,16 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["phase_error"][1] = json!("1e-12"),
         |document| document["more"] = json!("1"),
     ];
+    let of_modes: [Tamper; 8] = [
+        |document| document["amplitude"]["value"] = json!("799999999/1000000000"),
+        |document| document["amplitude"]["first_harmonic_of"][0] = json!("3/4"),
+        |document| document["amplitude"]["start_of"] = json!("x"),
+        |document| document["f"][1] = json!("2*y - x + x/1000000"),
+        |document| document["c"][1][3] = json!("1"),
+        |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
+        |document| document["formula"]["drift"][0] = json!("1"),
+        |document| document["formula"]["c"][1][1] = json!("1"),
+    ];
     let of_motions: [Tamper; 5] = [
         |document| document["initial_displacement"] = json!("1499999/1000000"),
         |document| document["f"] = json!(["0", "2"]),
@@ -398,6 +408,26 @@ fn a_second_program_in_python_proves_the_same() {
                 &[&["van-der-pol", "--at", "mu=1/5"], &[asymmetric]],
                 &of_cycles,
             );
+        });
+        scope.spawn(|| {
+            let questions: [&[&str]; 3] = [
+                &["x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", "--at", "a=4/5"],
+                &[
+                    "x'' + sin(x) + (x - y)/3 = 0; y'' + 2*sin(y) + (y - x)/3 = 0",
+                    "--at",
+                    "a=1/2",
+                    "--mode",
+                    "2",
+                ],
+                &[
+                    "x'' + 2*x - y + x^2/5 = 0; y'' + 3*y - x + x*y/4 = 0",
+                    "--at",
+                    "A=1/4",
+                    "--amplitude",
+                    "initial",
+                ],
+            ];
+            proved("python-modes", &questions, &of_modes);
         });
         scope.spawn(|| {
             let files = ["forced-duffing", "parametric", "driven-well"]

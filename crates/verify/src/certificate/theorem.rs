@@ -24,8 +24,9 @@
 //! ```
 //!
 //! bounds the second derivative of F, `(h, h') -> h_mu Df h'_c + h'_mu Df h_c + mu D^2 f h_c h'_c`.
-//! Of the start of one coordinate the solution is the only motion there is; otherwise, and where only
-//! odd harmonics are sought, it is the only one of its kind in the ball. No input is trusted: any
+//! Of one coordinate, whose start determines it, the solution is the only motion there is. Of several
+//! it is the only one in the ball that begins at rest with this amplitude; where only odd harmonics are
+//! sought, the only one of these. No input is trusted: any
 //! numbers may be claimed, and every inequality is checked in balls.
 //!
 //! Source: S. Day, J.-P. Lessard, K. Mischaikow: Validated continuation for equilibria of PDEs,
@@ -984,6 +985,7 @@ mod tests {
         certificate.odd = true;
         assert_eq!(prove(certificate.problem()), Err(NotProved::NotOdd));
         let mut certificate = certificates().remove(0);
+        certificate.odd = true;
         certificate.coefficients[1][2] = Integer::from(1);
         assert_eq!(prove(certificate.problem()), Err(NotProved::NotOdd));
     }

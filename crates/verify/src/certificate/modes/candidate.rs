@@ -62,6 +62,8 @@ fn certified_mode(
 ) -> Result<(ModeCertificate, Certified), NotCertified> {
     /// The judge's verdict is not used.
     const ANY_TOLERANCE: f64 = 1.0;
+    /// Number of blocks of all harmonics that are tried before those of odd ones.
+    const ATTEMPTS: usize = 3;
     let _letters = system.letters.in_force();
     let judged = judge_mode(system, mode, at, ANY_TOLERANCE)?;
     let symbol = mode.amplitude.symbol();
@@ -112,18 +114,26 @@ fn certified_mode(
     certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     let unknowns = |certificate: &ModeCertificate| certificate.problem().block().len();
     refine(&mut certificate).map_err(|reason| not_proved(reason, unknowns(&certificate)))?;
+    // A proof among all harmonics leaves nothing open; one among the odd ones alone holds where an
+    // even multiple of the frequency is that of another motion.
+    let classes: &[(bool, usize)] = match odd {
+        true => &[(false, ATTEMPTS), (true, usize::MAX)],
+        false => &[(false, usize::MAX)],
+    };
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
-    for highest in blocks(seen).map(|highest| odd_below(highest, most)) {
-        certificate.highest = highest;
-        match proved(&mut certificate) {
-            Ok(certified) => return Ok((certificate, certified)),
-            Err(error @ NotProved::NoValue(_)) => {
-                return Err(not_proved(error, unknowns(&certificate)));
+    for &(odd, attempts) in classes {
+        certificate.odd = odd;
+        let most = last_harmonic_of_largest_block(certificate.coordinates.len(), odd);
+        let sizes = blocks(seen).take_while(|highest| *highest <= most);
+        for highest in sizes.take(attempts) {
+            certificate.highest = highest;
+            match proved(&mut certificate) {
+                Ok(certified) => return Ok((certificate, certified)),
+                Err(error @ NotProved::NoValue(_)) => {
+                    return Err(not_proved(error, unknowns(&certificate)));
+                }
+                Err(error) => reason = error,
             }
-            Err(error) => reason = error,
-        }
-        if highest + 1 >= most {
-            break;
         }
     }
     Err(not_proved(reason, unknowns(&certificate)))

@@ -461,6 +461,17 @@ mod tests {
             matches!(error, NotCertified::NotProved { reason: NotProved::NoContraction(_), .. }),
             "{error:?}"
         );
+        // The second harmonic may be anything too, but the motion is the only one of odd harmonics.
+        let (system, mode) =
+            mode_of("x'' + x = 0; y'' + 4*y = 0", 1, AmplitudeConvention::FirstHarmonic);
+        let (certificate, _) = certify_mode(&system, &mode, &at).expect("a proof");
+        assert!(certificate.odd);
+        let mut of_all = certificate;
+        of_all.odd = false;
+        of_all.highest += 1;
+        let rows = 2 * of_all.highest + 3;
+        of_all.inverse = vec![vec![Integer::zero(); rows]; rows];
+        assert!(matches!(check_mode(&of_all), Err(CheckError::NotProved(_))));
         // So near the resonance that the inverse of the block is of no use in its digits.
         let (system, mode) = mode_of(
             "x'' + x = 0; y'' + (9 + 1/10^20)*y = 0",

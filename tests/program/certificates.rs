@@ -171,7 +171,7 @@ fn normal_modes_are_proved_and_proved_again() {
         let tampers: [Tamper; 12] = [
             |document| document["claim_r"] = json!("1e-60"),
             |document| document["c"][1][1] = json!("1"),
-            |document| document["inverse"][1][0] = json!("0"),
+            without_first_column,
             |document| document["odd"] = json!("yes"),
             |document| document["ode"] = json!("x''+f(x)=0"),
             |document| document["more"] = json!("1"),
@@ -309,12 +309,20 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
 /// A change of a document by which it is no proof any more.
 type Tamper = fn(&mut Value);
 
+/// Sets the first column of the inverse to zero but for its first entry: that of a constant may be
+/// zero already.
+fn without_first_column(document: &mut Value) {
+    for row in [1, 2] {
+        document["inverse"][row][0] = json!("0");
+    }
+}
+
 #[test]
 fn a_second_program_in_python_proves_the_same() {
     let of_all: [Tamper; 7] = [
         |document| document["claim_r"] = json!("1e-60"),
         |document| document["c"][1] = json!("1"),
-        |document| document["inverse"][1][0] = json!("0"),
+        without_first_column,
         |document| document["odd"] = json!("yes"),
         |document| document["formula"]["phase_error"][0] = json!("1"),
         |document| document["formula"]["phase_error"][1] = json!("1e-12"),

@@ -129,7 +129,7 @@ pub struct CertificateFormulaOfMode {
 /// let mode = modes.modes[0].as_ref().expect("no resonance");
 /// let (certificate, _) = certify_mode(&modes.system, mode, &"a = 4/5".parse()?)?;
 /// let document = lindstedt::export::json::mode_certificate(&certificate);
-/// assert_eq!(document.f, ["x^3/2 + 2*x - y", "-x + 2*y"]);
+/// assert_eq!(document.f, ["2*x - y + x^3/2", "-x + 2*y"]);
 /// assert_eq!(document.read()?, certificate);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -1,7 +1,7 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
-A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, whose
-equations have polynomials, sin and cos. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
+A second program for the same theorems (docs/certificates.md), of motions that conserve energy, of one coordinate or several, limit cycles and
+driven motions, whose equations have polynomials, sin and cos. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
 series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below
 and from above, after every claim of the file has been held against it, or says which inequality or claim does not hold."""
 import heapq
@@ -15,10 +15,10 @@ from math import isqrt
 P = 256                                     # binary digits behind the point
 ONE = 1 << P
 ZERO = (0, 0)
-SIZES = {"file": 16 << 20, "number": 200, "force": 2000, "list": 800, "block": 402}
+SIZES = {"file": 16 << 20, "number": 200, "force": 2000, "list": 800, "block": 402, "coordinates": 40}
 LONGEST = 1600                              # no series has more harmonics: what is beyond is a part of its tail
 SECONDS = 120                               # a file may come from anybody
-MOTION, CYCLE, DRIVEN = "x''+f(x)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
+MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
 begun = time.monotonic()
 
 
@@ -356,25 +356,32 @@ def read_force(value, letters, what):
 
 def jet(tree, waves):
     """f, f' and f'' by x, of series of the letters."""
-    kind = tree[0]
-    zero = ([], [], 0)
+    f, (df,), ((ddf,),) = jets(tree, waves, ("x",))
+    return f, df, ddf
+
+
+def jets(tree, waves, names):
+    """f, its first derivatives by these letters, and its second ones, of series of the letters."""
+    kind, zero, places = tree[0], ([], [], 0), range(len(names))
+    flat = lambda f, first=None: (f, first or [zero] * len(names), [[zero] * len(names) for _ in places])
     if kind == "number":
-        return constant(tree[1]), zero, zero
+        return flat(constant(tree[1]))
     if kind == "letter":
-        return waves[tree[1]], constant(1) if tree[1] == "x" else zero, zero
+        return flat(waves[tree[1]], [constant(1) if name == tree[1] else zero for name in names])
     if kind == "+":
-        parts = [jet(part, waves) for part in tree[1]]
-        result = (zero, zero, zero)
-        for part in parts:
-            result = tuple(plus(a, b) for a, b in zip(result, part))
+        result = flat(zero)
+        for part in tree[1]:
+            f, df, ddf = jets(part, waves, names)
+            result = (plus(result[0], f), [plus(a, b) for a, b in zip(result[1], df)],
+                      [[plus(a, b) for a, b in zip(*rows)] for rows in zip(result[2], ddf)])
         return result
     if kind == "*":
-        product = jet(tree[1][0], waves)
+        product = jets(tree[1][0], waves, names)
         for factor in tree[1][1:]:
-            product = jet_times(product, jet(factor, waves))
+            product = jet_times(product, jets(factor, waves, names))
         return product
     if kind == "^":
-        base, result, n = jet(tree[1], waves), (constant(1), zero, zero), tree[2]
+        base, result, n = jets(tree[1], waves, names), flat(constant(1)), tree[2]
         while n:                            # squares
             if n & 1:
                 result = jet_times(result, base)
@@ -382,16 +389,22 @@ def jet(tree, waves):
             if n:
                 base = jet_times(base, base)
         return result
-    u, du, ddu = jet(tree[1], waves)
+    u, du, ddu = jets(tree[1], waves, names)
     s, c = sine_and_cosine(u)
     f, df, ddf = (s, c, minus(s)) if kind == "sin" else (c, minus(s), minus(c))
-    return f, times(df, du), plus(times(ddf, times(du, du)), times(df, ddu))
+    second = lambda i, j: plus(times(ddf, times(du[i], du[j])), times(df, ddu[i][j]))
+    return f, [times(df, part) for part in du], [[second(i, j) for j in places] for i in places]
 
 
 def jet_times(a, b):
-    mixed = times(a[1], b[1])
-    second = plus(plus(times(a[2], b[0]), times(a[0], b[2])), plus(mixed, mixed))
-    return times(a[0], b[0]), plus(times(a[1], b[0]), times(a[0], b[1])), second
+    places = range(len(a[1]))
+
+    def second(i, j):
+        mixed = plus(times(a[1][i], b[1][j]), times(a[1][j], b[1][i]))
+        return plus(plus(times(a[2][i][j], b[0]), times(a[0], b[2][i][j])), mixed)
+
+    first = [plus(times(a[1][i], b[0]), times(a[0], b[1][i])) for i in places]
+    return times(a[0], b[0]), first, [[second(i, j) for j in places] for i in places]
 
 
 def parity(tree, turned):
@@ -521,56 +534,77 @@ def radius(Y0, Z1, curvature, distinct):
     raise NotProved(reason)
 
 
-def prove_motion(z, f, A, B, block, odd, mu, c):
-    """x'' + f(x) = 0, x(0) = A: sum_k c_k = A and -k^2 c_k + mu f_k = 0."""
-    N, step = block[-1], 2 if odd else 1
-    F, G, _ = jet(f, {"x": c})
-    demand(not F[1] and not G[1], "sines in a force along cosines")
-    F0, G0 = F[0], G[0]
-    beyond = lambda end: range(N + step, end + 1, step)
+def prove_motion(forces, names, condition, A, B, harmonics, odd, mu, X):
+    """q'' + f(q) = 0, q'(0) = 0: -k^2 c_ik + mu f_ik = 0, and sum_k c_sk = A where the condition is a place s among the coordinates, or
+    sum_i p_i c_i1 = A where it is a list of factors. One coordinate is one of several."""
+    N, step, count = harmonics[-1], 2 if odd else 1, range(len(names))
+    jets_of = lambda X: [jets(f, dict(zip(names, X)), names) for f in forces]
+    parts = jets_of(X)
+    F, G = [part[0] for part in parts], [part[1] for part in parts]
+    demand(not any(u[1] for u in F) and not any(u[1] for row in G for u in row), "sines in a force along cosines")
+    block = [(i, k) for i in count for k in harmonics]
+    places = {wave: n + 1 for n, wave in enumerate(block)}
+    beyond = lambda end, begin=0: [(i, k) for i in count for k in range(N + step, end + 1, step) if k >= begin]
+    felt = lambda i: condition == i         # whether the condition feels the harmonics beyond the block
+    sum_felt = lambda balls: total(ball for (i, _), ball in balls.items() if felt(i))
+    bounded = lambda t, e: up(t * e, ONE)
     a = B.column(0)
-    alpha = max([B.column(k) for k in range(1, B.size)] + [up(ONE + a, (N + step) ** 2)])
+    alpha = max([B.column(k) for k in range(1, B.size)] + [up(ONE + (a if any(map(felt, count)) else 0), (N + step) ** 2)])
+    length = lambda series: max(len(u[0]) for u in series)
+    bent = lambda i, k: mul(mu, at(F[i][0], k))
+    tails = sum(u[2] for u in F)
     # Y0
-    y = {k: add(at(c[0], k), over(mul(mu, at(F0, k)), k * k), -1) for k in beyond(max(len(c[0]), len(F0)))}
-    start = add(add(total(c[0]), number(A), -1), total(y.values()), -1)
-    rows = [add(mul(mu, at(F0, k)), scale(at(c[0], k), -k * k)) for k in block]
-    Y0 = B.norm(B.image([start] + rows)) + sum(map(size, y.values())) + up(alpha * up(size(mu) * F[2], ONE), ONE)
+    y = {(i, k): add(at(X[i][0], k), over(bent(i, k), k * k), -1) for i, k in beyond(max(length(X), length(F)))}
+    own = total(X[condition][0]) if isinstance(condition, int) else total(mul(p, at(u[0], 1)) for p, u in zip(condition, X))
+    start = add(add(own, number(A), -1), sum_felt(y), -1)
+    rows = [add(bent(i, k), scale(at(X[i][0], k), -k * k)) for i, k in block]
+    Y0 = B.norm(B.image([start] + rows)) + sum(map(size, y.values())) + bounded(alpha, bounded(size(mu), tails))
     # Z1
-    halves = [over(g, 2) if k else g for k, g in enumerate(G0)]
-    M = lambda k, j: at(G0, k) if j == 0 else at(halves, j) if k == 0 else add(at(halves, abs(k - j)), at(halves, k + j))
-    L = len(G0)
-    parts = [over(at(F0, k), k * k) for k in beyond(len(F0))]
-    start = total(parts)
-    column = B.norm(unit(B.image([start] + [at(F0, k) for k in block]), 0)) + sum(map(size, parts))
-    worst = B.per_sigma(column + up(alpha * F[2], ONE))
-    G_norm, j = sum(map(size, G0)), block[0]
+    halves = [[[over(g, 2) if k else g for k, g in enumerate(u[0])] for u in row] for row in G]
+
+    def M(row, column):
+        (i, k), (j, m) = row, column
+        h = halves[i][j]
+        return at(G[i][j][0], k) if m == 0 else at(h, m) if k == 0 else add(at(h, abs(k - m)), at(h, k + m))
+
+    L = max(length(row) for row in G)
+    images = {(i, k): over(at(F[i][0], k), k * k) for i, k in beyond(length(F))}
+    column = B.norm(unit(B.image([sum_felt(images)] + [at(F[i][0], k) for i, k in block]), 0))
+    worst = B.per_sigma(column + sum(map(size, images.values())) + bounded(alpha, tails))
+    at_far = max(sum(bounded(bounded(size(mu), ONE + (a if felt(i) else 0)), sum(map(size, G[i][j][0]))) for i in count) for j in count)
+    m = harmonics[0]
     while True:
-        images = [over(mul(mu, M(k, j)), k * k) for k in beyond(j + L) if k >= j - L]
-        start = total(images)
-        tail = sum(map(size, images))
-        if j > N + L:
-            worst = max(worst, tail + up(a * size(start), ONE))
-        else:
-            if j <= N:
+        for wave in ((j, m) for j in count):
+            images = {row: over(mul(mu, M(row, wave)), row[1] ** 2) for row in beyond(m + L, m - L)}
+            start, tail = sum_felt(images), sum(map(size, images.values()))
+            if m > N + L:
+                worst = max(worst, tail + bounded(a, size(start)))
+                continue
+            if m <= N and felt(wave[0]):
                 start = add(start, (ONE, 0))
-            v = B.image([start] + [add(mul(mu, M(k, j)), (-k * k * ONE if k == j else 0, 0)) for k in block])
-            worst = max(worst, B.norm(unit(v, block.index(j) + 1) if j <= N else v) + tail)
-        demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
-        far = j + step - L                  # all further columns together
-        if far > 0 and j > N + L:
-            rest = up(up(size(mu) * (ONE + a), ONE) * G_norm, ONE * far * far)
+            elif m == 1 and not isinstance(condition, int):
+                start = add(start, condition[wave[0]])
+            v = B.image([start] + [add(mul(mu, M(row, wave)), (-m * m * ONE if row == wave else 0, 0)) for row in block])
+            worst = max(worst, B.norm(unit(v, places[wave]) if wave in places else v) + tail)
+            demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
+        far = m + step - L                  # all further columns together
+        if far > 0 and m > N + L:
+            rest = up(at_far, far * far)
             if 5 * rest < ONE or rest < worst:
                 worst = max(worst, rest)
                 break
-        demand(j < 8000, "a force too steep for its columns to be bounded")
-        j += step
-    Z1 = worst + up(alpha * up(size(mu) * G[2], ONE), ONE)
+        demand(m < 8000, "a force too steep for its columns to be bounded")
+        m += step
+    Z1 = worst + bounded(alpha, bounded(size(mu), max(sum(G[i][j][2] for i in count) for j in count)))
 
     def curvature(R):
-        _, G_R, H_R = jet(f, {"x": widened(c, R)})
-        return up(alpha * max(B.per_sigma(norm(G_R)), up((size(mu) + B.per_sigma(R)) * norm(H_R), ONE)), ONE)
+        ball = jets_of([widened(u, R) for u in X])
+        first = max(sum(norm(df[j]) for _, df, _ in ball) for j in count)
+        second = max(sum(norm(ddf[j][m]) for _, _, ddf in ball) for j in count for m in count)
+        return bounded(alpha, max(B.per_sigma(first), bounded(size(mu) + B.per_sigma(R), second)))
 
-    return radius(Y0, Z1, curvature, lambda r: B.per_sigma(r) < mu[0] and r < least(at(c[0], 1)))
+    largest_first = max(least(at(u[0], 1)) for u in X)
+    return radius(Y0, Z1, curvature, lambda r: B.per_sigma(r) < mu[0] and r < largest_first)
 
 
 def prove_damped(g, h, waves, B, block, N, step, p, free):
@@ -757,12 +791,15 @@ def check_formula(z, kind, bits, copies, r, omega, amplitude, start):
     """Every claim about the formula; r is the radius, omega or amplitude a ball."""
     formula = z["formula"]
     needed = {"law", "c", "phase_error"} | ({"amplitude_error"} if kind == DRIVEN else {"omega", "frequency_error", "drift"})
-    keys(formula, needed | ({"s"} if kind != MOTION else set()), {"values", "letters"}, "formula")
+    keys(formula, needed | ({"s"} if kind not in (MOTION, MODE) else set()), {"values", "letters"}, "formula")
     for key in ("law", "values"):                # words, of which nothing is checked here
         demand(isinstance(formula.get(key, ""), str) and len(formula.get(key, "")) <= SIZES["file"], f"a text in {key}")
+    claimed = pair(formula["phase_error"], "phase_error")
+    if kind == MODE:
+        check_formula_of_mode(z, bits, copies, r, omega, start, claimed)
+        return
     c, s = integers(formula["c"], "formula.c"), integers(formula.get("s", []), "formula.s")
     own = [dyadic(a, bits) for a in c], [ZERO] + [dyadic(b, bits) for b in s[1:]], 0
-    claimed = pair(formula["phase_error"], "phase_error")
     if kind == DRIVEN:
         a = formula_amplitude(own, z["drive"]["harmonic"])
         hold(apart(a, amplitude), pair(formula["amplitude_error"], "amplitude_error"), "the error of the amplitude")
@@ -782,10 +819,42 @@ def check_formula(z, kind, bits, copies, r, omega, amplitude, start):
     off = apart(own_omega, omega)
     hold(off, pair(formula["frequency_error"], "frequency_error"), "the error of the frequency")
     hold(deviation(copies, own, r, claimed), claimed, "the deviation")
+    hold_drift(formula, off, [own])
+
+
+def hold_drift(formula, off, motions):      # of several coordinates the largest
     drift = pair(formula["drift"], "drift")
-    per_off = [up(units(t) * ONE, max(1, off[1])) for t in drift]
-    steep = largest(derivative(own), (units(drift[0]) * ONE // max(1, off[0]) + 1, per_off[1] - 1))
+    low, high = units(drift[0]) * ONE // max(1, off[0]) + 1, up(units(drift[1]) * ONE, max(1, off[1])) - 1
+    steep = largest_of([derivative(own) for own in motions], lambda u, low: largest(u, (low, high)), low)
     hold((steep[0] * off[0] >> P, up(steep[1] * off[1], ONE)), drift, "the drift")
+
+
+def largest_of(parts, ends, low):
+    """The largest of some sizes, each from both sides by a function of it and of the lower claim, which one of them alone has to reach."""
+    if len(parts) == 1:
+        return ends(parts[0], low)
+    found = [ends(part, 0) for part in parts]
+    for place, part in enumerate(parts):
+        if max(below for below, _ in found) < low <= found[place][1]:
+            found[place] = ends(part, low)
+    return tuple(max(end) for end in zip(*found))
+
+
+def check_formula_of_mode(z, bits, X, r, omega, start, claimed):
+    formula, (condition, A) = z["formula"], start
+    lists = formula["c"]
+    demand(isinstance(lists, list) and len(lists) == len(X), "a formula of another number of coordinates")
+    motions = [([dyadic(a, bits) for a in integers(c, "formula.c")], [], 0) for c in lists]
+    own_omega = dyadic(integer(formula["omega"], "omega"), bits)
+    demand(own_omega[0] > 0, "a formula whose frequency is not positive")
+    demand(any(at(u[0], 1) != ZERO for u in motions), "a formula without a first harmonic")
+    measured = total(motions[condition][0]) if isinstance(condition, int) else total(mul(p, at(u[0], 1)) for p, u in zip(condition, motions))
+    demand(least(measured) > 0 and (measured[0] < 0) == (A < 0), "a formula that begins elsewhere than the motion")
+    off = apart(own_omega, omega)
+    hold(off, pair(formula["frequency_error"], "frequency_error"), "the error of the frequency")
+    ends = lambda both, low: deviation([both[0]], both[1], r, (Fraction(low, ONE), claimed[1]))
+    hold(largest_of(list(zip(X, motions)), ends, units(claimed[0])), claimed, "the deviation")
+    hold_drift(formula, off, motions)
 
 
 def formula_amplitude(u, harmonic):
@@ -803,8 +872,8 @@ def check(text):
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1" and z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")
-    demand(kind in (MOTION, CYCLE, DRIVEN), "another equation")
-    own = {MOTION: {"f", "initial_displacement", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
+    demand(kind in (MOTION, MODE, CYCLE, DRIVEN), "another equation")
+    own = {MOTION: {"f", "initial_displacement", "mu"}, MODE: {"f", "coordinates", "amplitude", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
     keys(z, {"schema", "ode", "odd", "bits", "c", "highest_harmonic", "inverse_bits", "inverse", "sigma_log2", "nu", "claim_r"} | own, {"formula"}, "the file")
     N, odd = whole(z["highest_harmonic"], 1, 400, "highest_harmonic"), z["odd"]
     bits, inverse_bits = whole(z["bits"], 0, 224, "bits"), whole(z["inverse_bits"], 0, 224, "inverse_bits")
@@ -814,17 +883,26 @@ def check(text):
     demand(isinstance(rows, list) and len(rows) <= SIZES["block"], "the size of the inverse")
     rows = [integers(row, "inverse") for row in rows]
     step, sigma = 2 if odd else 1, Fraction(2) ** exponent
-    c = [dyadic(a, bits) for a in integers(z["c"], "c")]
-    demand(not odd or all(a == ZERO for a in c[::2]), "even harmonics")
+    lists = z["c"] if kind == MODE else [z["c"]]
+    demand(isinstance(lists, list) and len(lists) <= SIZES["coordinates"], "the number of coordinates")
+    lists = [[dyadic(a, bits) for a in integers(c, "c")] for c in lists]
+    demand(not odd or all(a == ZERO for c in lists for a in c[::2]), "even harmonics")
+    c = lists[0] if lists else []
     harmonics = list(range(1 if odd else 0, N + 1, step))
     omega = amplitude = start = None
-    if kind == MOTION:
-        demand(len(rows) == len(harmonics) + 1 and all(len(row) == len(rows) for row in rows), "the size of the inverse")
-        f, start, X = read_force(z["f"], {"x"}, "f"), fraction(z["initial_displacement"], "initial_displacement"), (c, [], 0)
-        demand(not odd or parity(f, {"x"}) in (-1, None), "the force is not odd")
-        mu, B = dyadic(integer(z["mu"], "mu"), bits), Block(rows, inverse_bits, sigma)
-        r = prove_motion(z, f, start, B, harmonics, odd, mu, X)
-        omega, copies = root(quotient((ONE, 0), (mu[0], B.per_sigma(r)))), [X]
+    if kind in (MOTION, MODE):
+        if kind == MOTION:
+            names, forces, condition = ["x"], [read_force(z["f"], {"x"}, "f")], 0
+            start = A = fraction(z["initial_displacement"], "initial_displacement")
+        else:
+            names, forces, condition, A = read_mode(z, len(lists))
+            start = condition, A
+        unknowns = len(harmonics) * len(names) + 1
+        demand(unknowns <= 402 and len(rows) == unknowns and all(len(row) == len(rows) for row in rows), "the size of the inverse")
+        demand(not odd or all(parity(f, set(names)) in (-1, None) for f in forces), "the force is not odd")
+        mu, B, X = dyadic(integer(z["mu"], "mu"), bits), Block(rows, inverse_bits, sigma), [(c, [], 0) for c in lists]
+        r = prove_motion(forces, names, condition, A, B, harmonics, odd, mu, X)
+        omega, copies = root(quotient((ONE, 0), (mu[0], B.per_sigma(r)))), X
     else:
         free = kind == CYCLE
         s = [dyadic(b, bits) for b in integers(z["s"], "s")]
@@ -867,6 +945,28 @@ def check(text):
     if z.get("formula") is not None:
         check_formula(z, kind, bits, copies, r, omega, amplitude, start)
     return kind, r, omega or amplitude
+
+
+def read_mode(z, count):
+    """The names of the coordinates, their forces, the condition and the amplitude."""
+    names, texts, amplitude = z["coordinates"], z["f"], z["amplitude"]
+    demand(isinstance(names, list) and isinstance(texts, list) and 0 < len(names) == len(texts) == count, "the number of coordinates")
+    for name in names:
+        known = isinstance(name, str) and len(name) <= SIZES["number"] and re.fullmatch("[A-Za-z]+", name, re.ASCII)
+        demand(known and name not in ("sin", "cos", "t", "pi"), "a coordinate that this program does not know")
+    demand(len(set(names)) == len(names), "two coordinates of one name")
+    demand(all(isinstance(text, str) for text in texts), "a force in f")
+    keys(amplitude, {"value", "start_of", "first_harmonic_of"}, set(), "amplitude")
+    place, factors = amplitude["start_of"], amplitude["first_harmonic_of"]
+    demand((place is None) != (factors is None), "one condition in amplitude")
+    if factors is None:
+        demand(place in names, "the name of a coordinate in start_of")
+        condition = names.index(place)
+    else:
+        demand(isinstance(factors, list) and len(factors) == count and all(isinstance(text, str) for text in factors), "a factor of each coordinate")
+        series = [jets(parse(text, set()), {}, ())[0] for text in factors]
+        condition = [(at(u[0], 0)[0], at(u[0], 0)[1] + u[2]) for u in series]
+    return names, [parse(text, set(names)) for text in texts], condition, fraction(amplitude["value"], "amplitude")
 
 
 def symmetric_copies(X, g, h, free, periods, odd):

@@ -322,8 +322,8 @@ RESULTS = {
     "stability": "Stability",
     "audit": "Audit",
     "paper": "Audit",
-    "certify": "Certificate | DampedCertificateDocument | CertificateRange",
-    "check": "Certificate | DampedCertificateDocument",
+    "certify": "Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange",
+    "check": "Certificate | DampedCertificateDocument | ModeCertificateDocument",
 }
 #: The commands of an equation, which are methods of `Oscillator` too.
 OF_EQUATIONS = ("derive", "compare", "simulate", "response", "stability", "certify")
@@ -446,6 +446,7 @@ def commands_text(commands: list[dict[str, Any]]) -> str:
     classes = sorted(named - {name for names in own.values() for name in names})
     kinds = {class_name(path.stem): path.stem for path in SCHEMAS.glob("*.json")}
     kinds["DampedCertificateDocument"] = "certificate"
+    kinds["ModeCertificateDocument"] = "certificate"
     imports = [
         f"    from .documents.{kinds[name].replace('-', '_')} import {name}" for name in classes
     ]

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .designs import Optimization
     from .documents.absorber import Absorber
     from .documents.certificate import DampedCertificateDocument
+    from .documents.certificate import ModeCertificateDocument
     from .documents.certificate_range import CertificateRange
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
@@ -507,12 +508,13 @@ def certify(
     jobs: int | None = None,
     range: tuple[Value, Value] | str | None = None,
     no_formula: bool = False,
+    mode: int | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Certificate | DampedCertificateDocument | CertificateRange:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange:
     """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
     Args:
@@ -545,6 +547,7 @@ def certify(
             proved to be within the tolerance, for every amplitude.
         no_formula: Prove the motion alone, and judge no formula: where that has no real value,
             say.
+        mode: Which normal mode of coupled equations, 1 for the slowest and without this.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -555,7 +558,7 @@ def certify(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("certify", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("certify", problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def check(
@@ -564,7 +567,7 @@ def check(
     tolerance: float | None = None,
     timeout: float | None = None,
     progress: Progress | None = None,
-) -> Certificate | DampedCertificateDocument:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument:
     """Check a certificate that `certify` wrote, in exact arithmetic.
 
     Args:
@@ -828,12 +831,13 @@ class EquationCommands:
         jobs: int | None = None,
         range: tuple[Value, Value] | str | None = None,
         no_formula: bool = False,
+        mode: int | None = None,
         tolerance: float | None = None,
         timeout: float | None = None,
         at: Values | None = None,
         progress: Progress | None = None,
         **values: Value,
-    ) -> Certificate | DampedCertificateDocument | CertificateRange:
+    ) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange:
         """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
         Args:
@@ -865,6 +869,7 @@ class EquationCommands:
                 formula is proved to be within the tolerance, for every amplitude.
             no_formula: Prove the motion alone, and judge no formula: where that has no real
                 value, say.
+            mode: Which normal mode of coupled equations, 1 for the slowest and without this.
             tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
             at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -875,4 +880,4 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("certify", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("certify", self.problem, {"method": method, "order": order, "amplitude": amplitude, "small": small, "about": about, "taylor": taylor, "hbar": hbar, "cycle": cycle, "resonance": resonance, "omega_only": omega_only, "jobs": jobs, "range": range, "no_formula": no_formula, "mode": mode, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]

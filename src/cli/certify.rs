@@ -3,12 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use crate::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
+use crate::coupled::CoupledEquations;
 use crate::exact::Rational;
-use crate::export::json::{self, CertificateDocument, DampedCertificateDocument};
+use crate::export::json::{
+    self, CertificateDocument, DampedCertificateDocument, ModeCertificateDocument,
+};
 use crate::export::printable_in_line;
 use crate::expr::parse_expression;
 use crate::method::with_resonance_at;
-use crate::report::{self, AnyCertificate, CertificateReport};
+use crate::problem::{Problem, ReadingCommand};
+use crate::report::{self, AnyCertificate, CertificateReport, CertifiedQuestion};
 use crate::verify::Verdict;
 use crate::{Method, Options, Oscillator, Solution, Values, solve};
 use clap::Args;
@@ -17,6 +21,8 @@ use num_traits::Signed as _;
 use super::answer::{Answer, no_such};
 use super::derive::{self, EquationArguments, Solved};
 use super::files::width;
+use super::modes::{self, Derived};
+use super::problem::{coupled_equations, problem};
 use super::progress::with_progress;
 use super::session;
 use super::{Common, Failure, Format, Outcome, Work, json_text, read_at_most, tolerance};
@@ -35,6 +41,9 @@ pub struct CertifyArguments {
     /// Prove the motion alone, and judge no formula: where that has no real value, say
     #[arg(long, conflicts_with = "range")]
     no_formula: bool,
+    /// Which normal mode of coupled equations, 1 for the slowest and without this
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
+    mode: Option<u32>,
     #[command(flatten)]
     pub common: Common,
 }
@@ -82,8 +91,19 @@ impl Work for CertifyArguments {
 
 fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
+    let problem = problem(&arguments.question.problem)?;
+    if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
+        return certified_mode(arguments, equations, &problem);
+    }
+    if arguments.mode.is_some() {
+        return Err(Failure::Usage(
+            "--mode: one coordinate has one mode; the modes of coupled equations are numbered"
+                .to_owned(),
+        ));
+    }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
-    let Solved { oscillator, values, solution, letters } = derive::solved(&arguments.question)?;
+    let Solved { oscillator, values, solution, letters } =
+        derive::solved_problem(&arguments.question, &problem)?;
     let _letters = letters.in_force();
     let values = values.unwrap_or_default();
     // A proof of a driven motion is of the steady one alone, whose formula is that of slow
@@ -132,7 +152,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     });
     let validity = validity.transpose().map_err(|error| refused(&error))?;
     let report = CertificateReport {
-        question: Some((&solution, &values)),
+        question: Some(CertifiedQuestion::Formula(&solution, &values)),
         certificate: (&certificate).into(),
         certified: &certified,
         validity: validity.as_ref(),
@@ -141,6 +161,49 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     let outcome = printed(&report, &arguments.common)?;
     let partial = validity.is_some_and(|validity| validity.beyond == RangeEnd::Stopped);
     Ok(Outcome { partial, ..outcome })
+}
+
+/// The proof of the motion of a normal mode.
+fn certified_mode(
+    arguments: &CertifyArguments,
+    equations: CoupledEquations,
+    problem: &Problem,
+) -> Result<Outcome, Failure> {
+    arguments.question.check_of_modes()?;
+    if arguments.range.is_some() {
+        return Err(Failure::Usage(
+            "--range: it is of one coordinate; of a mode each amplitude is proved by itself"
+                .to_owned(),
+        ));
+    }
+    let Derived { modes, values, letters } =
+        modes::derived(&arguments.question, arguments.mode.or(Some(1)), false, equations, problem)?;
+    let _letters = letters.in_force();
+    let Some(Ok(mode)) = modes.modes.first() else {
+        return Err(Failure::because("there is no such mode".to_owned()));
+    };
+    if mode.approximant.is_some() {
+        return Err(Failure::because(
+            "the law of a mode that is proved is its series: leave --method out".to_owned(),
+        ));
+    }
+    let values = values.unwrap_or_default();
+    let proved = match arguments.no_formula {
+        true => certificate::certify_mode_motion(&modes.system, mode, &values),
+        false => certificate::certify_mode(&modes.system, mode, &values),
+    };
+    let (certificate, certified) = proved.map_err(|error| match &error {
+        NotCertified::Truth(error) => derive::unjudged(error),
+        error => Failure::refused(error, error.help()),
+    })?;
+    let report = CertificateReport {
+        question: Some(CertifiedQuestion::Mode(&modes, &values)),
+        certificate: (&certificate).into(),
+        certified: &certified,
+        validity: None,
+        tolerance: tolerance(&arguments.common),
+    };
+    printed(&report, &arguments.common)
 }
 
 /// The formula of the steady motion under a drive; `None` if there is none.
@@ -165,7 +228,7 @@ fn without_amplitude(
     let (certificate, certified) =
         proved().map_err(|error| Failure::refused(&error, error.help()))?;
     let report = CertificateReport {
-        question: Some((solution, values)),
+        question: Some(CertifiedQuestion::Formula(solution, values)),
         certificate: (&certificate).into(),
         certified: &certified,
         validity: None,
@@ -200,13 +263,18 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let tolerance = tolerance(&arguments.common);
-    let (motion, damped);
+    let (motion, damped, mode);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
     let (certificate, certified): (AnyCertificate, _) = if of_damped.contains(&ode.as_str()) {
         let document: DampedCertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
         damped = document.read().map_err(|error| unread(&error))?;
         ((&damped).into(), certificate::check_damped(&damped))
+    } else if ode == json::EQUATIONS_OF_MODES {
+        let document: ModeCertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        mode = document.read().map_err(|error| unread(&error))?;
+        ((&mode).into(), certificate::check_mode(&mode))
     } else {
         let document: CertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
@@ -253,6 +321,9 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
                 }
                 (None, AnyCertificate::Damped(certificate)) => {
                     json_text(&json::damped_certificate(certificate))
+                }
+                (None, AnyCertificate::Mode(certificate)) => {
+                    json_text(&json::mode_certificate(certificate))
                 }
             },
             format => no_such(format),

@@ -98,7 +98,7 @@ pub struct DeriveArguments {
 
 impl EquationArguments {
     /// Refuses options that the modes of coupled equations do not have.
-    fn check_of_modes(&self) -> Result<(), Failure> {
+    pub(super) fn check_of_modes(&self) -> Result<(), Failure> {
         let of_slow_equations =
             [("--small", self.small.is_some()), ("--resonance", self.resonance.is_some())];
         let given = of_slow_equations.into_iter().find(|(_, given)| *given);
@@ -196,14 +196,12 @@ pub(super) fn amplitude(
     }
 }
 
-/// The answer to a question, with the oscillator and the values that are left once those that the
+/// The answer to a problem, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
-pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
-    solved_problem(arguments, &problem(&arguments.problem)?)
-}
-
-/// As [`solved`], of a problem that has been read.
-fn solved_problem(arguments: &EquationArguments, problem: &Problem) -> Result<Solved, Failure> {
+pub(super) fn solved_problem(
+    arguments: &EquationArguments,
+    problem: &Problem,
+) -> Result<Solved, Failure> {
     let formula = formula(problem, ReadingCommand::Derive)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();

@@ -3,7 +3,7 @@
 use crate::coupled::CoupledEquations;
 use crate::export::code::{self, CodeStyle};
 use crate::export::{json, modes as drawing};
-use crate::expr::{Expr, excerpt_of};
+use crate::expr::{Expr, ResultSymbols, excerpt_of};
 use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
 use crate::problem::{Order, Problem, ReadingCommand};
 use crate::report::{self, ModesReport};
@@ -12,7 +12,9 @@ use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
 
 use super::answer::{Answer, no_such};
-use super::derive::{DeriveArguments, amplitude, as_meant, exact_values, prefix, unjudged};
+use super::derive::{
+    DeriveArguments, EquationArguments, amplitude, as_meant, exact_values, prefix, unjudged,
+};
 use super::progress::with_progress;
 use super::{Failure, Format, Outcome, files, json_text, session, tolerance};
 
@@ -26,71 +28,13 @@ pub(super) fn run(
     problem: &Problem,
 ) -> Result<Outcome, Failure> {
     let question = &arguments.question;
-    for (key, given) in [("small", problem.small.is_some()), ("about", problem.about.is_some())] {
-        if given {
-            return Err(Failure::because(format!(
-                "`{key}` is of one coordinate: modes are expanded in their amplitude about the place of rest"
-            )));
-        }
-    }
     let method = question.method.as_deref().or(problem.method.as_deref());
     if method == Some(Method::HarmonicBalance.name()) {
         return super::one_harmonic::run(arguments, equations, problem);
     }
-    let is_pade = method == Some(Method::Pade.name());
-    if let Some(name) = method.filter(|name| !is_pade && *name != Method::LindstedtPoincare.name())
-    {
-        return Err(Failure::Usage(format!(
-            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {} or {}",
-            Method::LindstedtPoincare.name(),
-            Method::Pade.name(),
-            Method::HarmonicBalance.name(),
-            Method::MultipleScales.name(),
-            Method::Averaging.name()
-        )));
-    }
-    let order = question.order.or(problem.order);
-    let (order, pade) = match (order, is_pade) {
-        (None, false) => (None, None),
-        (Some(Order::Power(order)), false) => (Some(order), None),
-        (None, true) => (None, Some((2, 1))),
-        (Some(Order::Degrees(Degrees::Quotient(above, below))), true) => {
-            (None, Some((above, below)))
-        }
-        (Some(_), true) => {
-            return Err(Failure::Usage(
-                "--order: an approximant has two degrees, those of numerator and denominator: --order 2,1".to_owned(),
-            ));
-        }
-        (Some(_), false) => {
-            return Err(Failure::Usage(
-                "--order: the order of modes is the highest power of the amplitude in omega^2; degrees are those of --method pade"
-                    .to_owned(),
-            ));
-        }
-    };
-    let text = problem.equation.as_deref();
-    let refused = |error: ModeError| refused(&error, text);
-    let system = free_system(equations, problem)?;
-    let amplitude = amplitude(question, problem.amplitude.as_deref())?;
-    let options = ModeOptions {
-        mode: arguments.mode.map(|mode| mode as usize),
-        order,
-        pade,
-        amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
-        steps: arguments.steps,
-        supervision: session::supervision(),
-    };
-    let letters = system.letters;
+    let Derived { modes, values, letters } =
+        derived(question, arguments.mode, arguments.steps, equations, problem)?;
     let _letters = letters.in_force();
-    let values = exact_values(&question.at, problem.values_of_motion())?;
-    let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
-    let (modes, values) = with_progress("of the calculation", || {
-        with_numbers(&system, &options, values).map_err(refused)
-    })?;
-    if let Some(error) = no_formula(&modes) {
-        return Err(refused(error));
-    }
     let tolerance = tolerance(&arguments.common);
     let asked =
         values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
@@ -129,6 +73,91 @@ pub(super) fn run(
         partial: stopped.is_some(),
         ..answer.outcome(&arguments.common)?
     })
+}
+
+/// The modes of coupled equations, with the values that are left once those that the equations need
+/// stand in them.
+pub(super) struct Derived {
+    pub modes: NormalModes,
+    pub values: Option<Values>,
+    /// The letters of the answer.
+    pub letters: ResultSymbols,
+}
+
+/// Derives the modes of coupled equations, one of them where a number is given.
+///
+/// # Errors
+/// Options that are those of one coordinate; equations that have no modes in formulas.
+pub(super) fn derived(
+    question: &EquationArguments,
+    mode: Option<u32>,
+    steps: bool,
+    equations: CoupledEquations,
+    problem: &Problem,
+) -> Result<Derived, Failure> {
+    for (key, given) in [("small", problem.small.is_some()), ("about", problem.about.is_some())] {
+        if given {
+            return Err(Failure::because(format!(
+                "`{key}` is of one coordinate: modes are expanded in their amplitude about the place of rest"
+            )));
+        }
+    }
+    let method = question.method.as_deref().or(problem.method.as_deref());
+    let is_pade = method == Some(Method::Pade.name());
+    if let Some(name) = method.filter(|name| !is_pade && *name != Method::LindstedtPoincare.name())
+    {
+        return Err(Failure::Usage(format!(
+            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {} or {}",
+            Method::LindstedtPoincare.name(),
+            Method::Pade.name(),
+            Method::HarmonicBalance.name(),
+            Method::MultipleScales.name(),
+            Method::Averaging.name()
+        )));
+    }
+    let order = question.order.or(problem.order);
+    let (order, pade) = match (order, is_pade) {
+        (None, false) => (None, None),
+        (Some(Order::Power(order)), false) => (Some(order), None),
+        (None, true) => (None, Some((2, 1))),
+        (Some(Order::Degrees(Degrees::Quotient(above, below))), true) => {
+            (None, Some((above, below)))
+        }
+        (Some(_), true) => {
+            return Err(Failure::Usage(
+                "--order: an approximant has two degrees, those of numerator and denominator: --order 2,1".to_owned(),
+            ));
+        }
+        (Some(_), false) => {
+            return Err(Failure::Usage(
+                "--order: the order of modes is the highest power of the amplitude in omega^2; degrees are those of --method pade"
+                    .to_owned(),
+            ));
+        }
+    };
+    let text = problem.equation.as_deref();
+    let refused = |error: ModeError| refused(&error, text);
+    let system = free_system(equations, problem)?;
+    let amplitude = amplitude(question, problem.amplitude.as_deref())?;
+    let options = ModeOptions {
+        mode: mode.map(|mode| mode as usize),
+        order,
+        pade,
+        amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
+        steps,
+        supervision: session::supervision(),
+    };
+    let letters = system.letters;
+    let _letters = letters.in_force();
+    let values = exact_values(&question.at, problem.values_of_motion())?;
+    let values = values.map(|values| as_meant(&values, |name| system.resolve(name))).transpose()?;
+    let (modes, values) = with_progress("of the calculation", || {
+        with_numbers(&system, &options, values).map_err(refused)
+    })?;
+    if let Some(error) = no_formula(&modes) {
+        return Err(refused(error));
+    }
+    Ok(Derived { modes, values, letters })
 }
 
 /// The system of a problem, about its place of rest.

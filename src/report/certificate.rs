@@ -5,11 +5,12 @@ use std::borrow::Cow;
 use num_traits::{Signed as _, Zero as _};
 
 use super::driven::slow_equations;
+use super::modes::{modes_in_formulas, notes_on_rounding};
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, RangeEnd,
-    SizeBounds, Validity, coordinate,
+    Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, ModeAmplitude,
+    ModeCertificate, Multipliers, RangeEnd, SizeBounds, Validity, coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
@@ -20,19 +21,22 @@ use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
+use crate::modes::NormalModes;
 use crate::solution::{Note, Solution, constant_in_words};
 use crate::spelling::printable_in_line;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
 
-/// A certificate of either kind.
+/// A certificate of any kind.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyCertificate<'a> {
     /// The certificate of a motion whose energy is conserved.
     Motion(&'a Certificate),
     /// The certificate of a limit cycle, or of a driven motion.
     Damped(&'a DampedCertificate),
+    /// The certificate of a free motion of several coordinates.
+    Mode(&'a ModeCertificate),
 }
 
 impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
@@ -47,11 +51,44 @@ impl<'a> From<&'a DampedCertificate> for AnyCertificate<'a> {
     }
 }
 
+impl<'a> From<&'a ModeCertificate> for AnyCertificate<'a> {
+    fn from(certificate: &'a ModeCertificate) -> Self {
+        Self::Mode(certificate)
+    }
+}
+
+/// The answer that a certificate judges, and the values at which it does.
+#[derive(Clone, Copy, Debug)]
+pub enum CertifiedQuestion<'a> {
+    /// An answer to an equation of one coordinate.
+    Formula(&'a Solution, &'a Values),
+    /// The normal modes of coupled equations, of which there is one.
+    Mode(&'a NormalModes, &'a Values),
+}
+
+impl<'a> CertifiedQuestion<'a> {
+    /// The answer of one coordinate; `None` for a mode.
+    pub(crate) const fn solution(self) -> Option<&'a Solution> {
+        match self {
+            Self::Formula(solution, _) => Some(solution),
+            Self::Mode(..) => None,
+        }
+    }
+
+    /// The values.
+    const fn values(self) -> &'a Values {
+        match self {
+            Self::Formula(_, values) | Self::Mode(_, values) => values,
+        }
+    }
+}
+
 impl AnyCertificate<'_> {
     fn formula(&self) -> Option<&JudgedFormula> {
         match self {
             Self::Motion(certificate) => certificate.formula.as_ref(),
             Self::Damped(certificate) => certificate.formula.as_ref(),
+            Self::Mode(certificate) => certificate.formula.as_ref(),
         }
     }
 
@@ -60,19 +97,32 @@ impl AnyCertificate<'_> {
         match self {
             Self::Motion(certificate) => certificate.bits,
             Self::Damped(certificate) => certificate.bits,
+            Self::Mode(certificate) => certificate.bits,
         }
     }
 
-    /// The left side of its equation.
-    fn left_side(&self) -> Expr {
+    /// The left sides of its equations.
+    fn left_sides(&self) -> Vec<Expr> {
         let velocity = coordinate().derivative();
-        let acceleration = Expr::from(velocity.derivative());
+        let acceleration = |velocity: Symbol| Expr::from(velocity.derivative());
         match self {
-            Self::Motion(certificate) => &acceleration + &certificate.force,
+            Self::Motion(certificate) => vec![&acceleration(velocity) + &certificate.force],
             Self::Damped(certificate) => {
                 let drag = &certificate.damping * &Expr::from(velocity);
-                &(&acceleration + &drag) + &certificate.force_in_time()
+                vec![&(&acceleration(velocity) + &drag) + &certificate.force_in_time()]
             }
+            Self::Mode(certificate) => {
+                let rows = certificate.coordinates.iter().zip(&certificate.forces);
+                rows.map(|(name, force)| &acceleration(name.derivative()) + force).collect()
+            }
+        }
+    }
+
+    /// The coordinates, separated by commas; `None` for one coordinate.
+    fn coordinates(&self) -> Option<String> {
+        match self {
+            Self::Motion(_) | Self::Damped(_) => None,
+            Self::Mode(certificate) => Some(listed(&certificate.coordinates)),
         }
     }
 
@@ -83,6 +133,12 @@ impl AnyCertificate<'_> {
             Self::Motion(certificate) => format!(
                 "periodic from {letter}(0) = {}, {letter}'(0) = 0: {letter}(t) = X({omega}*t)",
                 certificate.start
+            ),
+            Self::Mode(certificate) => format!(
+                "periodic from rest, {} = {}: ({})(t) = X({omega}*t)",
+                measured(certificate),
+                certificate.amplitude,
+                listed(&certificate.coordinates)
             ),
             Self::Damped(certificate) => match &certificate.drive {
                 None => format!("a limit cycle: {letter}(t) = X({omega}*t)"),
@@ -105,6 +161,10 @@ impl AnyCertificate<'_> {
     fn unknowns(&self, omega: &str) -> String {
         match self {
             Self::Motion(_) => format!("pair (1/{omega}^2, X), X of cosines,"),
+            Self::Mode(certificate) if certificate.odd => {
+                format!("pair (1/{omega}^2, X), X of odd cosines,")
+            }
+            Self::Mode(_) => format!("pair (1/{omega}^2, X), X of cosines,"),
             Self::Damped(certificate) => match (certificate.drive.is_some(), certificate.odd) {
                 (true, false) => "motion X".to_owned(),
                 (true, true) => "motion X of odd harmonics".to_owned(),
@@ -123,6 +183,9 @@ impl AnyCertificate<'_> {
             Self::Damped(certificate) if certificate.odd => {
                 Some("of motions with even harmonics nothing is proved: one may be within r too")
             }
+            Self::Mode(certificate) if certificate.odd => {
+                Some("of motions with even harmonics nothing is proved: one may be within r too")
+            }
             _ => None,
         }
     }
@@ -130,7 +193,7 @@ impl AnyCertificate<'_> {
     /// The harmonic of a driven motion whose amplitude the formula gives; `None` for other motions.
     fn harmonic(&self) -> Option<usize> {
         match self {
-            Self::Motion(_) => None,
+            Self::Motion(_) | Self::Mode(_) => None,
             Self::Damped(certificate) => certificate.drive.as_ref().map(|drive| drive.harmonic),
         }
     }
@@ -145,6 +208,11 @@ impl AnyCertificate<'_> {
                 certificate.highest,
                 certificate.cosines.len().max(certificate.sines.len()),
             ),
+            Self::Mode(certificate) => (
+                certificate.odd,
+                certificate.highest,
+                certificate.coefficients.iter().map(Vec::len).max().unwrap_or(0),
+            ),
         };
         let kind = if odd { "odd harmonics" } else { "harmonics" };
         format!(
@@ -154,12 +222,30 @@ impl AnyCertificate<'_> {
     }
 }
 
+/// The symbols of coordinates, separated by commas.
+fn listed(coordinates: &[Symbol]) -> String {
+    let names: Vec<String> = coordinates.iter().map(ToString::to_string).collect();
+    names.join(", ")
+}
+
+/// The amplitude of a mode in words.
+fn measured(certificate: &ModeCertificate) -> String {
+    match &certificate.measure {
+        ModeAmplitude::Start(coordinate) => format!("{}(0)", certificate.coordinates[*coordinate]),
+        ModeAmplitude::FirstHarmonic(factors) => {
+            let terms = factors.iter().zip(&certificate.coordinates);
+            let sum: Expr = terms.map(|(factor, name)| factor * &Expr::from(*name)).sum();
+            format!("first harmonic of {sum}")
+        }
+    }
+}
+
 /// A certificate to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateReport<'a> {
     /// The answer that is judged and its values; `None` for a certificate read from a document,
     /// which has only the numbers.
-    pub question: Option<(&'a Solution, &'a Values)>,
+    pub question: Option<CertifiedQuestion<'a>>,
     /// The certificate.
     pub certificate: AnyCertificate<'a>,
     /// The proved motion and its errors.
@@ -179,10 +265,17 @@ impl CertificateReport<'_> {
             let letters = self.certificate.formula().map(|formula| formula.letters);
             return letters.unwrap_or_default().frequency.to_string();
         }
-        let slow = self.question.and_then(|(solution, _)| solution.modulation.as_ref());
+        let solution = self.question.and_then(CertifiedQuestion::solution);
+        let slow = solution.and_then(|solution| solution.modulation.as_ref());
         let resonance = slow.and_then(|slow| slow.resonance.as_ref());
         let named = resonance.filter(|resonance| !resonance.driving_frequency.symbols().is_empty());
         named.map_or_else(|| "Omega".to_owned(), |named| named.driving_frequency.to_string())
+    }
+
+    /// The symbol of the coordinate.
+    fn coordinate(&self) -> Symbol {
+        let solution = self.question.and_then(CertifiedQuestion::solution);
+        solution.map_or(coordinate(), Solution::coordinate)
     }
 
     /// Whether the formula is proved to be within the tolerance; `None` if no formula is judged.
@@ -196,14 +289,14 @@ impl CertificateReport<'_> {
 ///
 /// ```
 /// use lindstedt::certificate::certify;
-/// use lindstedt::report::{CertificateReport, certificate};
+/// use lindstedt::report::{CertificateReport, CertifiedQuestion, certificate};
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let solution = solve(&pendulum, &Options::default())?;
 /// let at = "A = 3/2".parse()?;
 /// let (proof, certified) = certify(&pendulum, &solution, &at)?;
-/// let question = Some((&solution, &at));
+/// let question = Some(CertifiedQuestion::Formula(&solution, &at));
 /// let report = CertificateReport { question, certificate: (&proof).into(), certified: &certified, validity: None, tolerance: 0.01 };
 /// let text = lindstedt::export::text::document(&certificate(&report), 100);
 /// assert!(text.contains("0.86060834667961"));
@@ -213,7 +306,12 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let certificate = report.certificate;
     let letters = certificate.formula().map(|formula| formula.letters).unwrap_or_default();
     let mut sections = match report.question {
-        Some((solution, _)) => vec![
+        Some(CertifiedQuestion::Mode(modes, _)) => {
+            let mut sections = modes_in_formulas(modes);
+            sections.push(notes_on_rounding(modes));
+            sections
+        }
+        Some(CertifiedQuestion::Formula(solution, _)) => vec![
             vec![Block::Question(&solution.equation)],
             vec![Block::Title {
                 words: solution.title(),
@@ -229,16 +327,16 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             notes_on_letters(solution),
         ],
         None => {
-            let left = certificate.left_side();
-            vec![vec![Block::Line(Cow::Owned(DerivationLine::equation(left, Expr::zero())))]]
+            let line = |left| Block::Line(Cow::Owned(DerivationLine::equation(left, Expr::zero())));
+            vec![certificate.left_sides().into_iter().map(line).collect()]
         }
     };
     sections.retain(|blocks| !blocks.is_empty());
-    let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let letter = report.coordinate();
     let omega = report.omega();
-    let values = report.question.map(|(_, at)| {
-        let values: Vec<String> =
-            at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let values = report.question.map(|question| {
+        let values = question.values().iter();
+        let values: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
         values.join(", ")
     });
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
@@ -250,7 +348,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             let of =
                 if harmonic == 1 { String::new() } else { format!("of harmonic {harmonic}: ") };
             facts.push(("amplitude", of + &enclosed(amplitude)));
-            facts.push(("stability", "not proved".to_owned()));
+            facts.push(("stability", stability_of_driven(report.certified.multipliers.as_ref())));
         }
         _ => facts.push((letters.frequency.name(), enclosed(&report.certified.frequency))),
     }
@@ -350,7 +448,7 @@ fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static st
 }
 
 fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str, String)> {
-    let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let letter = report.coordinate();
     let omega = report.omega();
     let formula = report.certificate.formula().filter(|_| report.question.is_none());
     let formula = formula.map(|formula| numbers_of(formula, report)).unwrap_or_default();
@@ -385,19 +483,26 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
             ("largest deviation", between(errors.deviation, "")),
             verdict,
         ],
-        None => vec![
-            (error_of_frequency, between(errors.frequency, "")),
-            ("relative error", between_percent(errors.relative)),
-            ("largest deviation at one phase", between(errors.deviation, "")),
-            (
-                "deviation in time",
-                format!(
-                    "|{letter}(t) - formula| <= {deviation} + {}*|t| for all t",
-                    rounded_up(errors.drift.upper, 4)
+        None => {
+            let (of, whose) = match report.certificate.coordinates() {
+                None => (letter.to_string(), String::new()),
+                Some(names) => ("q".to_owned(), format!(", q any of {names}")),
+            };
+            let largest = between(errors.deviation, "");
+            vec![
+                (error_of_frequency, between(errors.frequency, "")),
+                ("relative error", between_percent(errors.relative)),
+                ("largest deviation at one phase", largest),
+                (
+                    "deviation in time",
+                    format!(
+                        "|{of}(t) - formula| <= {deviation} + {}*|t| for all t{whose}",
+                        rounded_up(errors.drift.upper, 4)
+                    ),
                 ),
-            ),
-            verdict,
-        ],
+                verdict,
+            ]
+        }
     };
     formula.into_iter().chain(copies).chain(facts).collect()
 }
@@ -427,15 +532,23 @@ fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'sta
         };
         (name, omega)
     });
-    let displacement = displacement([&formula.coefficients, &formula.sines], number);
+    let first = displacement([&formula.coefficients, &formula.sines], number);
+    let displacement = match report.certificate {
+        AnyCertificate::Mode(certificate) => {
+            let others = formula.others.iter().map(|list| displacement([list, &[]], number));
+            let all = certificate.coordinates.iter().zip(std::iter::once(first).chain(others));
+            all.map(|(name, sum)| format!("{name} = {sum}")).collect::<Vec<_>>().join("; ")
+        }
+        _ => first,
+    };
     law.into_iter().chain(omega).chain([("X of the formula", displacement)]).collect()
 }
 
 /// The largest harmonics of a motion, rounded, and how many more there are.
-fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -> String {
+fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational + Copy) -> String {
     /// Largest number of harmonics that are printed.
     const MOST: usize = 5;
-    let [cosines, sines] = units.map(|units| units.iter().map(&number).collect::<Vec<Rational>>());
+    let [cosines, sines] = units.map(|units| units.iter().map(number).collect::<Vec<Rational>>());
     let mut waves: Vec<(usize, &str, Rational)> = vec![];
     for k in 0..cosines.len().max(sines.len()) {
         for (name, list) in [("cos", &cosines), ("sin", &sines)] {
@@ -500,6 +613,29 @@ fn stability(exponent: &Enclosure) -> String {
         _ => "repels, proved",
     };
     format!("{words}: characteristic exponent {}", enclosed(exponent))
+}
+
+/// The proved stability of a driven motion, in words.
+fn stability_of_driven(multipliers: Option<&Multipliers>) -> String {
+    let Some(multipliers) = multipliers else {
+        return "not proved: the variational equation has no series".to_owned();
+    };
+    let both = format!(
+        "multipliers with the sum {} and the product {}",
+        enclosed(&multipliers.trace),
+        enclosed(&multipliers.determinant)
+    );
+    let larger = match &multipliers.largest {
+        Some(largest) => {
+            format!("the larger Floquet multiplier has the modulus {}", enclosed(largest))
+        }
+        None => both.clone(),
+    };
+    match multipliers.attracts {
+        Some(true) => format!("attracts, proved: {larger}"),
+        Some(false) => format!("unstable, proved: {larger}"),
+        None => format!("not proved: |sum| < 1 + product < 2 is not decided, {both}"),
+    }
 }
 
 /// The number with its known digits, and a bound of its distance from the printed one.

@@ -36,7 +36,7 @@ pub(crate) use audit::{
 };
 #[cfg(feature = "json")]
 pub(crate) use certificate::known_digits;
-pub use certificate::{AnyCertificate, CertificateReport, certificate};
+pub use certificate::{AnyCertificate, CertificateReport, CertifiedQuestion, certificate};
 pub use comparison::comparison;
 pub use friction::friction;
 pub use impact::impact;

@@ -58,6 +58,31 @@ impl<'a> ModesReport<'a> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn modes<'a>(report: &ModesReport<'a>) -> Document<'a> {
+    let mut sections = head(report);
+    let mut judged = report.judged.iter();
+    for mode in &report.modes.modes {
+        sections.push(match mode {
+            Ok(mode) => one_mode(report, mode, judged.next()),
+            Err(error) => {
+                let help = error.help().map(|help| Block::Remark(format!("try: {help}")));
+                std::iter::once(Block::Note(error.to_string())).chain(help).collect()
+            }
+        });
+    }
+    sections.push(validity(report.modes));
+    Document { sections }
+}
+
+/// The equations and the formulas of modes, without verdicts.
+pub(super) fn modes_in_formulas(modes: &NormalModes) -> Vec<Vec<Block<'_>>> {
+    let report = ModesReport { modes, judged: &[], tolerance: 0.0 };
+    let mut sections = head(&report);
+    sections.extend(modes.modes.iter().flatten().map(|mode| one_mode(&report, mode, None)));
+    sections
+}
+
+/// The equations, and the title.
+fn head<'a>(report: &ModesReport<'a>) -> Vec<Vec<Block<'a>>> {
     let modes = report.modes;
     let equations = modes.system.equations.equations.iter();
     let mut question: Vec<Block> =
@@ -77,19 +102,7 @@ pub fn modes<'a>(report: &ModesReport<'a>) -> Document<'a> {
         modes.order,
         report.phase()
     ));
-    let mut sections = vec![question, vec![title]];
-    let mut judged = report.judged.iter();
-    for mode in &modes.modes {
-        sections.push(match mode {
-            Ok(mode) => one_mode(report, mode, judged.next()),
-            Err(error) => {
-                let help = error.help().map(|help| Block::Remark(format!("try: {help}")));
-                std::iter::once(Block::Note(error.to_string())).chain(help).collect()
-            }
-        });
-    }
-    sections.push(validity(modes));
-    Document { sections }
+    vec![question, vec![title]]
 }
 
 fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
@@ -221,11 +234,13 @@ fn validity(modes: &NormalModes) -> Vec<Block<'static>> {
             modes.order
         )),
     ];
-    let rounded = modes.modes.iter().flatten().any(|mode| mode.rounded);
-    if rounded {
-        notes.push(Block::Note(
-            "numbers with a point are rounded: the linear frequency is no fraction".to_owned(),
-        ));
-    }
+    notes.extend(notes_on_rounding(modes));
     notes
+}
+
+/// A note on rounded coefficients, where there are any.
+pub(super) fn notes_on_rounding(modes: &NormalModes) -> Vec<Block<'static>> {
+    let rounded = modes.modes.iter().flatten().any(|mode| mode.rounded);
+    let note = "numbers with a point are rounded: the linear frequency is no fraction";
+    if rounded { vec![Block::Note(note.to_owned())] } else { vec![] }
 }

@@ -4,9 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use lindstedt::certificate::{Enclosure, check, check_damped};
+use lindstedt::certificate::{Enclosure, check, check_damped, check_mode};
 use lindstedt::exact::{Rational, ratio};
-use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
+use lindstedt::export::json::{
+    self, CertificateDocument, DampedCertificateDocument, ModeCertificateDocument,
+};
 use serde_json::{Value, json};
 
 use super::documents::python;
@@ -87,6 +89,137 @@ fn driven_motions_are_proved_and_proved_again() {
     std::fs::remove_dir_all(&folder).expect("an own folder");
 }
 
+/// The lines of a fact.
+fn fact(said: &str, name: &str) -> String {
+    let line = said.lines().find(|line| line.trim_start().starts_with(name));
+    line.unwrap_or_else(|| panic!("{name}: {said}")).trim_start()[name.len()..].trim().to_owned()
+}
+
+#[test]
+fn the_stability_of_driven_motions_is_proved() {
+    let driven = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+    let stability = |arguments: &[&str]| {
+        let said = run(&[arguments, &["--format", "latex"]].concat());
+        fact(&String::from_utf8_lossy(&said.stdout), "% stability:")
+    };
+    // On the upper branch of the resonance curve both multipliers have the modulus
+    // exp(-pi/5/Omega).
+    for omega in [1.0_f64, 1.25] {
+        let at = format!("Omega={omega}");
+        let said = stability(&["certify", driven, "--at", "F=1/2", "--at", &at]);
+        let words = "attracts, proved: the larger Floquet multiplier has the modulus ";
+        let number = said.strip_prefix(words).unwrap_or_else(|| panic!("{said}"));
+        let (number, radius) = number.split_once(" +- ").expect("a radius");
+        let [number, radius]: [f64; 2] =
+            [number, radius].map(|text| text.parse().expect("a number"));
+        let expected = (-std::f64::consts::PI / 5.0 / omega).exp();
+        assert!((number - expected).abs() < 1e-14, "{number}, {expected}");
+        assert!(radius < 1e-12, "{radius}");
+    }
+    // `check` proves it again from the numbers alone.
+    let folder = folder("stability");
+    let problem = format!("{}/examples/subharmonic.toml", env!("CARGO_MANIFEST_DIR"));
+    let (file, _) = certified(&folder, &[&problem]);
+    let said =
+        |arguments: &[&str]| fact(&String::from_utf8_lossy(&run(arguments).stdout), "stability");
+    let proved = said(&["certify", &problem]);
+    assert!(proved.starts_with("attracts, proved"), "{proved}");
+    assert_eq!(proved, said(&["check", file.to_str().expect("a path in text")]));
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
+#[test]
+fn normal_modes_are_proved_and_proved_again() {
+    let folder = folder("modes");
+    let pair = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
+    let masses = "2*x'' + y'' + 2*x - y + x^2/2 = 0; x'' + 3*y'' + 2*y - x + k*y^3 = 0";
+    let letters = "a'' + 2*a - A + a^3/2 = 0; A'' + omega*A - a = 0";
+    let questions: [&[&str]; 6] = [
+        &[pair, "--at", "a=4/5"],
+        &[pair, "--at", "a=4/5", "--mode", "2", "--order", "6"],
+        &[pair, "--at", "A=1", "--amplitude", "initial"],
+        &[pair, "--at", "a=3", "--no-formula"],
+        &[masses, "--at", "a=1/4", "--at", "k=1/10", "--mode", "2"],
+        &[letters, "--at", "r=4/5", "--at", "omega=2"],
+    ];
+    let mut frequencies = vec![];
+    for question in questions {
+        let (file, document) = certified(&folder, question);
+        let said = run(&[&["certify"], question].concat());
+        let said = String::from_utf8_lossy(&said.stdout).into_owned();
+        let path = file.to_str().expect("a path in text");
+        let checked = run(&["check", path]);
+        assert!(checked.status.success(), "{question:?}: {checked:?}");
+        let proof = |text: &str| -> Vec<String> {
+            let lines = text.lines().skip_while(|line| !line.starts_with("The proof"));
+            lines.map(str::to_owned).collect()
+        };
+        let again = String::from_utf8_lossy(&checked.stdout).into_owned();
+        assert_eq!(proof(&said), proof(&again), "{question:?}");
+        for name in
+            ["relative error", "largest deviation at one phase", "deviation in time", "verdict"]
+        {
+            if document["formula"] != Value::Null {
+                assert_eq!(fact(&said, name), fact(&again, name), "{question:?}");
+            }
+        }
+        frequencies.push(by_library(&document).expect("a proof").middle);
+        let read: ModeCertificateDocument =
+            serde_json::from_value(document.clone()).expect("a document");
+        let certificate = read.read().expect("a certificate");
+        assert_eq!(json::mode_certificate(&certificate), read, "{question:?}");
+        let tampers: [Tamper; 12] = [
+            |document| document["claim_r"] = json!("1e-60"),
+            |document| document["c"][1][1] = json!("1"),
+            without_first_column,
+            |document| document["odd"] = json!("yes"),
+            |document| document["ode"] = json!("x''+f(x)=0"),
+            |document| document["more"] = json!("1"),
+            |document| document["f"][1] = json!("y"),
+            |document| document["coordinates"] = json!(["t", "y"]),
+            |document| document["coordinates"] = json!(["x", "x"]),
+            |document| document["amplitude"]["value"] = json!("4/3"),
+            |document| document["amplitude"]["start_of"] = json!("z"),
+            |document| document["bits"] = json!(225),
+        ];
+        for (place, tamper) in tampers.into_iter().enumerate() {
+            let mut changed = document.clone();
+            tamper(&mut changed);
+            std::fs::write(&file, changed.to_string()).expect("a file");
+            let checked = run(&["check", path]);
+            assert_eq!(checked.status.code(), Some(1), "{question:?}: {place}");
+        }
+    }
+    // The letters of an equation change nothing.
+    assert_eq!(frequencies[0], frequencies[5]);
+    for (arguments, code, expected) in [
+        ([pair, "--at", "a=1", "--range", "1:2"].as_slice(), 2, "--range: it is of one coordinate"),
+        (&[pair, "--at", "a=1", "--mode", "3"], 1, "there is no mode 3"),
+        (&[pair], 1, "--at a=VALUE"),
+        (&[pair, "--at", "a=pi/3"], 1, "a = pi/3 is no fraction"),
+        (&[pair, "--at", "a=1", "--cycle", "1"], 2, "--cycle: it is of one coordinate"),
+        (&["pendulum", "--at", "A=1", "--mode", "1"], 2, "--mode: one coordinate has one mode"),
+        (&[pair, "--at", "a=2", "--tolerance", "0.01"], 3, ""),
+        (&["x'' + x = 0; y'' + 9*y = 0", "--at", "a=1"], 1, "is not below 1"),
+        (
+            &["x'' + x'/9 + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", "--at", "a=1"],
+            1,
+            "`x'/9` is odd in the velocities",
+        ),
+        (
+            &["(1 + x^2)*x'' + x*x'^2 + 2*x - y = 0; y'' + 4*y - x = 0", "--at", "a=1/2"],
+            1,
+            "depends on velocities",
+        ),
+    ] {
+        let output = run(&[&["certify"], arguments].concat());
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+        assert!(errors.contains(expected), "{arguments:?}: {errors}");
+    }
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
 #[test]
 fn what_certify_writes_check_proves() {
     let folder = folder("check");
@@ -158,6 +291,11 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
                 read(document).map_err(unread)?.read().map_err(|error| error.to_string())?;
             check(&certificate)
         }
+        Some("q''+f(q)=0") => {
+            let document: ModeCertificateDocument =
+                serde_json::from_value(document.clone()).map_err(unread)?;
+            check_mode(&document.read().map_err(|error| error.to_string())?)
+        }
         _ => {
             let document: DampedCertificateDocument =
                 serde_json::from_value(document.clone()).map_err(unread)?;
@@ -171,16 +309,34 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
 /// A change of a document by which it is no proof any more.
 type Tamper = fn(&mut Value);
 
+/// Sets the first column of the inverse to zero but for its first entry: that of a constant may be
+/// zero already.
+fn without_first_column(document: &mut Value) {
+    for row in [1, 2] {
+        document["inverse"][row][0] = json!("0");
+    }
+}
+
 #[test]
 fn a_second_program_in_python_proves_the_same() {
     let of_all: [Tamper; 7] = [
         |document| document["claim_r"] = json!("1e-60"),
         |document| document["c"][1] = json!("1"),
-        |document| document["inverse"][1][0] = json!("0"),
+        without_first_column,
         |document| document["odd"] = json!("yes"),
         |document| document["formula"]["phase_error"][0] = json!("1"),
         |document| document["formula"]["phase_error"][1] = json!("1e-12"),
         |document| document["more"] = json!("1"),
+    ];
+    let of_modes: [Tamper; 8] = [
+        |document| document["amplitude"]["value"] = json!("799999999/1000000000"),
+        |document| document["amplitude"]["first_harmonic_of"][0] = json!("3/4"),
+        |document| document["amplitude"]["start_of"] = json!("x"),
+        |document| document["f"][1] = json!("2*y - x + x/1000000"),
+        |document| document["c"][1][3] = json!("1"),
+        |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
+        |document| document["formula"]["drift"][0] = json!("1"),
+        |document| document["formula"]["c"][1][1] = json!("1"),
     ];
     let of_motions: [Tamper; 5] = [
         |document| document["initial_displacement"] = json!("1499999/1000000"),
@@ -260,6 +416,26 @@ fn a_second_program_in_python_proves_the_same() {
                 &[&["van-der-pol", "--at", "mu=1/5"], &[asymmetric]],
                 &of_cycles,
             );
+        });
+        scope.spawn(|| {
+            let questions: [&[&str]; 3] = [
+                &["x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0", "--at", "a=4/5"],
+                &[
+                    "x'' + sin(x) + (x - y)/3 = 0; y'' + 2*sin(y) + (y - x)/3 = 0",
+                    "--at",
+                    "a=1/2",
+                    "--mode",
+                    "2",
+                ],
+                &[
+                    "x'' + 2*x - y + x^2/5 = 0; y'' + 3*y - x + x*y/4 = 0",
+                    "--at",
+                    "A=1/4",
+                    "--amplitude",
+                    "initial",
+                ],
+            ];
+            proved("python-modes", &questions, &of_modes);
         });
         scope.spawn(|| {
             let files = ["forced-duffing", "parametric", "driven-well"]

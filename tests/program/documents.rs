@@ -9,9 +9,9 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
-    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
-    LagrangianDocument, MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
     OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
@@ -117,6 +117,9 @@ fn reads_back(document: &Value) {
         DocumentKind::Catalog => again::<CatalogDocument>(document),
         DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
+        }
+        DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
+            again::<ModeCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
         DocumentKind::CertificateRange => again::<CertificateRangeDocument>(document),

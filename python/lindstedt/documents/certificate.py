@@ -298,6 +298,144 @@ DampedCertificateDocument.OPTIONAL = frozenset(['drive', 'p'])
 DampedCertificateDocument.CONSTANTS = {'nu': '1'}
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateAmplitude(Document):
+    """The amplitude of a motion of several coordinates: the start of one of them, or the amplitude of
+    the first harmonic of a sum of all.
+
+    Attributes:
+        value: Its value, a fraction, exact.
+        start_of: The name of the coordinate whose start it is; null where it is that of the first
+            harmonic.
+        first_harmonic_of: The factor of each coordinate in the sum whose first harmonic has the
+            amplitude, an expression of numbers; null where it is the start of a coordinate.
+    """
+
+    value: Fraction
+    start_of: str | None
+    first_harmonic_of: tuple[str, ...] | None
+
+
+CertificateAmplitude.FIELDS = (
+    ("value", "value", Fraction),
+    ("start_of", "start_of", None),
+    ("first_harmonic_of", "first_harmonic_of", tuple),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CertificateFormulaOfMode(Document):
+    """The formulas of a mode with their numbers, and what is proved of them, each from below and from
+    above.
+
+    Attributes:
+        law: The law as it was derived: `omega^2 = ...` with definitions of letters behind commas,
+            which has to give `omega` at `values` to its last digits. What is of another form is
+            words: nothing is checked against them.
+        letters: The letters of the answer in the law.
+        values: The values of the letters in the law, such as `a = 4/5`.
+        omega: omega~, an integer times 2^-bits.
+        c: The cosine coefficients of each coordinate, likewise.
+        phase_error: max |X - X~|, both at the same phase, the largest of those of the
+            coordinates.
+        frequency_error: |omega - omega~|.
+        drift: max |X~'| |omega - omega~|, the largest of those of the coordinates: |q(t) - q~(t)|
+            <= phase_error + drift |t| for all t and every coordinate q.
+    """
+
+    law: str
+    letters: CertificateLetters | None
+    values: str | None
+    omega: str
+    c: tuple[tuple[str, ...], ...]
+    phase_error: tuple[str, str]
+    frequency_error: tuple[str, str]
+    drift: tuple[str, str]
+
+
+CertificateFormulaOfMode.FIELDS = (
+    ("law", "law", None),
+    ("letters", "letters", CertificateLetters.from_json),
+    ("values", "values", None),
+    ("omega", "omega", None),
+    ("c", "c", several(tuple)),
+    ("phase_error", "phase_error", tuple),
+    ("frequency_error", "frequency_error", tuple),
+    ("drift", "drift", tuple),
+)
+CertificateFormulaOfMode.OPTIONAL = frozenset(['letters', 'values'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ModeCertificateDocument(Answer):
+    """Numbers from which a free motion of several coordinates, `q'' + f(q) = 0`, can be proved, and
+    how far the formulas of a normal mode are off. All numbers are text: integers, fractions
+    such as `-1/6`, decimals such as `2.5e-33`. Every velocity is zero at t = 0.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equations that f belongs to.
+        coordinates: The names of the coordinates.
+        f: The acceleration of each coordinate with its sign changed, an expression in the
+            coordinates: the mass matrix is inverted already.
+        amplitude: The amplitude of the motion.
+        odd: Whether every f is odd and the motion of odd harmonics alone, and so the block, and
+            the only one within claim_r among those.
+        bits: `mu`, `c` and the numbers of the formula are integers times 2^-bits; at most 224.
+        mu: The approximate 1/omega^2.
+        c: The approximate cosine coefficients of each coordinate, that of the constant first.
+        highest_harmonic: The last harmonic of the block; at most 400, and the block has at most
+            401 unknowns.
+        inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+        inverse: The approximate inverse of the derivative on mu and the harmonics of the block,
+            those of one coordinate after those of the other, row by row; the first row is that of
+            mu, the first column that of the condition on the amplitude.
+        sigma_log2: The norm is sigma |mu| + sum |c_ik|, sigma = 2^sigma_log2.
+        nu: The weight of a harmonic from one to the next; 1.
+        claim_r: The radius that is claimed: there is exactly one motion of this amplitude whose
+            mu and c are so near in the norm, where `odd` exactly one of odd harmonics.
+        formula: The formulas that are judged; null where none are.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["q''+f(q)=0"]
+    coordinates: tuple[str, ...]
+    f: tuple[str, ...]
+    amplitude: CertificateAmplitude
+    odd: bool
+    bits: int
+    mu: str
+    c: tuple[tuple[str, ...], ...]
+    highest_harmonic: int
+    inverse_bits: int
+    inverse: tuple[tuple[str, ...], ...]
+    sigma_log2: int
+    nu: Literal["1"]
+    claim_r: str
+    formula: CertificateFormulaOfMode | None
+
+
+ModeCertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("coordinates", "coordinates", tuple),
+    ("f", "f", tuple),
+    ("amplitude", "amplitude", CertificateAmplitude.from_json),
+    ("odd", "odd", None),
+    ("bits", "bits", None),
+    ("mu", "mu", None),
+    ("c", "c", several(tuple)),
+    ("highest_harmonic", "highest_harmonic", None),
+    ("inverse_bits", "inverse_bits", None),
+    ("inverse", "inverse", several(tuple)),
+    ("sigma_log2", "sigma_log2", None),
+    ("nu", "nu", None),
+    ("claim_r", "claim_r", None),
+    ("formula", "formula", CertificateFormulaOfMode.from_json),
+)
+ModeCertificateDocument.CONSTANTS = {'ode': "q''+f(q)=0", 'nu': '1'}
+
+
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative
-#: motion, or a limit cycle.
-Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument
+#: motion, a limit cycle, a driven motion, or a free motion of several coordinates.
+Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument

@@ -30,7 +30,7 @@ const LONGEST_NUMBER: usize = 200;
 const LONGEST_VALUES: usize = 10_000;
 
 /// A force has at most so many.
-const LONGEST_FORCE: usize = 2000;
+pub(super) const LONGEST_FORCE: usize = 2000;
 
 /// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is
 /// off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`.
@@ -327,6 +327,7 @@ impl CertificateFormula {
             frequency: integer(&self.omega, "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
             sines: vec![],
+            others: vec![],
             deviation: range(&self.phase_error, "phase_error")?,
             frequency_error: range(&self.frequency_error, "frequency_error")?,
             drift: range(&self.drift, "drift")?,

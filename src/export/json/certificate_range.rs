@@ -51,7 +51,7 @@ const ENDS: [&str; 5] = ["asked", "further", "open", "unproved", "stopped"];
 
 /// The document of kind `certificate-range`; `None` where no range was asked for.
 pub fn certificate_range(report: &CertificateReport) -> Option<CertificateRangeDocument> {
-    let (solution, _) = report.question?;
+    let solution = report.question?.solution()?;
     let Validity { from, to, within, intervals, beyond, .. } = report.validity?;
     let constant = |value: &Rational| Constant {
         exact: value.to_string(),

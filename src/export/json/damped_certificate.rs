@@ -226,6 +226,7 @@ impl CertificateFormulaOfCycle {
             frequency: integer(self.omega.as_deref().unwrap_or("0"), "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
             sines: integers(&self.s, "formula.s")?,
+            others: vec![],
             deviation: range(&self.phase_error, "phase_error")?,
             frequency_error: both(&self.frequency_error, "frequency_error")?,
             drift: both(&self.drift, "drift")?,

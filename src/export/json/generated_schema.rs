@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use super::{
     AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
-    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
-    LagrangianDocument, MaterialsDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
     OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
@@ -64,7 +64,8 @@ impl DocumentKind {
     }
 }
 
-/// A certificate of a conservative motion or of a limit cycle, told apart by `ode`.
+/// A certificate of a conservative motion, of one coordinate or several, or of a motion with
+/// damping, told apart by `ode`.
 struct EitherCertificate;
 
 impl JsonSchema for EitherCertificate {
@@ -76,9 +77,10 @@ impl JsonSchema for EitherCertificate {
         let kinds = [
             generator.subschema_for::<CertificateDocument>(),
             generator.subschema_for::<DampedCertificateDocument>(),
+            generator.subschema_for::<ModeCertificateDocument>(),
         ];
         json_schema!({
-            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, or a limit cycle.",
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free motion of several coordinates.",
             "anyOf": kinds,
         })
     }

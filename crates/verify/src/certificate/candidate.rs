@@ -11,11 +11,10 @@ use std::f64::consts::TAU;
 use nalgebra::DMatrix;
 use num_traits::{ToPrimitive as _, Zero as _};
 
-use super::force::along;
 use super::formula::{JudgedFormula, LettersOfLaw};
 use super::fourier_series::WORKING;
 use super::radii_polynomial::{Correction, NotProved};
-use super::theorem::{correction, prove};
+use super::theorem::{ConservativeProblem, Wave, correction, derivative_of_block, prove};
 use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula, law};
 use crate::decimal::neighbours;
 use crate::exact::ball::{Ball, Balls};
@@ -27,6 +26,7 @@ use crate::method::numbers::NoNumbers;
 use crate::numeric::harmonics::Transform;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Solution};
+use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::{self, VerificationError};
 
@@ -88,6 +88,24 @@ pub enum NotCertified {
         "x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts"
     )]
     Start(String),
+    /// An amplitude of a mode that is not a fraction.
+    #[error("{symbol} = {value} is no fraction: a certificate needs to know the amplitude exactly")]
+    Amplitude {
+        /// The symbol of the amplitude.
+        symbol: String,
+        /// Its value.
+        value: String,
+    },
+    /// Coupled equations whose accelerations depend on velocities.
+    #[error(
+        "{coordinate}'' = -({force}) depends on velocities: certificates of several coordinates are of forces that are those of their positions alone, and of inertia that depends on no position"
+    )]
+    NotOfPosition {
+        /// The coordinate.
+        coordinate: String,
+        /// The acceleration with its sign changed.
+        force: String,
+    },
     /// The formula has no motion at these values.
     #[error(transparent)]
     Motion(#[from] NoNumbers),
@@ -156,6 +174,10 @@ impl NotCertified {
             }
             Self::Start(_) => {
                 "give the amplitude as a decimal or a fraction, and an equilibrium that is one"
+            }
+            Self::Amplitude { .. } => "give the amplitude as a decimal or a fraction",
+            Self::NotOfPosition { .. } => {
+                "`derive` with --at judges such modes by shooting, in numbers"
             }
             Self::NoSeries(_) => {
                 "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion"
@@ -232,19 +254,19 @@ fn certified_motion(
     // With many harmonics few steps suffice; the number that a proof needs is found later.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
     refine(&mut certificate, Bound::ZERO)
-        .map_err(|reason| not_proved(reason, certificate.block().len()))?;
+        .map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
     for highest in blocks(harmonics.len()) {
         certificate.highest = highest;
         match proved(&mut certificate) {
             Ok(certified) => return Ok((certificate, certified)),
             Err(error @ NotProved::NoValue(_)) => {
-                return Err(not_proved(error, certificate.block().len()));
+                return Err(not_proved(error, certificate.problem().block().len()));
             }
             Err(error) => reason = error,
         }
     }
-    Err(not_proved(reason, certificate.block().len()))
+    Err(not_proved(reason, certificate.problem().block().len()))
 }
 
 pub(super) fn not_proved(reason: NotProved, harmonics: usize) -> NotCertified {
@@ -292,8 +314,10 @@ impl ProofTarget {
         let start = &equilibrium + &amplitude;
         let start =
             start.as_number().ok_or_else(|| NotCertified::Start(start.to_string()))?.clone();
-        let force =
-            written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
+        let force = written_out(
+            force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?,
+            &[coordinate()],
+        )?;
         // In one of two wells beside each other a motion has all harmonics, whatever the symmetry
         // of the force.
         let odd = equilibrium.is_zero() && super::force::is_odd(&force, &[coordinate()])?;
@@ -324,10 +348,11 @@ impl ProofTarget {
 }
 
 /// A polynomial written out, as it is in a document; anything else as it is.
-pub(super) fn written_out(force: Expr) -> Result<Expr, ExprError> {
-    let written = force
-        .to_polynomial(&mut |_| None)?
-        .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
+pub(super) fn written_out(force: Expr, coordinates: &[Symbol]) -> Result<Expr, ExprError> {
+    let written = force.to_polynomial(&mut |_| None)?.filter(|sum| {
+        let ranges = coordinates.iter().filter_map(|name| sum.exponent_range(*name));
+        ranges.into_iter().all(|range| range.0 >= 0)
+    });
     Ok(written.as_ref().map_or(force, Expr::from))
 }
 
@@ -382,6 +407,7 @@ pub(super) fn without_claims([cosines, sines]: [&[f64]; 2], bits: usize) -> Judg
         frequency: Integer::zero(),
         coefficients: in_units(cosines),
         sines: in_units(sines),
+        others: vec![],
         deviation: nothing(),
         frequency_error: nothing(),
         drift: nothing(),
@@ -413,12 +439,12 @@ fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Vec<f64>) {
 
 /// Checks a certificate with its block, and enters the proved values as claims.
 fn proved(certificate: &mut Certificate) -> Result<Certified, NotProved> {
-    certificate.inverse = inverse(certificate)?;
+    certificate.inverse = inverse(&certificate.problem())?;
     certificate.sigma = weight(&certificate.inverse);
-    let proof = prove(certificate)?;
+    let proof = prove(certificate.problem())?;
     let [_, claim] = claimed(proof.radius.value());
     certificate.claim = claim;
-    let certified = formula::certified(certificate, proof)?;
+    let certified = certificate.certified(proof)?;
     claim_errors(certificate.formula.as_mut(), &certified);
     Ok(certified)
 }
@@ -444,30 +470,9 @@ pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Cert
 }
 
 /// The inverse of the derivative on the block, in doubles.
-pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, NotProved> {
-    let motion = certificate.motion();
-    let nearest = |series: &super::FourierSeries, k: usize| WORKING.nearest(&series.cosine(k));
-    let force = along(&certificate.force, &motion)?;
-    let slope = along(&certificate.force.differentiate(coordinate())?, &motion)?;
-    let mu = WORKING.nearest(&certificate.mu_ball());
-    let block = certificate.block();
-    let size = block.len() + 1;
-    let half = |m: usize| nearest(&slope, m) * if m == 0 { 1.0 } else { 0.5 };
-    let product = |k: usize, j: usize| match (k, j) {
-        (_, 0) => nearest(&slope, k),
-        (0, _) => half(j),
-        _ => half(k.abs_diff(j)) + half(k + j),
-    };
-    let derivative = DMatrix::from_fn(size, size, |row, column| match (row, column) {
-        (0, 0) => 0.0,
-        (0, _) => 1.0,
-        (_, 0) => nearest(&force, block[row - 1]),
-        _ => {
-            let (k, j) = (block[row - 1], block[column - 1]);
-            mu * product(k, j) - if k == j { (k * k) as f64 } else { 0.0 }
-        }
-    });
-    inverted(derivative)
+pub(super) fn inverse(problem: &ConservativeProblem) -> Result<Vec<Vec<Integer>>, NotProved> {
+    let rows = derivative_of_block(problem)?;
+    inverted(DMatrix::from_fn(rows.len(), rows.len(), |row, column| rows[row][column]))
 }
 
 /// The inverse of a matrix, in units.
@@ -483,17 +488,32 @@ pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, No
 /// one before.
 pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
     let bits = certificate.bits;
-    certificate.inverse = inverse(certificate)?;
-    iterate(certificate, near.max(few_units(bits)), correction, |certificate, step| {
-        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
-        certificate.mu -= short(&step.block[0]);
-        let block = certificate.block();
-        let corrections = block.iter().zip(&step.block[1..]);
-        for (k, ball) in corrections.chain(step.beyond.iter().map(|(k, ball)| (k, ball))) {
-            subtract(&mut certificate.coefficients, *k, short(ball));
-        }
-        shorten(&mut certificate.coefficients);
+    certificate.inverse = inverse(&certificate.problem())?;
+    let step = |certificate: &Certificate| correction(certificate.problem());
+    iterate(certificate, near.max(few_units(bits)), step, |certificate, step| {
+        let block = certificate.problem().block();
+        let mut coefficients = [&mut certificate.coefficients];
+        subtract_step(&mut certificate.mu, &mut coefficients, &block, bits, step);
     })
+}
+
+/// Subtracts a step of Newton's iteration from `mu` and the coefficients of each coordinate.
+pub(super) fn subtract_step(
+    mu: &mut Integer,
+    coefficients: &mut [&mut Vec<Integer>],
+    block: &[Wave],
+    bits: usize,
+    step: &Correction<Wave>,
+) {
+    let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
+    *mu -= short(&step.block[0]);
+    let corrections = block.iter().zip(&step.block[1..]);
+    for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
+        subtract(coefficients[wave.coordinate], wave.harmonic, short(ball));
+    }
+    for list in coefficients {
+        shorten(list);
+    }
 }
 
 /// A bound of some units in the last place of numbers with this many bits.

@@ -19,14 +19,14 @@ use num_traits::{Signed as _, Zero as _};
 use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
 use super::law;
 use super::radii_polynomial::{NotProved, Proof};
-use super::{Certificate, Certified, CheckError, HIGHEST_HARMONIC};
+use super::{Certified, CheckError, HIGHEST_HARMONIC};
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::ball_products::{BallFactor, BallProductSums};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
 use crate::symbol::Symbol;
-use crate::symbol::letters::{AMPLITUDE, FREQUENCY, may_stand_for};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, may_stand_for};
 use crate::values::Values;
 
 /// An interval that contains a number, as middle and radius.
@@ -87,7 +87,8 @@ impl LettersOfLaw {
     /// The symbols of these names; `None` if no answer uses such names.
     pub fn of_names(amplitude: &str, frequency: &str) -> Option<Self> {
         let taken = [(amplitude, AMPLITUDE), (frequency, FREQUENCY)];
-        let belongs = taken.iter().all(|(name, usual)| may_stand_for(name, *usual));
+        let belongs = taken.iter().all(|(name, usual)| may_stand_for(name, *usual))
+            || may_stand_for(amplitude, FIRST_HARMONIC) && may_stand_for(frequency, FREQUENCY);
         belongs
             .then(|| Self { amplitude: Symbol::new(amplitude), frequency: Symbol::new(frequency) })
     }
@@ -120,6 +121,9 @@ pub struct JudgedFormula {
     pub frequency: Integer,
     /// The cosine coefficients of the motion, in the same unit.
     pub coefficients: Vec<Integer>,
+    /// The cosine coefficients of every coordinate but the first, in the same unit; empty for one
+    /// coordinate.
+    pub others: Vec<Vec<Integer>>,
     /// The sine coefficients by harmonic, in the same unit; empty for a motion that begins at rest.
     pub sines: Vec<Integer>,
     /// Claimed lower and upper bound of `max |X - X~|`.
@@ -138,7 +142,7 @@ pub struct JudgedFormula {
 #[non_exhaustive]
 pub struct Errors {
     /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the
-    /// [copies](Certified::copies) of X.
+    /// [copies](Certified::copies) of X, and of several coordinates the largest.
     pub deviation: SizeBounds,
     /// `|omega - omega~|`.
     pub frequency: SizeBounds,
@@ -156,23 +160,22 @@ impl JudgedFormula {
     /// be compared with the motion at another phase.
     pub(super) fn well_formed(&self, is_driven: bool) -> Result<(), &'static str> {
         let small = |integer: &Integer| integer.bits() <= 700;
-        let first = [&self.coefficients, &self.sines]
-            .map(|list| list.get(1).is_some_and(|first| !first.is_zero()));
-        let lists = [&self.coefficients, &self.sines];
+        let lists = || [&self.coefficients, &self.sines].into_iter().chain(&self.others);
+        let mut first = lists().map(|list| list.get(1).is_some_and(|first| !first.is_zero()));
         let demands = [
             (
-                lists.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
+                lists().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
                 "a formula of more than 800 harmonics",
             ),
             (
-                lists.into_iter().flatten().chain([&self.frequency]).all(small),
+                lists().flatten().chain([&self.frequency]).all(small),
                 "a formula with a number of more than 200 digits",
             ),
             (
                 is_driven || self.frequency.is_positive(),
                 "a formula whose frequency is not positive",
             ),
-            (is_driven || first != [false; 2], "a formula without a first harmonic"),
+            (is_driven || first.any(|is_there| is_there), "a formula without a first harmonic"),
         ];
         match demands.into_iter().find(|(holds, _)| !holds) {
             Some((_, reason)) => Err(reason),
@@ -185,7 +188,15 @@ impl JudgedFormula {
         WORKING.dyadic(&self.frequency, bits)
     }
 
-    /// The motion, stored in units of `2^-bits`.
+    /// The motions of all coordinates, stored in units of `2^-bits`.
+    pub(super) fn motions(&self, bits: usize) -> Vec<FourierSeries> {
+        let balls =
+            |units: &Vec<Integer>| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
+        let others = self.others.iter().map(|list| FourierSeries::exactly(balls(list), vec![]));
+        std::iter::once(self.motion(bits)).chain(others).collect()
+    }
+
+    /// The motion of the first coordinate, stored in units of `2^-bits`.
     pub(super) fn motion(&self, bits: usize) -> FourierSeries {
         let balls =
             |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
@@ -204,37 +215,62 @@ pub(super) struct Truth<'a> {
     pub(super) radius: Bound,
 }
 
-/// Returns the frequency, the motion and the errors of the formula that follow from a proof.
+/// Returns the frequency and the errors of the formula that follow from a proof: of `1/omega^2` and
+/// its weight, and of the approximate motions of all coordinates. The errors of the motion are the
+/// largest of those of the coordinates.
 ///
 /// # Errors
 /// A frequency without a value.
-pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certified, NotProved> {
-    let mut mu = certificate.mu_ball();
-    mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
+pub(super) fn certified(
+    (mut mu, sigma): (Ball, i32),
+    motions: &[FourierSeries],
+    bits: usize,
+    formula: Option<&JudgedFormula>,
+    proof: Proof,
+) -> Result<Certified, NotProved> {
+    mu.radius += proof.radius.over(Bound::power_of_two(sigma).value());
     let inverse = WORKING.quotient(&WORKING.integer(1), &mu);
     let frequency = inverse.and_then(|inverse| WORKING.root(&inverse, 2));
     let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
-    let motion = certificate.motion();
-    let truth = Truth {
-        copies: std::slice::from_ref(&motion),
-        frequency: &frequency,
-        radius: proof.radius,
-    };
-    let bits = certificate.bits;
-    let formula = certificate.formula.as_ref();
     let errors = |formula: &JudgedFormula| {
-        truth.errors(&formula.frequency_ball(bits), &formula.motion(bits))
+        let own_motions = formula.motions(bits);
+        let pairs = motions.iter().zip(&own_motions);
+        let errors = pairs.map(|(motion, own_motion)| {
+            let copies = std::slice::from_ref(motion);
+            let truth = Truth { copies, frequency: &frequency, radius: proof.radius };
+            truth.errors(&formula.frequency_ball(bits), own_motion)
+        });
+        errors.reduce(Errors::of_both)
     };
     Ok(Certified {
         proof,
         frequency: Enclosure::from_ball(&frequency),
         exponent: None,
+        multipliers: None,
         amplitude: None,
         copies: 1,
         law_is_held: formula
             .is_some_and(|formula| law::law_matches_frequency(formula, bits) == Ok(true)),
-        formula: formula.map(errors),
+        formula: formula.and_then(errors),
     })
+}
+
+impl SizeBounds {
+    /// The bounds of the larger one of two sizes.
+    const fn larger(self, other: Self) -> Self {
+        Self { lower: self.lower.max(other.lower), upper: self.upper.max(other.upper) }
+    }
+}
+
+impl Errors {
+    /// The errors of the motions of two coordinates together, at one frequency.
+    const fn of_both(self, other: Self) -> Self {
+        Self {
+            deviation: self.deviation.larger(other.deviation),
+            drift: self.drift.larger(other.drift),
+            ..self
+        }
+    }
 }
 
 impl Truth<'_> {

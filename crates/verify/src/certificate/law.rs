@@ -135,15 +135,20 @@ pub(super) fn frequency(formula: &JudgedFormula) -> Option<Ball> {
     }
 }
 
+/// The value of an expression without symbols, in balls; `None` for a function that has none in
+/// balls.
+pub(super) fn exact_number(expression: &Expr) -> Option<Ball> {
+    let nothing = FourierSeries::constant(Ball::zero());
+    let is_constant = expression.symbols().is_empty();
+    is_constant.then(|| along(expression, &nothing).ok().map(|series| series.at_zero())).flatten()
+}
+
 /// The value of an expression without symbols, in balls; `None` if it has none.
 pub(super) fn number(expression: &Expr) -> Option<Ball> {
     /// The relative error of a double, for functions that have no value in balls.
     const ROUNDING: f64 = 1e-12;
-    let nothing = FourierSeries::constant(Ball::zero());
-    if expression.symbols().is_empty()
-        && let Ok(series) = along(expression, &nothing)
-    {
-        return Some(series.at_zero());
+    if let Some(exact) = exact_number(expression) {
+        return Some(exact);
     }
     let double = expression.evaluate(&BTreeMap::new()).ok()?;
     let mut ball = WORKING.fraction(&from_f64(double)?);

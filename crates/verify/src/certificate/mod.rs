@@ -10,6 +10,8 @@
 //! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
 //! ```
 //!
+//! Free motions of several coordinates have a [`ModeCertificate`], and the same theorem.
+//!
 //! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own,
 //! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
 //! in `damped/`.
@@ -26,6 +28,7 @@ mod formula;
 mod fourier_series;
 mod impact;
 mod law;
+mod modes;
 mod radii_polynomial;
 mod theorem;
 mod validity;
@@ -34,10 +37,12 @@ use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
-    DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
+    DampedCertificate, Drive, Multipliers, certify_cycle, certify_cycle_motion, certify_driven,
+    check_damped,
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
+pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{RangeEnd, Validity, validity};
 
@@ -45,9 +50,10 @@ use crate::decimal::{rounded_down, rounded_up};
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
-use crate::expr::{Expr, ExprError};
+use crate::expr::Expr;
 use crate::symbol::Symbol;
 use fourier_series::{FourierSeries, WORKING};
+use theorem::{Condition, ConservativeProblem};
 
 /// The symbol of the displacement in every certificate.
 pub fn coordinate() -> Symbol {
@@ -102,6 +108,9 @@ pub struct Certified {
     /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
     /// energy is conserved.
     pub exponent: Option<Enclosure>,
+    /// Floquet multipliers of a driven motion; `None` for others, and where its variational equation
+    /// has no series.
+    pub multipliers: Option<Multipliers>,
     /// Amplitude of the harmonic of a driven motion that the formula is about.
     pub amplitude: Option<Enclosure>,
     /// The number of images of the proved motion under the symmetries of the equation, itself
@@ -166,8 +175,8 @@ pub enum CheckError {
 /// ```
 pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
     certificate.well_formed().map_err(CheckError::Malformed)?;
-    let proof = theorem::prove(certificate).map_err(CheckError::NotProved)?;
-    let certified = formula::certified(certificate, proof).map_err(CheckError::NotProved)?;
+    let proof = theorem::prove(certificate.problem()).map_err(CheckError::NotProved)?;
+    let certified = certificate.certified(proof).map_err(CheckError::NotProved)?;
     formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
     Ok(certified)
 }
@@ -181,19 +190,30 @@ impl Certificate {
         self.bits = bits;
     }
 
-    /// The step from one harmonic to the next.
-    fn step(&self) -> usize {
-        if self.odd { 2 } else { 1 }
+    /// Returns the equation and the approximate motion of this certificate in the form that the
+    /// theorem takes.
+    fn problem(&self) -> ConservativeProblem<'_> {
+        ConservativeProblem {
+            forces: vec![&self.force],
+            coordinates: vec![coordinate()],
+            condition: Condition::Start { coordinate: 0, place: WORKING.fraction(&self.start) },
+            odd: self.odd,
+            motions: vec![self.motion()],
+            mu: self.mu_ball(),
+            highest: self.highest,
+            inverse: &self.inverse,
+            inverse_bits: self.inverse_bits,
+            sigma: self.sigma,
+        }
     }
 
-    /// The first harmonic.
-    fn first(&self) -> usize {
-        usize::from(self.odd)
-    }
-
-    /// The harmonics of the block.
-    fn block(&self) -> Vec<usize> {
-        (self.first()..=self.highest).step_by(self.step()).collect()
+    /// Returns the frequency and the errors of the formula that follow from a proof.
+    ///
+    /// # Errors
+    /// A frequency without a value.
+    fn certified(&self, proof: Proof) -> Result<Certified, NotProved> {
+        let (number, motion) = ((self.mu_ball(), self.sigma), self.motion());
+        formula::certified(number, &[motion], self.bits, self.formula.as_ref(), proof)
     }
 
     fn mu_ball(&self) -> Ball {
@@ -204,25 +224,6 @@ impl Certificate {
     fn motion(&self) -> FourierSeries {
         let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
         FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
-    }
-
-    /// A lower bound of `mu`.
-    fn size_of_mu(&self) -> f64 {
-        match self.mu.is_positive() {
-            true => WORKING.distance_from_zero(&self.mu_ball()),
-            false => 0.0,
-        }
-    }
-
-    /// A lower bound of `|c_1|`.
-    fn size_of_first_harmonic(&self) -> f64 {
-        WORKING.distance_from_zero(&self.motion().cosine(1))
-    }
-
-    /// Whether the force is odd and the motion has odd harmonics alone.
-    fn is_odd(&self) -> Result<bool, ExprError> {
-        Ok(force::is_odd(&self.force, &[coordinate()])?
-            && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
     }
 
     /// Checks that sizes and numbers fit together; the error names what does not.
@@ -238,7 +239,7 @@ impl Certificate {
             expressions: &[(&self.force, &[coordinate()])],
         };
         fits.of_numbers()?;
-        fits.of_inverse(self.block().len() + 1)?;
+        fits.of_inverse(self.problem().block().len() + 1)?;
         self.well_formed_formula()
     }
 

@@ -251,12 +251,12 @@ impl<'a> Family<'a> {
 /// too small.
 fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
     certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
-    match prove_around(certificate, spread) {
+    match prove_around(certificate.problem(), spread) {
         Err(NotProved::NoContraction(_)) if certificate.highest < HIGHEST_HARMONIC / 2 => {
             certificate.highest = (certificate.highest * 3 / 2) | 1;
-            certificate.inverse = inverse(certificate)?;
+            certificate.inverse = inverse(&certificate.problem())?;
             certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
-            prove_around(certificate, spread)
+            prove_around(certificate.problem(), spread)
         }
         other => other,
     }

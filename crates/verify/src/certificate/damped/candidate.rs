@@ -293,7 +293,7 @@ fn driven_parts(
     };
     let damping = in_numbers(oscillator.force.differentiate(velocity)?)?;
     let force = in_numbers(oscillator.force.substitute(velocity, &Expr::zero())?)?;
-    Ok([written_out(damping)?, force])
+    Ok([written_out(damping, &[coordinate()])?, force])
 }
 
 /// Refines a certificate, and finds the smallest block that proves it.
@@ -357,7 +357,8 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
     let (values, _) = at.split(&oscillator.parameters);
     let in_numbers = |expression: Expr| {
         let expression = expression.substitute_all(&values)?;
-        written_out(expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)
+        let expression = expression.substitute(oscillator.coordinate, &Expr::from(coordinate()))?;
+        written_out(expression, &[coordinate()])
     };
     let damping = oscillator.force.differentiate(velocity)?;
     let force = oscillator.force.substitute(velocity, &Expr::zero())?;

@@ -7,6 +7,7 @@
 //! first harmonic has no sine. The phase of a driven motion is determined by the drive.
 
 mod candidate;
+mod stability;
 mod theorem;
 mod waves;
 
@@ -23,6 +24,7 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
+pub use stability::Multipliers;
 use theorem::DampedProblem;
 
 /// The drive of a motion, whose period is a whole number of drive periods.
@@ -316,6 +318,10 @@ impl DampedCertificate {
             proof,
             frequency: Enclosure::from_ball(&frequency),
             exponent,
+            multipliers: match self.drive {
+                None => None,
+                Some(_) => stability::multipliers(&self.problem(), proof.radius),
+            },
             amplitude,
             copies: copies.len().max(1),
             law_is_held: formula.is_some_and(|formula| self.law_is_held(formula) == Ok(true)),

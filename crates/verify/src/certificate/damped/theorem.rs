@@ -52,7 +52,8 @@
 //! unknown, b_1 is one, and all terms that belong to p above are left out: its column, the first
 //! two terms of Z2, and `R/sigma` in P. h along X contains the drive as `cos(n theta)` and `sin(n
 //! theta)`; h' is its derivative by x. The zero in the ball is a motion that repeats itself after n
-//! periods of the drive; its smallest period may be shorter, and nothing is said of its stability.
+//! periods of the drive; its smallest period may be shorter. Its stability is another theorem
+//! (`stability.rs`).
 //!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
 //! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),
@@ -153,6 +154,17 @@ impl DampedProblem<'_> {
                 (sine, &FourierSeries::exactly(vec![], wave)),
             ],
         )
+    }
+
+    /// The coefficients `p g(X)` and `p^2 h'(X)` of the variational equation along every motion
+    /// within this radius, from so many binary digits of X; `None` if they have no value.
+    pub(super) fn variational(&self, digits: i32, radius: Bound) -> Option<[FourierSeries; 2]> {
+        let ball = self.motion.clone().shortened(digits).widened(radius);
+        let slope = self.force.differentiate(coordinate()).ok()?;
+        let damping = self.values_along(self.damping, &ball).ok()?;
+        let slope = self.values_along(&slope, &ball).ok()?;
+        let p = FourierSeries::constant(self.reciprocal.clone());
+        Some([p.product(&damping), p.product(&p).product(&slope)])
     }
 
     /// Whether half a period later the equation is its mirror image, and the motion has odd

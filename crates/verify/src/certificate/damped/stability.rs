@@ -1,0 +1,498 @@
+//! The stability of a driven motion: an enclosure of its Floquet multipliers.
+//!
+//! Along the proved motion X, every motion within its radius, the variational equation is
+//!
+//! ```text
+//! y'' + p (g(X) y)' + p^2 h'(X) y = 0:      y' = z - G y,  z' = -H y,      G = p g(X),  H = p^2 h'(X)
+//! det = exp(-2 pi [G]_0)  (Liouville)       T = trace of the fundamental matrix after theta = 2 pi
+//! det < 1 and |T| < 1 + det:  both multipliers are inside the unit circle      det > 1 or |T| > 1 + det:  one is outside
+//! ```
+//!
+//! The period is divided into equal steps h, in each of which G and H are polynomials of degree
+//! below m, from their Fourier series, and a remainder. The fundamental matrix of a step is a Taylor
+//! polynomial P of degree m in `tau = (theta - theta_j)/h`; what it leaves of `P' = h A P` is bounded
+//! by the coefficients themselves, and its error by that times `exp(h ||A||)`. With
+//! `z` in the unit s, a power of two near `sqrt ||H||`, both rows of A have nearly the same norm. The
+//! cost is that of `K^2 m` products of short balls for K harmonics.
+//!
+//! Source: K. Makino, M. Berz: Taylor models and other validated functional inclusion methods, Int.
+//! J. Pure Appl. Math. 4 (2003), 379-456; R. Castelli, J.-P. Lessard: Rigorous numerics in Floquet
+//! theory, SIAM J. Appl. Dyn. Syst. 12 (2013), 204-245, for a proof of the same by Fourier series.
+
+use super::super::formula::{Enclosure, waves};
+use super::super::fourier_series::{FourierSeries, WORKING};
+use super::theorem::DampedProblem;
+use crate::exact::ball::{Ball, Balls};
+use crate::exact::bound::Bound;
+
+/// The precision of the steps: what a period makes of an error, `exp` of the integral of `||A||`, is
+/// some 1e10.
+const BALLS: Balls = Balls { bits: 120 };
+
+/// The degree of the Taylor polynomials.
+const DEGREE: usize = 20;
+
+/// Steps of a period, for each harmonic of the coefficients: `K h` is below 0.4.
+const STEPS_OF_HARMONIC: usize = 16;
+
+/// The largest number of steps of a period.
+const MOST_STEPS: usize = 20_000;
+
+/// Binary digits of the coefficients: only stability has to be decided.
+const DIGITS: i32 = 90;
+
+/// Enclosed Floquet multipliers of a driven motion, over the period of the certificate.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Multipliers {
+    /// Their product.
+    pub determinant: Enclosure,
+    /// Their sum.
+    pub trace: Enclosure,
+    /// The larger modulus; `None` where it is not known whether they are real.
+    pub largest: Option<Enclosure>,
+    /// Whether both are inside the unit circle, `false` if one is outside; `None` if neither is
+    /// proved.
+    pub attracts: Option<bool>,
+}
+
+/// The multipliers of the motion within this radius of that of a problem; `None` if its
+/// coefficients have no value, or turn too fast.
+pub(super) fn multipliers(problem: &DampedProblem, radius: Bound) -> Option<Multipliers> {
+    /// More than 2 pi.
+    const TURN: f64 = 6.3;
+    let [damping, stiffness] = problem.variational(DIGITS, radius)?;
+    let mut exponent = WORKING.scaled(&WORKING.product(&WORKING.pi(), &damping.cosine(0)), -2);
+    exponent.radius += damping.tail * Bound::exactly(TURN);
+    let determinant = FourierSeries::constant(exponent).exponential()?.at_zero();
+    let trace = trace(&damping.shortened(DIGITS), &stiffness.shortened(DIGITS))?;
+    let edge = WORKING.sum(&WORKING.integer(1), &determinant);
+    let [least, least_trace, least_edge] =
+        [&determinant, &trace, &edge].map(|ball| WORKING.distance_from_zero(ball));
+    let [most, most_trace, most_edge] =
+        [&determinant, &trace, &edge].map(|ball| WORKING.magnitude(ball).value());
+    let attracts = match most < 1.0 && most_trace < least_edge {
+        true => Some(true),
+        false if least > 1.0 || least_trace > most_edge => Some(false),
+        false => None,
+    };
+    Some(Multipliers {
+        largest: largest(&determinant, &trace).map(|ball| Enclosure::from_ball(&ball)),
+        determinant: Enclosure::from_ball(&determinant),
+        trace: Enclosure::from_ball(&trace),
+        attracts,
+    })
+}
+
+/// The larger modulus of the two numbers of this product and sum; `None` if it is not known whether
+/// they are real.
+fn largest(product: &Ball, sum: &Ball) -> Option<Ball> {
+    let square = WORKING.product(sum, sum);
+    let discriminant = WORKING.difference(&square, &WORKING.scaled(product, 4));
+    if WORKING.distance_from_zero(&discriminant) <= 0.0 {
+        return None;
+    }
+    match WORKING.root(&discriminant, 2) {
+        // Two real numbers: the larger modulus is (|T| + sqrt(T^2 - 4 det))/2.
+        Some(root) => {
+            let size = WORKING.root(&square, 2)?;
+            Some(WORKING.divided(&WORKING.sum(&size, &root), 2))
+        }
+        None => WORKING.root(product, 2),
+    }
+}
+
+/// A coefficient of the variational equation, in short balls.
+struct Coefficient {
+    cosines: Vec<Ball>,
+    sines: Vec<Ball>,
+    /// Bound of what its Taylor polynomial of degree below [`DEGREE`] leaves out of a step.
+    remainder: Bound,
+}
+
+impl Coefficient {
+    fn new(series: &FourierSeries, step: Bound) -> Self {
+        let short = |ball: Ball| BALLS.converted(&ball, WORKING);
+        let cosines: Vec<Ball> = (0..series.length()).map(|k| short(series.cosine(k))).collect();
+        let sines: Vec<Ball> = (0..series.length()).map(|k| short(series.sine(k))).collect();
+        let mut remainder = series.tail;
+        for (k, (a, b)) in cosines.iter().zip(&sines).enumerate() {
+            // max |f^(m)| h^m/m! of one harmonic.
+            let part = BALLS.magnitude(a) + BALLS.magnitude(b);
+            let turned = step * Bound::exactly(k as f64);
+            remainder += (1..=DEGREE).fold(part, |part, n| part * turned / n as u32);
+        }
+        Self { cosines, sines, remainder }
+    }
+
+    /// Whether the odd harmonics are zero.
+    fn has_even_alone(&self) -> bool {
+        let odd = |balls: &[Ball]| balls.iter().skip(1).step_by(2).all(Ball::is_zero);
+        odd(&self.cosines) && odd(&self.sines)
+    }
+
+    /// The coefficients of its Taylor polynomial in `tau` about the place of a step, from the cosine
+    /// and the sine of the multiples of the angle there, and `(k h)^n/n!`.
+    fn polynomial(&self, place: usize, table: &[[Ball; 2]], powers: &[Vec<Ball>]) -> Vec<Ball> {
+        let mut polynomial = vec![Ball::zero(); DEGREE];
+        for (k, (a, b)) in self.cosines.iter().zip(&self.sines).enumerate() {
+            if a.is_zero() && b.is_zero() {
+                continue;
+            }
+            let [cosine, sine] = &table[k * place % table.len()];
+            // f = u, f' = k v, f'' = -k^2 u, f''' = -k^3 v.
+            let u = BALLS.sum(&BALLS.product(a, cosine), &BALLS.product(b, sine));
+            let v = BALLS.difference(&BALLS.product(b, cosine), &BALLS.product(a, sine));
+            for (n, entry) in polynomial.iter_mut().enumerate() {
+                let part = BALLS.product(if n % 2 == 0 { &u } else { &v }, &powers[k][n]);
+                *entry = match n % 4 {
+                    0 | 1 => BALLS.sum(entry, &part),
+                    _ => BALLS.difference(entry, &part),
+                };
+                if k == 0 {
+                    break;
+                }
+            }
+        }
+        polynomial
+    }
+}
+
+/// A matrix of two rows.
+type Matrix = [[Ball; 2]; 2];
+
+fn product(left: &Matrix, right: &Matrix) -> Matrix {
+    let entry = |i: usize, j: usize| {
+        BALLS.sum(
+            &BALLS.product(&left[i][0], &right[0][j]),
+            &BALLS.product(&left[i][1], &right[1][j]),
+        )
+    };
+    [0, 1].map(|i| [0, 1].map(|j| entry(i, j)))
+}
+
+/// The largest sum of a row.
+fn norm(matrix: &Matrix) -> Bound {
+    let row = |row: &[Ball; 2]| row.iter().map(|entry| BALLS.magnitude(entry)).sum::<Bound>();
+    row(&matrix[0]).max(row(&matrix[1]))
+}
+
+/// The trace of the fundamental matrix of `y' = z - G y, z' = -H y` after a turn; `None` if the
+/// coefficients turn too fast.
+fn trace(damping: &FourierSeries, stiffness: &FourierSeries) -> Option<Ball> {
+    // z is counted in units of 2^unit, so that both rows have about the same norm.
+    let unit = (0.5 * stiffness.norm().value().log2()).round().clamp(-40.0, 40.0);
+    let unit = if unit.is_finite() { unit as i32 } else { 0 };
+    let scale = Bound::power_of_two(unit);
+    let rate = (scale + damping.norm()).max(stiffness.norm() * Bound::power_of_two(-unit));
+    let harmonics = damping.length().max(stiffness.length()).max(1);
+    let fastest = (harmonics as f64).max(rate.value()).ceil();
+    if fastest * STEPS_OF_HARMONIC as f64 > MOST_STEPS as f64 {
+        return None;
+    }
+    let half = (fastest as usize * STEPS_OF_HARMONIC).div_ceil(2);
+    let table = waves(half, BALLS);
+    let step = BALLS.divided(&BALLS.pi(), u32::try_from(half).ok()?);
+    let width = BALLS.magnitude(&step);
+    let growth = width * rate;
+    // exp(1/2) is below 2.
+    if growth > Bound::exactly(0.5) {
+        return None;
+    }
+    let powers: Vec<Vec<Ball>> = (0..harmonics)
+        .map(|k| {
+            let turned = BALLS.scaled(&step, k as i64);
+            let next =
+                |power: &Ball, n: usize| BALLS.divided(&BALLS.product(power, &turned), n as u32);
+            let mut list = vec![BALLS.integer(1)];
+            for n in 1..DEGREE {
+                list.push(next(&list[n - 1], n));
+            }
+            list
+        })
+        .collect();
+    let [damping, stiffness] = [damping, stiffness].map(|series| Coefficient::new(series, width));
+    let one = BALLS.integer(1);
+    let unit_ball = BALLS.fraction(&crate::exact::rational::from_f64(scale.value())?);
+    let lighter = BALLS.fraction(&crate::exact::rational::from_f64(1.0 / scale.value())?);
+    let remainder = width * damping.remainder.max(stiffness.remainder * Bound::power_of_two(-unit));
+    let mut all: Matrix = [[one.clone(), Ball::zero()], [Ball::zero(), one.clone()]];
+    // With even harmonics alone both halves of the period have the same enclosure, also of the part
+    // that is in no harmonic.
+    let repeats = [&damping, &stiffness].iter().all(|series| series.has_even_alone());
+    for place in 0..if repeats { half } else { 2 * half } {
+        let [g, h] = [&damping, &stiffness].map(|series| series.polynomial(place, &table, &powers));
+        // h A, by powers of tau.
+        let rates: Vec<Matrix> = g
+            .iter()
+            .zip(&h)
+            .enumerate()
+            .map(|(n, (g, h))| {
+                let constant = if n == 0 { unit_ball.clone() } else { Ball::zero() };
+                let scaled = |ball: &Ball| BALLS.product(&step, ball);
+                let back = BALLS.scaled(&BALLS.product(&lighter, h), -1);
+                [[scaled(&BALLS.scaled(g, -1)), scaled(&constant)], [scaled(&back), Ball::zero()]]
+            })
+            .collect();
+        all = product(&step_matrix(&rates, remainder), &all);
+    }
+    if repeats {
+        all = product(&all, &all);
+    }
+    let trace = BALLS.sum(&all[0][0], &all[1][1]);
+    Some(WORKING.converted(&trace, BALLS))
+}
+
+/// The fundamental matrix of a step `Y' = (sum_n A_n tau^n + R) Y` from `tau = 0` to 1, where
+/// `||A|| <= 1/2` and R has this bound.
+fn step_matrix(rates: &[Matrix], remainder: Bound) -> Matrix {
+    let zero = || Ball::zero();
+    let one = BALLS.integer(1);
+    let mut terms: Vec<Matrix> = vec![[[one.clone(), zero()], [zero(), one]]];
+    for n in 0..DEGREE {
+        let mut sum: Matrix = [[zero(), zero()], [zero(), zero()]];
+        for (rate, term) in rates.iter().zip(terms.iter().rev()) {
+            let part = product(rate, term);
+            for (row, own) in sum.iter_mut().zip(&part) {
+                for (entry, own) in row.iter_mut().zip(own) {
+                    *entry = BALLS.sum(entry, own);
+                }
+            }
+        }
+        terms.push(sum.map(|row| row.map(|entry| BALLS.divided(&entry, n as u32 + 1))));
+    }
+    let sizes: Vec<Bound> = terms.iter().map(norm).collect();
+    // P' - A P: the products of the polynomials beyond the degree of P', and R P.
+    let mut left = remainder * sizes.iter().copied().sum::<Bound>();
+    for (j, rate) in rates.iter().enumerate() {
+        let size = norm(rate);
+        left += size * sizes[DEGREE - j..].iter().copied().sum::<Bound>();
+    }
+    let error = left * Bound::exactly(2.0);
+    let mut sum: Matrix = [[zero(), zero()], [zero(), zero()]];
+    for term in &terms {
+        for (row, own) in sum.iter_mut().zip(term) {
+            for (entry, own) in row.iter_mut().zip(own) {
+                *entry = BALLS.sum(entry, own);
+            }
+        }
+    }
+    for entry in sum.iter_mut().flatten() {
+        entry.radius += error;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::candidate::units;
+    use super::super::candidate::proved_by_some_block;
+    use super::*;
+    use crate::certificate::{certify_driven, check_damped};
+    use crate::exact::rational::to_f64;
+    use crate::expr::CompiledFunction;
+    use crate::{Options, Oscillator, solve};
+
+    /// A constant and a cosine of twice the angle, and what is in neither.
+    fn series(constant: f64, cosine: f64) -> FourierSeries {
+        let ball = |value: f64| {
+            WORKING.fraction(&crate::exact::rational::from_f64(value).expect("a number"))
+        };
+        FourierSeries::exactly(vec![ball(constant), Ball::zero(), ball(cosine)], vec![])
+    }
+
+    #[test]
+    fn constant_coefficients_have_a_closed_trace() {
+        // y'' + G y' + H y = 0: T = 2 exp(-pi G) cos(2 pi w), w^2 = H - G^2/4, or cosh.
+        for (g, h) in [(0.0, 1.3), (0.1, 2.0), (0.5, 0.04), (-0.2, 9.5), (0.3, -0.2), (0.0, 0.0)] {
+            let square: f64 = h - g * g / 4.0;
+            let turn = std::f64::consts::TAU * square.abs().sqrt();
+            let wave = if square > 0.0 { turn.cos() } else { turn.cosh() };
+            let expected = 2.0 * (-std::f64::consts::PI * g).exp() * wave;
+            let found = trace(&series(g, 0.0), &series(h, 0.0)).expect("a trace");
+            assert!((WORKING.nearest(&found) - expected).abs() < 1e-11 * expected.abs().max(1.0));
+            assert!(found.radius.value() < 1e-12, "{g}, {h}: {:?}", found.radius);
+        }
+    }
+
+    /// The trace after a turn of the angle, by Runge-Kutta of fourth order.
+    fn followed(damping: &dyn Fn(f64) -> f64, stiffness: &dyn Fn(f64) -> f64) -> f64 {
+        const STEPS: usize = 20_000;
+        let h = std::f64::consts::TAU / STEPS as f64;
+        let end = |mut state: [f64; 2]| {
+            for step in 0..STEPS {
+                let theta = h * step as f64;
+                let field = |at: f64, [y, z]: [f64; 2]| [z - damping(at) * y, -stiffness(at) * y];
+                let moved = |rate: [f64; 2], part: f64| {
+                    [state[0] + part * h * rate[0], state[1] + part * h * rate[1]]
+                };
+                let a = field(theta, state);
+                let b = field(theta + h / 2.0, moved(a, 0.5));
+                let c = field(theta + h / 2.0, moved(b, 0.5));
+                let d = field(theta + h, moved(c, 1.0));
+                state = [0, 1].map(|i| state[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+            }
+            state
+        };
+        end([1.0, 0.0])[0] + end([0.0, 1.0])[1]
+    }
+
+    #[test]
+    fn the_trace_of_mathieu_s_equation_is_that_of_runge_kutta() {
+        for (g, h, wave) in [(0.0, 1.0, 0.4), (0.1, 1.2, 2.0), (0.05, 4.0, -3.0)] {
+            let expected = followed(&|theta| g + wave / 10.0 * (2.0 * theta).cos(), &|theta| {
+                h + wave * (2.0 * theta).cos()
+            });
+            let found = trace(&series(g, wave / 10.0), &series(h, wave)).expect("a trace");
+            let apart = (WORKING.nearest(&found) - expected).abs();
+            assert!(apart < 1e-10 * expected.abs().max(1.0), "{apart}");
+            assert!(found.radius.value() < 1e-12);
+            // All coefficients within a distance: those at its ends have other traces.
+            let wide = Bound::exactly(1e-3);
+            let found =
+                trace(&series(g, wave / 10.0), &series(h, wave).widened(wide)).expect("a trace");
+            for end in [-1e-3, 1e-3] {
+                let other = followed(&|theta| g + wave / 10.0 * (2.0 * theta).cos(), &|theta| {
+                    h + end + wave * (2.0 * theta).cos()
+                });
+                let apart = (WORKING.nearest(&found) - other).abs();
+                assert!(apart <= found.radius.value() && apart > 1e-5, "{apart}, {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_taylor_polynomial_leaves_out_counts() {
+        // exp(1/4) of a constant rate, to all digits, and a remainder as large as it may be.
+        let quarter = BALLS.fraction(&crate::exact::ratio(1, 4));
+        let rates = [[[quarter.clone(), Ball::zero()], [Ball::zero(), quarter]]];
+        let rest = vec![[[Ball::zero(), Ball::zero()], [Ball::zero(), Ball::zero()]]; DEGREE - 1];
+        let rates: Vec<Matrix> = rates.into_iter().chain(rest).collect();
+        let exactly = step_matrix(&rates, Bound::ZERO);
+        assert!((BALLS.nearest(&exactly[0][0]) - 0.25_f64.exp()).abs() < 1e-15);
+        // The first power that is left out, and not much more than it.
+        let left = (1..=21).fold(1.0, |term, n| term / 4.0 / f64::from(n));
+        assert!(exactly[0][0].radius.value() > left, "{exactly:?}");
+        assert!(exactly[0][0].radius.value() < 100.0 * left + 1e-33, "{exactly:?}");
+        let wide = step_matrix(&rates, Bound::exactly(1e-3));
+        let off = 0.251_f64.exp() - 0.25_f64.exp();
+        assert!(wide[1][1].radius.value() > off && wide[1][1].radius.value() < 4.0 * off);
+        // A harmonic of a coefficient: its derivative of the degree of the polynomial.
+        let step = 0.05;
+        let coefficient = Coefficient::new(&series(0.0, 1.0), Bound::exactly(step));
+        let left = (1..=DEGREE).fold(1.0, |term, n| term * 2.0 * step / n as f64);
+        assert!((coefficient.remainder.value() / left - 1.0).abs() < 1e-9);
+        let tail = Bound::exactly(0.5);
+        let wide = Coefficient::new(&series(0.0, 1.0).widened(tail), Bound::exactly(step));
+        assert!(wide.remainder.value() > 0.5);
+    }
+
+    #[test]
+    fn multipliers_of_driven_motions_are_those_of_the_variational_equation() {
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        for (at, frequency) in [("F = 1/2, Omega = 3/2", 1.5), ("F = 1/10, Omega = 1", 1.0)] {
+            let at = at.parse().expect("values");
+            let (certificate, certified) =
+                certify_driven(&oscillator, &solution, &at).expect("a certificate");
+            assert_eq!(check_damped(&certificate).as_ref(), Ok(&certified));
+            let found = certified.multipliers.expect("multipliers");
+            assert_eq!(found.attracts, Some(true));
+            let problem = certificate.problem();
+            let motion = [0, 1].map(|kind| -> Vec<f64> {
+                let parts = 0..problem.motion.length();
+                parts
+                    .map(|k| {
+                        let wave = [problem.motion.cosine(k), problem.motion.sine(k)];
+                        WORKING.nearest(&wave[kind])
+                    })
+                    .collect()
+            });
+            let x = |theta: f64| -> f64 {
+                let waves = motion[0].iter().zip(&motion[1]).enumerate();
+                let wave = |(k, (a, b)): (usize, (&f64, &f64))| {
+                    a * (k as f64 * theta).cos() + b * (k as f64 * theta).sin()
+                };
+                waves.map(wave).sum()
+            };
+            let p = 1.0 / frequency;
+            let slope = crate::expr::parse_expression("1 + 3*x^2/4").expect("a slope");
+            let slope = CompiledFunction::new(&slope, &["x".into()]).expect("a function");
+            let expected = followed(&|_| 0.2 * p, &|theta| p * p * slope.call(&[x(theta)]));
+            assert!((to_f64(&found.trace.middle) - expected).abs() < 1e-10, "{found:?}");
+            assert!(found.trace.radius.value() < 1e-12, "{found:?}");
+            let determinant = (-std::f64::consts::TAU * 0.2 * p).exp();
+            assert!((to_f64(&found.determinant.middle) - determinant).abs() < 1e-14);
+            // The multipliers are complex there: both have the root of the determinant.
+            let largest = to_f64(&found.largest.expect("complex ones").middle);
+            assert!((largest - determinant.sqrt()).abs() < 1e-14, "{largest}");
+        }
+    }
+
+    /// The motion of `x'' + x'/5 + x + x^3/4 = cos(8 t/5)` near the harmonic of an amplitude whose
+    /// square is that of a balance with one harmonic.
+    fn of_square(square: f64) -> Multipliers {
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = "F = 1, Omega = 8/5".parse().expect("values");
+        let found = certify_driven(&oscillator, &solution, &at);
+        let (mut certificate, _) = found.expect("a certificate");
+        certificate.formula = None;
+        let stiffness = 1.0 - 2.56 + 3.0 * square / 16.0;
+        let waves = [square * stiffness, square * 0.32];
+        let in_units =
+            |value: f64| vec![units(0.0, certificate.bits), units(value, certificate.bits)];
+        [certificate.cosines, certificate.sines] = waves.map(in_units);
+        // Each attempt takes a step of Newton's iteration with an inverse of its own.
+        let mut attempts = (0..20).map(|_| proved_by_some_block(&mut certificate, 20).ok());
+        let certified = attempts.find_map(|proved| proved).expect("a proof");
+        let motion = certificate.motion();
+        let [a, b] = [motion.cosine(1), motion.sine(1)].map(|ball| WORKING.nearest(&ball));
+        assert!(((a * a + b * b) / square - 1.0).abs() < 0.25, "{a}, {b}, {square}");
+        certified.multipliers.expect("multipliers")
+    }
+
+    #[test]
+    fn of_three_steady_motions_the_middle_one_is_unstable() {
+        // u ((3 u/16 - 1.56)^2 + 0.1024) = 1 for the square u of the amplitude: three roots.
+        let balance = |u: f64| u * ((3.0 * u / 16.0 - 1.56).powi(2) + 0.1024) - 1.0;
+        let mut roots = vec![];
+        for place in 1..1200 {
+            let [low, high] = [f64::from(place) * 0.01, f64::from(place + 1) * 0.01];
+            if (balance(low) < 0.0) != (balance(high) < 0.0) {
+                roots.push((low + high) / 2.0);
+            }
+        }
+        assert_eq!(roots.len(), 3, "{roots:?}");
+        let [low, middle, high] = [0, 1, 2].map(|place| of_square(roots[place]));
+        let determinant = (-std::f64::consts::TAU / 8.0).exp();
+        for (found, attracts) in [(&low, true), (&middle, false), (&high, true)] {
+            assert_eq!(found.attracts, Some(attracts), "{found:?}");
+            assert!((to_f64(&found.determinant.middle) - determinant).abs() < 1e-13);
+            assert!(found.trace.radius.value() < 1e-10, "{found:?}");
+        }
+        let trace = to_f64(&middle.trace.middle);
+        assert!(trace > 1.0 + determinant, "{trace}");
+        let largest = to_f64(&middle.largest.expect("real ones").middle);
+        assert!((largest * (trace - largest) - determinant).abs() < 1e-12 && largest > 1.0);
+    }
+
+    #[test]
+    fn what_is_not_decided_is_not_said() {
+        // A motion that is known too roughly, and one without damping, whose multipliers are on the
+        // circle.
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = "F = 1/2, Omega = 3/2".parse().expect("values");
+        let (certificate, _) = certify_driven(&oscillator, &solution, &at).expect("a certificate");
+        let rough = multipliers(&certificate.problem(), Bound::exactly(0.2));
+        assert!(rough.is_none_or(|rough| rough.attracts.is_none()));
+        let mut undamped = certificate;
+        undamped.damping = crate::expr::Expr::zero();
+        let found = multipliers(&undamped.problem(), Bound::ZERO).expect("multipliers");
+        assert_eq!(found.attracts, None, "{found:?}");
+    }
+}

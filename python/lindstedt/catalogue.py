@@ -12,7 +12,9 @@ from .tables import Table
 
 
 class CatalogOfOscillators(Mapping[str, Oscillator]):
-    """The oscillators by their names.
+    """The oscillators of one coordinate by their names.
+
+    Coupled ones are in `entries`: `derive`, `modes` and `slow_equations` take their names.
 
     >>> import lindstedt as ls
     >>> ls.catalog["pendulum"]
@@ -23,12 +25,12 @@ class CatalogOfOscillators(Mapping[str, Oscillator]):
 
     @cached_property
     def entries(self) -> Table[Entry]:
-        """The entries, with title, equation and source."""
+        """All entries, those of coupled equations too, with title, equation and source."""
         return Table(answer(Call(("catalog",))).entries)
 
     @cached_property
     def _names(self) -> tuple[str, ...]:
-        return tuple(entry.name for entry in self.entries)
+        return tuple(entry.name for entry in self.entries if ";" not in entry.equation)
 
     def __getitem__(self, name: str) -> Oscillator:
         if name not in self._names:

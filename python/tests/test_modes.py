@@ -49,3 +49,19 @@ def test_refusals_say_why():
     assert why.value.term == "x'"
     with pytest.raises(ls.UsageError, match="`derive`"):
         ls.modes("x'' + x + x^3 = 0")
+
+
+def test_the_catalogue_has_coupled_equations():
+    coupled = [entry.name for entry in ls.catalog.entries if entry.name not in ls.catalog]
+    assert len(coupled) >= 12
+    assert isinstance(ls.derive("modal-pair"), ls.Modes)
+
+
+def test_an_approximant_is_a_quotient_in_sympy():
+    sympy = pytest.importorskip("sympy")
+    series = ls.modes(PAIR, order=6).to_sympy(1).rhs
+    quotient = ls.modes(PAIR, method="pade", order="2,1").to_sympy(1).rhs
+    a = next(iter(series.free_symbols))
+    quotient = quotient.subs({symbol: a for symbol in quotient.free_symbols})
+    assert sympy.series(quotient - series, a, 0, 8).removeO() == 0
+    assert sympy.denom(sympy.together(quotient)).has(a)

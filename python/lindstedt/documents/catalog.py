@@ -38,7 +38,7 @@ class Entry(Document):
     Attributes:
         name: The name on the command line.
         title: The name in running text.
-        equation: The equation of motion, `... = 0`.
+        equation: The equation of motion, or several separated by `;`.
         source: Where it is studied.
         published: The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`;
             null where none is printed.

@@ -58,6 +58,8 @@ class Mode(Document):
         modal_coordinate: The factors of the coordinates in the sum of which the amplitude is that
             of the first harmonic.
         omega_squared: omega^2 in powers of the amplitude.
+        approximant: A quotient of polynomials that agrees with omega_squared and stands for it,
+            as text; left out where it was not asked for.
         formula: The law in one line.
         motion: The harmonics of each coordinate in theta = omega*t.
         along: The coordinate in which the modal lines are written.
@@ -66,6 +68,7 @@ class Mode(Document):
         definitions: What the formulas name, each by those before it.
         numerical: Whether coefficients are rounded to fifteen digits, because the linear
             frequency is no fraction.
+        derivation: The derivation line by line, as text; left out where it was not asked for.
         verification: The mode at values beside the true motion; null without values.
         unjudged: The reason why no true motion was found; null where one was, or none was asked
             for.
@@ -77,12 +80,14 @@ class Mode(Document):
     shape: dict[str, Polynomial]
     modal_coordinate: dict[str, Polynomial]
     omega_squared: Polynomial
+    approximant: str | None
     formula: str
     motion: dict[str, tuple[Harmonic, ...]]
     along: str
     modal_lines: dict[str, Polynomial]
     definitions: dict[str, str]
     numerical: bool
+    derivation: tuple[str, ...] | None
     verification: ModeVerification | None
     unjudged: str | None
 
@@ -94,15 +99,18 @@ Mode.FIELDS = (
     ("shape", "shape", mapped(Polynomial.from_json)),
     ("modal_coordinate", "modal_coordinate", mapped(Polynomial.from_json)),
     ("omega_squared", "omega_squared", Polynomial.from_json),
+    ("approximant", "approximant", None),
     ("formula", "formula", None),
     ("motion", "motion", mapped(several(Harmonic.from_json))),
     ("along", "along", None),
     ("modal_lines", "modal_lines", mapped(Polynomial.from_json)),
     ("definitions", "definitions", dict),
     ("numerical", "numerical", None),
+    ("derivation", "derivation", tuple),
     ("verification", "verification", ModeVerification.from_json),
     ("unjudged", "unjudged", None),
 )
+Mode.OPTIONAL = frozenset(['approximant', 'derivation'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,7 +123,8 @@ class Modes(Answer):
         coordinates: The coordinates.
         rest: The place of rest from which each coordinate is counted, a formula.
         parameters: The letters of the equations, in alphabetical order.
-        method: The method: `lindstedt-poincare`.
+        method: The method: `lindstedt-poincare`, or `pade`, with an approximant of omega^2 on
+            top.
         order: The highest power of the amplitude in omega^2 that was asked for.
         amplitude: What the amplitude measures: `first-harmonic` or `initial`.
         amplitude_symbol: The symbol of the amplitude.

@@ -129,21 +129,47 @@ SlowSteadyMotion.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class EnergyExchange(Document):
+    """The exchange of energy between modes in resonance, by the slow equations.
+
+    Attributes:
+        period: The period, a number times K(m).
+        parameter: The parameter m of the complete elliptic integral K(m).
+        amplitudes: The least and the greatest amplitude of each mode.
+    """
+
+    period: float
+    parameter: float
+    amplitudes: dict[str, tuple[float, float]]
+
+
+EnergyExchange.FIELDS = (
+    ("period", "period", None),
+    ("parameter", "parameter", None),
+    ("amplitudes", "amplitudes", mapped(tuple)),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class SlowTransient(Document):
     """A motion by the slow equations beside the true one.
 
     Attributes:
         until: The time over which both are compared.
         error: The largest deviation of a coordinate, as a part of the largest displacement.
+        exchange: The exchange of energy between the modes; null where there is none in closed
+            form.
     """
 
     until: float
     error: float
+    exchange: EnergyExchange | None
 
 
 SlowTransient.FIELDS = (
     ("until", "until", None),
     ("error", "error", None),
+    ("exchange", "exchange", EnergyExchange.from_json),
 )
 
 
@@ -157,7 +183,7 @@ class SlowEquations(Answer):
         coordinates: The coordinates.
         rest: The place of rest from which each coordinate is counted, a formula.
         parameters: The letters of the equations, in alphabetical order.
-        method: The method: `multiple-scales`.
+        method: The method: `multiple-scales`, or `averaging`.
         order: The highest order of the slow equations.
         small_order: The order as which damping, detunings and drives at a resonance count.
         small_parameter: The small parameter; null if it is the amplitude of the motion.
@@ -168,6 +194,8 @@ class SlowEquations(Answer):
         motion: The motion of each coordinate: a formula in `t`, the amplitudes and the phases.
         definitions: What the formulas name, each by those before it; detunings, `sigma`, are
             reference frequency less linear frequency.
+        constants: What stays constant along the slow motion, formulas in amplitudes and slow
+            phases; empty where something damps or drives it, or no one phase decides.
         relations: The relations of steady motions with the phases eliminated.
         near: Waves that are near the frequency of a mode they are not in resonance with, where
             values are known: a divisor is small.
@@ -195,6 +223,7 @@ class SlowEquations(Answer):
     slow_phases: dict[str, str]
     motion: dict[str, str]
     definitions: dict[str, str]
+    constants: tuple[str, ...]
     relations: tuple[SteadyRelation, ...]
     near: tuple[NearDivisor, ...]
     numerical: bool
@@ -221,6 +250,7 @@ SlowEquations.FIELDS = (
     ("slow_phases", "slow_phases", dict),
     ("motion", "motion", dict),
     ("definitions", "definitions", dict),
+    ("constants", "constants", tuple),
     ("relations", "relations", several(SteadyRelation.from_json)),
     ("near", "near", several(NearDivisor.from_json)),
     ("numerical", "numerical", None),

@@ -389,7 +389,13 @@ pub fn find(name: &str) -> Option<&'static CatalogEntry> {
 /// ```
 pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), String>)> {
     if entry.is_coupled() {
-        let methods = [Method::LindstedtPoincare, Method::HarmonicBalance, Method::MultipleScales];
+        let methods = [
+            Method::LindstedtPoincare,
+            Method::Pade,
+            Method::HarmonicBalance,
+            Method::Averaging,
+            Method::MultipleScales,
+        ];
         return methods.map(|method| (method, of_coupled(entry.equation, method))).to_vec();
     }
     let attempt = |method: Method| {
@@ -403,20 +409,24 @@ pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), String>)> {
 /// A method of coupled equations on these.
 fn of_coupled(equations: &str, method: Method) -> Result<(), String> {
     let in_words = |error: &dyn fmt::Display| error.to_string();
-    if method == Method::MultipleScales {
+    if [Method::MultipleScales, Method::Averaging].contains(&method) {
         let system = CoupledSystem::parse(equations).map_err(|error| in_words(&error))?;
-        let slow = multiple_scales::derive(&system, &MultipleScalesOptions::default());
+        let averaging = method == Method::Averaging;
+        let options = MultipleScalesOptions { averaging, ..MultipleScalesOptions::default() };
+        let slow = multiple_scales::derive(&system, &options);
         return slow.map(|_| ()).map_err(|error| in_words(&error));
     }
     let system = FreeSystem::parse(equations).map_err(|error| in_words(&error))?;
+    let pade = (method == Method::Pade).then_some((1, 1));
+    let of_modes = ModeOptions { pade, ..ModeOptions::default() };
     let found = match method {
         Method::HarmonicBalance => modes::one_harmonic_modes(&system).map(|_| ()),
-        _ => modes::derive(&system, &ModeOptions::default()).and_then(|found| {
+        _ => modes::derive(&system, &of_modes).and_then(|found| {
             // One mode with a formula is an answer.
             found
                 .modes
                 .into_iter()
-                .reduce(|one, other| one.or(other))
+                .reduce(|one, other| if one.is_err() && other.is_ok() { other } else { one })
                 .map_or(Ok(()), |mode| mode.map(|_| ()))
         }),
     };

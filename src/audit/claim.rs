@@ -144,7 +144,7 @@ pub enum ClaimEquation {
     /// A mode of coupled equations.
     Mode {
         /// The equations.
-        system: FreeSystem,
+        system: Box<FreeSystem>,
         /// The number of the mode, 1 for the slowest.
         number: usize,
     },

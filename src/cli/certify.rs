@@ -176,17 +176,19 @@ fn certified_mode(
                 .to_owned(),
         ));
     }
+    let method = arguments.question.method.as_deref().or(problem.method.as_deref());
+    if let Some(name) = method.filter(|name| *name != Method::LindstedtPoincare.name()) {
+        return Err(Failure::Usage(format!(
+            "--method {name}: what is proved of a mode is its series by {}, which is meant without --method",
+            Method::LindstedtPoincare.name()
+        )));
+    }
     let Derived { modes, values, letters } =
         modes::derived(&arguments.question, arguments.mode.or(Some(1)), false, equations, problem)?;
     let _letters = letters.in_force();
     let Some(Ok(mode)) = modes.modes.first() else {
         return Err(Failure::because("there is no such mode".to_owned()));
     };
-    if mode.approximant.is_some() {
-        return Err(Failure::because(
-            "the law of a mode that is proved is its series: leave --method out".to_owned(),
-        ));
-    }
     let values = values.unwrap_or_default();
     let proved = match arguments.no_formula {
         true => certificate::certify_mode_motion(&modes.system, mode, &values),

@@ -58,7 +58,10 @@ pub(super) fn run(
             format => no_such(format),
         },
     };
-    let verdicts = judged.iter().flatten().map(|judged| judged.verdict == Verdict::Pass);
+    let passes = |own: &Result<JudgedMode, String>| {
+        own.as_ref().is_ok_and(|judged| judged.verdict == Verdict::Pass)
+    };
+    let verdicts = judged.iter().map(passes);
     let reached = modes.modes.iter().flatten().map(|mode| mode.order).min();
     let stopped = reached.filter(|reached| *reached < modes.order);
     Ok(Outcome {
@@ -213,7 +216,11 @@ fn judged(
     for mode in modes.modes.iter().flatten() {
         match judge_mode(&modes.system, mode, at, tolerance) {
             Ok(judged) => all.push(Ok(judged)),
-            Err(error @ VerificationError::NoMode { .. }) => all.push(Err(error.to_string())),
+            Err(
+                error @ (VerificationError::NoMode { .. }
+                | VerificationError::VanishingDivisor { .. }
+                | VerificationError::NoValue { .. }),
+            ) => all.push(Err(error.to_string())),
             Err(error) => return Err(unjudged(&error)),
         }
     }

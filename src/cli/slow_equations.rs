@@ -10,7 +10,7 @@ use crate::problem::{Order, Problem, ReadingCommand};
 use crate::report::{self, SlowReport};
 use crate::solution::Method;
 use crate::values::Values;
-use crate::verify::judge_slow_motion;
+use crate::verify::{Verdict, VerificationError, judge_slow_motion};
 
 use super::answer::{Answer, no_such};
 use super::derive::{DeriveArguments, as_meant, exact_values, unjudged};
@@ -102,11 +102,19 @@ pub(super) fn run(
     })?;
     let asked =
         values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
+    let mut lost = None;
     let judged = match asked {
         true => {
             let values = values.unwrap_or_default();
-            let judged = judge_slow_motion(&slow, &values, tolerance(&arguments.common));
-            Some(judged.map_err(|error| unjudged(&error))?)
+            match judge_slow_motion(&slow, &values, tolerance(&arguments.common)) {
+                Ok(judged) => Some(judged),
+                // The formulas are an answer without their verdict.
+                Err(VerificationError::NoSystem(reason)) => {
+                    lost = Some(format!("warning: no verdict: {reason}"));
+                    None
+                }
+                Err(error) => return Err(unjudged(&error)),
+            }
         }
         false => None,
     };
@@ -116,7 +124,17 @@ pub(super) fn run(
     let answer = Answer {
         document: &document,
         width: files::width(arguments.common.output.as_deref()),
-        picture: Some(&|| Ok(drawing::picture(&report)?)),
+        picture: Some(&|| match judged.as_ref().is_some_and(|judged| judged.transient.is_some()) {
+            true => Ok(drawing::picture(&report)?),
+            false => Err(Failure::because(format!(
+                "it is of the motion from given amplitudes, --at {}",
+                slow.amplitudes
+                    .iter()
+                    .map(|name| format!("{name}=0.1"))
+                    .collect::<Vec<_>>()
+                    .join(",")
+            ))),
+        }),
         other: &|format| {
             match format {
             Format::Json => {
@@ -132,7 +150,11 @@ pub(super) fn run(
         },
     };
     Ok(Outcome {
-        verdict: judged.as_ref().and_then(|judged| judged.verdict),
+        verdict: match lost {
+            Some(_) => Some(Verdict::Fail),
+            None => judged.as_ref().and_then(|judged| judged.verdict),
+        },
+        note: lost,
         ..answer.outcome(&arguments.common)?
     })
 }

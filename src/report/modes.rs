@@ -134,6 +134,13 @@ fn one_mode<'a>(
             shape.join(" : ")
         )),
     ];
+    if !mode.derivation.is_empty() {
+        blocks.push(Block::Note("derivation".to_owned()));
+        blocks.extend(mode.derivation.iter().map(|line| Block::Line(Cow::Borrowed(line))));
+    }
+    if !mode.derivation.is_empty() {
+        blocks.push(Block::Note("result".to_owned()));
+    }
     let law = |left: Expr, right: Sum| Block::Law { left, right };
     let omega = Expr::from(FREQUENCY);
     let squared = &omega * &omega;
@@ -164,11 +171,11 @@ fn one_mode<'a>(
     let others = others.filter(|(index, _)| *index != mode.along);
     blocks.extend(others.map(|(_, (name, line))| law(Expr::from(*name), mode.ordered(line))));
     blocks.extend(mode.definitions.iter().map(Block::Definition));
-    if !mode.derivation.is_empty() {
-        blocks.push(Block::Note("Derivation".to_owned()));
-        blocks.extend(mode.derivation.iter().map(|line| Block::Line(Cow::Borrowed(line))));
-    }
-    blocks.extend(mode.near.iter().map(|near| {
+    let near = match (mode.near.is_empty(), judged) {
+        (true, Some(Ok(judged))) => &judged.near,
+        _ => &mode.near,
+    };
+    blocks.extend(near.iter().map(|near| {
         let times = if near.ratio == 1 { String::new() } else { format!("{}*", near.ratio) };
         Block::Note(format!(
             "near internal resonance: the frequency of mode {} is within {} % of {times}{FREQUENCY}; a divisor is small, and the formula is good for \

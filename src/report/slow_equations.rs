@@ -8,7 +8,7 @@ use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
 use crate::expr::{Expr, ExprError};
 use crate::multiple_scales::SlowMotion;
-use crate::symbol::fresh;
+use crate::symbol::{Symbol, fresh};
 use crate::verify::{JudgedSlowMotion, JudgedSteadyMotion};
 
 /// Slow equations to be reported.
@@ -136,8 +136,10 @@ fn constants<'a>(slow: &SlowMotion) -> Result<Option<Vec<Block<'a>>>, ExprError>
     let (Some(invariants), Some((phase, _))) = (slow.invariants(), slow.slow_phases.first()) else {
         return Ok(None);
     };
-    let taken = &slow.system.equations.parameters;
-    let names = (1..).map(|number: usize| fresh(&format!("E{number}"), taken));
+    let equations = &slow.system.equations;
+    let taken = equations.parameters.iter().chain(&equations.coordinates).copied();
+    let taken: Vec<Symbol> = taken.collect();
+    let names = (1..).map(|number: usize| fresh(&format!("E{number}"), &taken));
     let all = names.zip(invariants.expressions(*phase)?);
     let heading = Block::Heading("Constants of the slow motion".to_owned());
     let lines = all.map(|(name, expression)| line(Expr::from(name), expression));
@@ -193,13 +195,13 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
                 })
                 .collect();
             facts.push(("exchange", ranges.join(", ")));
+            let period = decimal(exchange.period);
             facts.push((
                 "its period",
-                format!(
-                    "{}, a multiple of K(m) at m = {}",
-                    decimal(exchange.period),
-                    decimal(exchange.parameter)
-                ),
+                match exchange.parameter {
+                    0.0 => format!("{period}, trigonometric"),
+                    m => format!("{period}, a multiple of K(m) at m = {}", decimal(m)),
+                },
             ));
         }
         facts.extend(verdict);

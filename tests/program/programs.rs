@@ -400,8 +400,8 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 "jacobi_dn",
             ];
             driver += "#include <math.h>\n#include <stdio.h>\n";
-            for k in 0..cases.len() {
-                let own = cases[k].texts[0].split("def mode").skip(1);
+            for (k, case) in cases.iter().enumerate() {
+                let own = case.texts[0].split("def mode").skip(1);
                 let own = own.filter_map(|text| Some(format!("mode{}", text.split_once('(')?.0)));
                 for name in NAMES.into_iter().map(str::to_owned).chain(own) {
                     let _ = writeln!(driver, "#undef {name}\n#define {name} {name}_{k}");

@@ -71,13 +71,26 @@ pub(super) fn equation(text: &Text, mode: Option<&Spanned<usize>>) -> ReadResult
     let refused = |error: &dyn std::fmt::Display| {
         mistake(text.span(), error.to_string().lines().next().unwrap_or_default())
     };
+    if !equation.contains(['=', '\'']) {
+        let near = nearest(equation, catalog::CATALOG.iter().map(|entry| entry.name));
+        return helped(
+            text.span(),
+            format!("`{equation}` is no equation, and no name of the catalogue"),
+            near.map_or_else(
+                || "`lindstedt catalog` lists the names".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            ),
+        );
+    }
     match (equation.contains(';'), mode) {
         (false, None) => match Oscillator::parse(equation) {
             Ok(oscillator) => Ok(ClaimEquation::One(oscillator)),
             Err(error) => refused(&error),
         },
         (true, Some(number)) => match FreeSystem::parse(equation) {
-            Ok(system) => Ok(ClaimEquation::Mode { system, number: *number.get_ref() }),
+            Ok(system) => {
+                Ok(ClaimEquation::Mode { system: Box::new(system), number: *number.get_ref() })
+            }
             Err(error) => refused(&error),
         },
         (false, Some(number)) => {

@@ -102,6 +102,15 @@ fn motion(
         .collect();
     let beginning = |least: usize| {
         let own = harmonics.iter().filter(|(k, _)| *k >= least);
+        // A constant needs neither frequency nor time.
+        if own.clone().all(|(k, _)| *k == 0) {
+            let symbols: BTreeSet<Symbol> = own.flat_map(|(_, cosine)| cosine.symbols()).collect();
+            let (definitions, mut arguments) = resolved(&mode.definitions, names, symbols);
+            arguments.insert(0, names.time);
+            let unused = Statement::Unused(names.time);
+            let body = std::iter::once(unused).chain(variables(definitions)).collect();
+            return FunctionPrologue { arguments, body };
+        }
         let symbols: BTreeSet<Symbol> =
             own.flat_map(|(_, cosine)| cosine.symbols()).chain(of_frequency.to_vec()).collect();
         let (definitions, mut arguments) = resolved(&mode.definitions, names, symbols);

@@ -1,5 +1,7 @@
 //! The nonlinear normal modes of a system: frequency laws, motions, modal lines.
 
+use std::collections::BTreeMap;
+
 use num_traits::Zero;
 
 use super::expansion::{Expansion, ExpansionStep, OverRing, Question};
@@ -18,6 +20,7 @@ use crate::interrupt::Supervision;
 use crate::method::pade::approximant;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, Degrees, Sum, definitions_behind};
+use crate::symbol::Symbol;
 
 /// The order without a choice.
 const USUAL_ORDER: u32 = 4;
@@ -146,6 +149,30 @@ impl NonlinearMode {
         Sum::new(polynomial, self.rounded, |monomial| monomial.exponent(amplitude))
     }
 
+    /// The modes whose frequency is near a multiple that occurs in the motion, where every letter of the
+    /// equations has a value; none where the numbers have no modes.
+    pub fn near_at(
+        &self,
+        system: &FreeSystem,
+        values: &BTreeMap<Symbol, Expr>,
+    ) -> Vec<NearResonance> {
+        let Ok(numbers) = system.with_values(values) else { return vec![] };
+        match LinearModes::new(&numbers.mass, &numbers.stiffness, numbers.names()) {
+            Ok(linear) if linear.count() >= self.number => self.occurring(&linear),
+            _ => vec![],
+        }
+    }
+
+    /// The near resonances of linear modes whose ratio occurs in the motion.
+    fn occurring(&self, linear: &LinearModes) -> Vec<NearResonance> {
+        let occurs = |near: &NearResonance| {
+            let mut harmonics = self.motion.iter().map(|series| series.cosine(near.ratio));
+            harmonics.any(|harmonic| !harmonic.is_zero())
+        };
+        let near = linear.near_resonances(self.number - 1, self.order as usize + 1);
+        near.into_iter().filter(occurs).collect()
+    }
+
     /// The law in one line.
     pub fn formula(&self) -> String {
         match &self.approximant {
@@ -261,12 +288,7 @@ fn one_mode(
     let definitions: Vec<Definition> =
         known.into_iter().chain(std::mem::take(&mut inverses.definitions)).collect();
     let mut found = in_amplitude(system, expansion, number, mode, rounded, options);
-    let occurs = |near: &NearResonance| {
-        let mut harmonics = found.motion.iter().map(|series| series.cosine(near.ratio));
-        harmonics.any(|harmonic| !harmonic.is_zero())
-    };
-    let near = linear.near_resonances(number - 1, order as usize + 1);
-    found.near = near.into_iter().filter(occurs).collect();
+    found.near = found.occurring(linear);
     found.derivation = match rounded {
         true => derivation.iter().map(|line| line.with_numbers(&to_shown_digits)).collect(),
         false => derivation,

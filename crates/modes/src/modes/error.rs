@@ -178,7 +178,11 @@ impl ModeError {
                 "give them values: --at {}",
                 letters.iter().map(|name| format!("{}=1", name.written())).collect::<Vec<_>>().join(",")
             )),
-            Self::EqualFrequencies { .. } | Self::InternalResonance { .. } => Some(
+            Self::EqualFrequencies { .. } => Some(
+                "--method multiple-scales has the slow equations of both modes, --method harmonic-balance similar ones of two masses; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
+                    .to_owned(),
+            ),
+            Self::InternalResonance { .. } => Some(
                 "--method multiple-scales has the slow equations of both modes; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
                     .to_owned(),
             ),

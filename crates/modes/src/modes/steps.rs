@@ -58,7 +58,7 @@ pub(super) fn derivation(
         entries.iter().enumerate().any(|(column, entry)| entry.is_zero() == (row == column))
     });
     let unknowns = match is_modal {
-        true => ["u", "v"].map(|stem| fresh_stem(stem, &taken)).to_vec(),
+        true => ["u", "v"].map(|stem| fresh_stem(fresh(stem, &taken).written(), &taken)).to_vec(),
         false => coordinates.iter().map(|name| name.written().to_owned()).collect(),
     };
     let names = StepNames { unknowns, correction: fresh_stem("W", &taken), taken };

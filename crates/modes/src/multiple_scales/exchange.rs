@@ -309,9 +309,11 @@ impl SlowInvariants {
         let f = difference(&squared, &times(&rest, &rest));
         let Oscillation { ends, parameter, period } = oscillation(&f)?;
         let range = |square: &Vec<f64>| {
-            let mut own = ends.map(|s| (square[0] + square[1] * s).max(0.0).sqrt());
+            let mut own = ends.map(|s| square[0] + square[1] * s);
             own.sort_by(f64::total_cmp);
-            own
+            // Rounding is what is left of a square that vanishes.
+            let largest = own[1];
+            own.map(|square| if square <= 1e-13 * largest { 0.0 } else { square.sqrt() })
         };
         Some(EnergyExchange { parameter, period, amplitudes: squares.iter().map(range).collect() })
     }

@@ -2,7 +2,7 @@
 
 use super::comparison::Refused;
 use crate::decimal::decimal;
-use crate::expr::{EvaluationError, ExprError, LostDigits};
+use crate::expr::{EvaluationError, Expr, ExprError, LostDigits};
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::OscillatorError;
@@ -96,7 +96,9 @@ pub enum VerificationError {
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
     /// No true motion of a nonlinear normal mode was found.
-    #[error("no motion of mode {number} was found beyond {} = {}", amplitude.written(), decimal(*reached))]
+    #[error(
+        "the true motion of mode {number} was not found: the search, in steps of {} from rest on, came to {}", amplitude.written(), decimal(*reached)
+    )]
     NoMode {
         /// The number of the mode.
         number: usize,
@@ -104,6 +106,28 @@ pub enum VerificationError {
         amplitude: Symbol,
         /// The amplitude up to which the motions were followed.
         reached: f64,
+    },
+    /// A divisor of a formula vanishes at the values.
+    #[error(
+        "mode {number} has no formula at these values: its divisor {divisor} is zero there, an internal resonance"
+    )]
+    VanishingDivisor {
+        /// The number of the mode.
+        number: usize,
+        /// The name of the divisor.
+        divisor: Symbol,
+    },
+    /// What a formula names has no real value.
+    #[error(
+        "mode {number} does not swing at these values: {name} = {meaning} has no real value there"
+    )]
+    NoValue {
+        /// The number of the mode.
+        number: usize,
+        /// The name.
+        name: Symbol,
+        /// Its meaning.
+        meaning: Expr,
     },
     /// The numbers of an equation cannot be followed.
     #[error("{0}")]

@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Verdict, VerificationError};
 use crate::exact::Doubles;
-use crate::modes::{FreeSystem, NonlinearMode};
+use crate::modes::{FreeSystem, NearResonance, NonlinearMode};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, defined_values};
+use crate::solution::{AmplitudeConvention, Definition, defined_values};
 use crate::symbol::Symbol;
 use crate::system::{PathEnd, Solver, System, SystemOptions};
 use crate::values::Values;
@@ -43,6 +43,8 @@ pub struct JudgedMode {
     /// Largest deviation of a coordinate over a period, at the same theta, as a part of the largest
     /// displacement.
     pub max_deviation: f64,
+    /// The other modes whose frequency at these values is near a multiple that occurs in the motion.
+    pub near: Vec<NearResonance>,
     /// Measured exponent of the error of the frequency, from two amplitudes of which one is half of
     /// the other, as small as rounding allows; `None` if it hides the error.
     pub slope: Option<f64>,
@@ -140,6 +142,7 @@ pub fn judge_mode(
         true_frequency: whole.frequency(),
         relative_error,
         max_deviation: deviation / largest,
+        near: mode.near_at(system, &at.split(&system.equations.parameters).0),
         slope: slope(&errors),
         paths: [by_formula, whole.path],
         verdict: Verdict::from_passed(relative_error.is_some_and(|error| error.abs() <= tolerance)),
@@ -185,8 +188,16 @@ fn symbol_values(
     let pi = Symbol::new("pi");
     let value_of =
         |name: Symbol| numbers.get(&name).copied().or_else(|| (name == pi).then_some(PI));
-    let defined = defined_values(&mode.definitions, &value_of)
-        .map_err(|name| VerificationError::Missing(vec![name]))?;
+    let defined = defined_values(&mode.definitions, &value_of).map_err(|name| {
+        match mode.definitions.iter().find(|definition| definition.symbol == name) {
+            Some(definition) => VerificationError::NoValue {
+                number: mode.number,
+                name,
+                meaning: definition.meaning.clone(),
+            },
+            None => VerificationError::Missing(vec![name]),
+        }
+    })?;
     Ok(numbers
         .iter()
         .map(|(name, value)| (*name, *value))
@@ -209,7 +220,18 @@ fn formula_at(
     let motion = mode.motion.iter().map(|series| {
         series.map(Doubles, |coefficient, _| coefficient.evaluate(value_of).unwrap_or(f64::NAN))
     });
-    Ok(Formula { frequency_squared, motion: motion.collect() })
+    let motion: Vec<FourierSeries<Doubles>> = motion.collect();
+    let is_number = |series: &FourierSeries<Doubles>| series.evaluate(0.0).is_finite();
+    if !(frequency_squared.is_finite() && motion.iter().all(is_number)) {
+        let zero = mode.definitions.iter().find(|own| values.get(&own.symbol) == Some(&0.0));
+        if let Some(Definition { symbol, .. }) = zero {
+            return Err(VerificationError::VanishingDivisor {
+                number: mode.number,
+                divisor: *symbol,
+            });
+        }
+    }
+    Ok(Formula { frequency_squared, motion })
 }
 
 /// The equations with numbers, and the definition of the amplitude.

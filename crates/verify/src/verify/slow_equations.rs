@@ -340,7 +340,10 @@ impl<'a> TrueMotion<'a> {
             formula.push(self.at(*time, &amplitudes));
         }
         let truth = self.followed(&start, &times).ok_or_else(|| {
-            VerificationError::NoSystem("the true motion could not be followed".to_owned())
+            VerificationError::NoSystem(
+                "the true motion from there grows without bound, or cannot be followed so long"
+                    .to_owned(),
+            )
         })?;
         let count = self.slow.motion.len();
         formula.iter_mut().for_each(|place| place.truncate(count));

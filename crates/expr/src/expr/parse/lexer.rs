@@ -138,6 +138,10 @@ impl<'a> Lexer<'a> {
             '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),
             ']' | '}' => (format!("`{letter}` is no parenthesis here"), "try `)`"),
             '|' => ("`|` is no sign here".into(), "the absolute value is `abs(x)`"),
+            ';' => (
+                "`;` ends an equation, and one is expected here".into(),
+                "`lindstedt derive`, `response` and `certify` take several",
+            ),
             '_' => ("a name begins with a letter".into(), ""),
             '\\' if self.rest().starts_with("ddot") => {
                 return Err(self.latex_derivative(start, "''"));

@@ -57,7 +57,8 @@ pub struct AbsorberRelationDocument {
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberDesign"))]
 pub struct AbsorberDesignDocument {
     /// The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper,
-    /// `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an impact sink, `upward-jump` and `downward-jump` of a cubic sink.
+    /// `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an impact sink,
+    /// `upward-jump` and `downward-jump` of a cubic sink.
     pub name: String,
     /// What is best of it, in words.
     pub words: String,

@@ -9,10 +9,10 @@ use serde_json::Value;
 
 use super::{
     AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument,
-    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
-    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
+    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
+    LagrangianDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument,
+    MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };

@@ -34,3 +34,10 @@ def test_what_an_absorber_cannot_be_is_refused():
         ls.absorber("tuned", mu=-1)
     with pytest.raises(ls.UsageError):
         ls.absorber("tunde")
+
+
+def test_similar_springs_keep_the_peaks_equal():
+    springs = formulas(ls.absorber("nonlinear", mu="1/20", alpha3=1, F="1/100"), "similar-springs")
+    assert math.isclose(springs["cubic"].value, springs["cubic"].truth, rel_tol=0.01)
+    lower, upper = springs["lower_height"].truth, springs["upper_height"].truth
+    assert math.isclose(lower, upper, rel_tol=1e-3)

@@ -13,13 +13,14 @@ use super::derive::{exact_values, separate_values};
 use super::files::width;
 use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
-/// Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, thresholds of
-/// a ball in a cavity and of a light mass on a cubic spring
+/// Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, its cubic
+/// spring where the main mass has one, thresholds of a ball in a cavity and of a light mass on a cubic
+/// spring
 #[derive(Args)]
 pub struct AbsorberArguments {
-    /// The kind of absorber: a tuned mass damper; a vibro-impact sink, a ball in a cavity; a light
-    /// mass on a cubic spring
-    #[arg(value_parser = ["tuned", "impact-sink", "cubic-sink"])]
+    /// The kind of absorber: a tuned mass damper; a nonlinear one, with a cubic spring beside that of
+    /// the main mass; a vibro-impact sink, a ball in a cavity; a light mass on a cubic spring
+    #[arg(value_parser = ["tuned", "nonlinear", "impact-sink", "cubic-sink"])]
     kind: String,
     /// What shakes the main mass of a tuned mass damper: a force on it, or the ground; force without
     /// it
@@ -91,6 +92,7 @@ fn kind(arguments: &AbsorberArguments) -> Result<AbsorberKind, Failure> {
         (kind, Some(_)) => Err(Failure::Usage(format!(
             "--excitation says nothing to {kind}: it is what shakes the main mass of a tuned mass damper"
         ))),
+        ("nonlinear", None) => Ok(AbsorberKind::Nonlinear),
         ("impact-sink", None) => Ok(AbsorberKind::ImpactSink),
         (_, None) => Ok(AbsorberKind::CubicSink),
     }

@@ -6,7 +6,8 @@ use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
 use crate::absorber::{AbsorberKind, AbsorberLaws};
 use crate::verify::{AbsorberCurveKind, JudgedAbsorber};
 
-/// The response of a tuned mass damper with each design, or the manifold of a sink with a motion
+/// The response of a tuned mass damper with each design, that of a nonlinear absorber with and without
+/// its cubic spring, or the manifold of a sink with a motion
 /// that follows it.
 ///
 /// # Errors
@@ -26,7 +27,9 @@ pub fn picture(laws: &AbsorberLaws, judged: &JudgedAbsorber) -> Result<String, F
     let mut designs = 0;
     let curves = judged.curves.iter().map(|curve| {
         let style = match (laws.kind, curve.kind) {
-            (AbsorberKind::Tuned(_), AbsorberCurveKind::Truth) => {
+            (AbsorberKind::Tuned(_), AbsorberCurveKind::Truth)
+            | (AbsorberKind::Nonlinear, AbsorberCurveKind::Truth | AbsorberCurveKind::Background) =>
+            {
                 designs += 1;
                 CurveStyle::SERIES[(designs - 1) % CurveStyle::SERIES.len()]
             }
@@ -48,6 +51,9 @@ fn axes(kind: AbsorberKind) -> [&'static str; 3] {
     match kind {
         AbsorberKind::Tuned(_) => {
             ["Tuned mass damper", "frequency g", "amplitude over the static one"]
+        }
+        AbsorberKind::Nonlinear => {
+            ["Nonlinear tuned absorber", "frequency g", "amplitude of x over F"]
         }
         AbsorberKind::CubicSink => [
             "Nonlinear energy sink",

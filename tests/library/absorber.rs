@@ -81,6 +81,17 @@ fn searches_find_the_designs() {
     }
 }
 
+/// A force for which the law is none of small changes is not judged.
+#[test]
+fn a_law_of_small_changes_is_not_judged_of_large_ones() {
+    for force in ["1", "1/100000"] {
+        let judged =
+            judged(AbsorberKind::Nonlinear, &format!("mu = 1/20, alpha3 = 1, F = {force}"));
+        let cubic = judged.formulas.iter().find(|own| own.name == "cubic").expect("a formula");
+        assert_eq!((cubic.truth, judged.verdict), (None, Verdict::Fail), "F = {force}");
+    }
+}
+
 /// A heavier main mass than doubles resolve is no pass.
 #[test]
 fn what_is_not_found_is_no_pass() {
@@ -115,6 +126,38 @@ fn the_response_of_the_equations_has_the_height() {
             // Fixed points lie a little below the peaks; the branch has points a little beside them.
             assert!((0.999..1.003).contains(&relative), "{kind:?} {design}: {relative}");
         }
+    }
+}
+
+/// The cubic spring that makes the true peaks equally high tends to that of the formula in proportion
+/// to alpha3 F^2, the heights quadratically; with the linear spring alone the peaks are apart.
+#[test]
+fn similar_springs_keep_the_peaks_of_the_response_equal() {
+    for mu in [0.05_f64] {
+        let errors = [1.0, 4.0].map(|part| {
+            let at = format!("mu = {mu}, alpha3 = 4, F = {}", 0.005 * part);
+            let judged = judged(AbsorberKind::Nonlinear, &at);
+            let error = |name| {
+                let own = judged.formulas.iter().find(|own| own.name == name);
+                own.and_then(|own| own.relative_error).expect(name).abs()
+            };
+            let [lower, upper] = ["lower_height", "upper_height"]
+                .map(|name| truth(&judged, "similar-springs", name));
+            let linear = judged.curves.iter().find(|curve| curve.label.starts_with("linear"));
+            let linear = &linear.expect("a curve").points;
+            let top = |from: f64, to: f64| {
+                let near = linear.iter().filter(|point| (from..to).contains(&point.0));
+                near.map(|point| point.1).fold(0.0, f64::max)
+            };
+            let middle = 1.0 / (1.0 + mu).sqrt();
+            let apart = (top(0.0, middle) / top(middle, 9.0)).ln().abs();
+            let own = (lower / upper).ln().abs();
+            assert!(own < apart / 8.0, "{at}: {own}, {apart}");
+            [error("cubic"), error("lower_height").max(error("upper_height"))]
+        });
+        let [near, far] = errors;
+        assert!(near[0] < 0.02 && near[0] < far[0] / 8.0, "{mu}: {errors:?}");
+        assert!(near[1] < far[1] / 64.0, "{mu}: {errors:?}");
     }
 }
 
@@ -340,6 +383,11 @@ fn values_outside_their_range_are_refused() {
             AbsorberKind::CubicSink,
             "lambda = 0.6, k = 1, eps = 1/100",
             "a sink whose manifold folds",
+        ),
+        (
+            AbsorberKind::Nonlinear,
+            "mu = 1/20, alpha3 = 0, F = 1/100",
+            "alpha3 = 0: the cubic coefficient of a main mass that stiffens is positive",
         ),
         (TUNED, "mu = 1/20, nu = 1", "`nu` is no letter of this absorber, which has `mu`"),
     ] {

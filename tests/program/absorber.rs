@@ -27,8 +27,9 @@ fn in_snapshots(body: impl FnOnce()) {
 }
 
 /// Values of each kind.
-const KINDS: [[&str; 2]; 3] = [
+const KINDS: [[&str; 2]; 4] = [
     ["tuned", "mu=1/20"],
+    ["nonlinear", "mu=1/20,alpha3=1,F=1/100"],
     ["impact-sink", "r=0.65,b=1,mu=1/100"],
     ["cubic-sink", "lambda=0.2,k=1,eps=1/100"],
 ];
@@ -59,7 +60,7 @@ fn every_kind_of_absorber_has_every_format() {
 
 #[test]
 fn a_verdict_is_an_exit_code() {
-    let [kind, at] = KINDS[2];
+    let [kind, at] = KINDS[3];
     assert_eq!(run(&[kind, "--at", at]).status.code(), Some(0));
     assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.01"]).status.code(), Some(3));
     assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.05"]).status.code(), Some(0));
@@ -86,6 +87,14 @@ fn what_an_absorber_cannot_be_says_why() {
             "`b`, `mu` have no value\n  help: add --at b=1,mu=1/100",
         ),
         (vec!["cubic-sink", "--at", "lambda=0.6,k=1,eps=0.01"], 1, "above 0 and below 0.577"),
+        (
+            vec!["nonlinear", "--at", "mu=1/20,alpha3=-1,F=1/100"],
+            1,
+            "alpha3 = -1: the cubic coefficient of a main mass that stiffens is positive\n  --at alpha3=-1\n              ^^\n",
+        ),
+        (vec!["nonlinear", "--at", "mu=2,alpha3=1,F=1/100"], 1, "at least 0.001 and at most 1"),
+        (vec!["nonlinear", "--at", "mu=1/20"], 1, "help: add --at alpha3=1,F=1/100"),
+        (vec!["nonlinear", "--excitation", "ground"], 2, "--excitation says nothing to nonlinear"),
         (vec!["tuned", "--at", "nu=1"], 2, "`nu` is no letter of this absorber"),
         (vec!["tuned", "--at", "mu=k"], 2, "contains `k`"),
         (vec!["tuned", "--tolerance", "0.1"], 1, "a verdict of an absorber needs numbers"),

@@ -169,6 +169,7 @@ fn documents() -> Vec<(String, Value)> {
     }
     add(&["absorber", "tuned", "--excitation", "ground"]);
     add(&["absorber", "tuned", "--at", "mu=1/20"]);
+    add(&["absorber", "nonlinear"]);
     add(&["absorber", "impact-sink", "--at", "r=0.65,b=1,mu=1/100"]);
     add(&["paper"]);
     add(&["impact", "--compare"]);

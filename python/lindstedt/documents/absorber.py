@@ -67,8 +67,8 @@ class AbsorberDesign(Document):
 
     Attributes:
         name: The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper,
-            `threshold` and `period-doubling` of an impact sink, `upward-jump` and `downward-jump`
-            of a cubic sink.
+            `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an
+            impact sink, `upward-jump` and `downward-jump` of a cubic sink.
         words: What is best of it, in words.
         formulas: Its formulas.
     """
@@ -117,9 +117,9 @@ class Absorber(Answer):
 
     Attributes:
         schema: The kind of document.
-        absorber: The kind of absorber: `tuned`, `impact-sink` or `cubic-sink`.
+        absorber: The kind of absorber: `tuned`, `nonlinear`, `impact-sink` or `cubic-sink`.
         excitation: What shakes the main mass of a tuned mass damper, `force` or `ground`; null of
-            a sink.
+            other kinds.
         equations: The equations of motion.
         letters: The letters of equations and formulas, each with its meaning.
         definitions: The symbols that shorten the formulas.
@@ -128,7 +128,7 @@ class Absorber(Answer):
         validity: What the formulas leave out, in words.
         at: The values; null without them.
         motion: A simulated motion that follows the manifold of a sink; null without values, of a
-            tuned mass damper, and where the motion does not follow it.
+            tuned or nonlinear absorber, and where the motion does not follow it.
         verdict: `pass` or `fail`; null without values.
         tolerance: The largest relative error that passes; null without values.
     """

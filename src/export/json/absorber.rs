@@ -15,9 +15,9 @@ use crate::report::AbsorberReport;
 pub struct AbsorberDocument {
     /// The kind of document.
     pub schema: String,
-    /// The kind of absorber: `tuned`, `impact-sink` or `cubic-sink`.
+    /// The kind of absorber: `tuned`, `nonlinear`, `impact-sink` or `cubic-sink`.
     pub absorber: String,
-    /// What shakes the main mass of a tuned mass damper, `force` or `ground`; null of a sink.
+    /// What shakes the main mass of a tuned mass damper, `force` or `ground`; null of other kinds.
     pub excitation: Option<String>,
     /// The equations of motion.
     pub equations: Vec<String>,
@@ -33,8 +33,8 @@ pub struct AbsorberDocument {
     pub validity: String,
     /// The values; null without them.
     pub at: Option<Map<Constant>>,
-    /// A simulated motion that follows the manifold of a sink; null without values, of a tuned mass
-    /// damper, and where the motion does not follow it.
+    /// A simulated motion that follows the manifold of a sink; null without values, of a tuned
+    /// or nonlinear absorber, and where the motion does not follow it.
     pub motion: Option<AbsorberMotionDocument>,
     /// `pass` or `fail`; null without values.
     pub verdict: Option<String>,
@@ -56,8 +56,9 @@ pub struct AbsorberRelationDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberDesign"))]
 pub struct AbsorberDesignDocument {
-    /// The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper, `threshold`
-    /// and `period-doubling` of an impact sink, `upward-jump` and `downward-jump` of a cubic sink.
+    /// The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper,
+    /// `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an impact sink,
+    /// `upward-jump` and `downward-jump` of a cubic sink.
     pub name: String,
     /// What is best of it, in words.
     pub words: String,
@@ -145,7 +146,7 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
         excitation: match laws.kind {
             AbsorberKind::Tuned(Excitation::Force) => Some("force".to_owned()),
             AbsorberKind::Tuned(Excitation::Ground) => Some("ground".to_owned()),
-            AbsorberKind::ImpactSink | AbsorberKind::CubicSink => None,
+            AbsorberKind::Nonlinear | AbsorberKind::ImpactSink | AbsorberKind::CubicSink => None,
         },
         equations: laws.equations.iter().map(|(left, right)| format!("{left} = {right}")).collect(),
         letters: named(laws.meanings.iter().map(|(name, words)| (name, (*words).to_owned()))),

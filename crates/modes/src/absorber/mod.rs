@@ -4,11 +4,14 @@
 //! letters of the equations, derived from them.
 //!
 //! - `tuned`: the tuned mass damper, by exact algebra of its frequency response.
+//! - `nonlinear`: the same on a main mass with a cubic spring, with a cubic spring of its own, by
+//!   perturbation of its two peaks.
 //! - `impact_sink`: a ball in a cavity, by the conditions of its impacts.
 //! - `cubic_sink`: a light mass on a cubic spring, by the first harmonic of its motion.
 
 mod cubic_sink;
 mod impact_sink;
+mod nonlinear;
 mod tuned;
 
 use std::ops::{Bound, RangeBounds as _};
@@ -36,6 +39,8 @@ pub enum Excitation {
 pub enum AbsorberKind {
     /// The tuned mass damper on a main mass without damping.
     Tuned(Excitation),
+    /// The nonlinear tuned absorber, with a cubic spring like that of the main mass.
+    Nonlinear,
     /// The vibro-impact sink, a ball in a cavity.
     ImpactSink,
     /// The nonlinear energy sink, a light mass on a cubic spring.
@@ -47,6 +52,7 @@ impl AbsorberKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Tuned(_) => "tuned",
+            Self::Nonlinear => "nonlinear",
             Self::ImpactSink => "impact-sink",
             Self::CubicSink => "cubic-sink",
         }
@@ -57,6 +63,7 @@ impl AbsorberKind {
         match self {
             Self::Tuned(Excitation::Force) => &[tuned::MASS_RATIO],
             Self::Tuned(Excitation::Ground) => &[tuned::MASS_RATIO_BELOW_TWO],
+            Self::Nonlinear => &nonlinear::LETTERS,
             Self::ImpactSink => &impact_sink::LETTERS,
             Self::CubicSink => &cubic_sink::LETTERS,
         }
@@ -221,6 +228,7 @@ impl AbsorberError {
 pub fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> {
     match kind {
         AbsorberKind::Tuned(excitation) => tuned::derive(excitation),
+        AbsorberKind::Nonlinear => nonlinear::derive(),
         AbsorberKind::ImpactSink => impact_sink::derive(),
         AbsorberKind::CubicSink => cubic_sink::derive(),
     }

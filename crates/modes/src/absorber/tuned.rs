@@ -52,19 +52,19 @@ pub(super) const MASS_RATIO_BELOW_TWO: AbsorberLetter = AbsorberLetter {
 type InUnknown = Vec<RationalFunction>;
 
 /// The symbols of the derivation.
-struct Names {
-    mu: Symbol,
-    f: Symbol,
-    zeta: Symbol,
-    g: Symbol,
+pub(super) struct Names {
+    pub(super) mu: Symbol,
+    pub(super) f: Symbol,
+    pub(super) zeta: Symbol,
+    pub(super) g: Symbol,
     /// s of the transfer function.
     s: Symbol,
     /// w = g^2.
-    w: Symbol,
+    pub(super) w: Symbol,
     /// p = f^2.
-    p: Symbol,
+    pub(super) p: Symbol,
     /// z = 4 zeta^2 f^2.
-    z: Symbol,
+    pub(super) z: Symbol,
     rho: Symbol,
     q: Symbol,
     /// m = 1 + mu.
@@ -72,7 +72,7 @@ struct Names {
 }
 
 impl Names {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let of = Symbol::new;
         Self {
             mu: of("mu"),
@@ -184,7 +184,10 @@ fn power(name: Symbol, exponent: i32) -> Polynomial {
 }
 
 /// Numerator and denominator of the transfer function of x, polynomials in s.
-fn transfer(equations: &CoupledEquations, names: &Names) -> Result<[Polynomial; 2], AbsorberError> {
+pub(super) fn transfer(
+    equations: &CoupledEquations,
+    names: &Names,
+) -> Result<[Polynomial; 2], AbsorberError> {
     let polynomial = |expr: &Expr| -> Result<Polynomial, AbsorberError> {
         match expr.to_polynomial(&mut |_| None)? {
             Some(polynomial) => Ok(polynomial),
@@ -218,15 +221,15 @@ fn transfer(equations: &CoupledEquations, names: &Names) -> Result<[Polynomial; 
 }
 
 /// The parts of the frequency response, `|X|^2 = (b_e^2 + z w b_o^2)/(a_e^2 + z w a_o^2)`, in w, p and mu.
-struct Response {
+pub(super) struct Response {
     /// b_e, b_o.
-    numerator: [Polynomial; 2],
+    pub(super) numerator: [Polynomial; 2],
     /// a_e, a_o.
-    denominator: [Polynomial; 2],
+    pub(super) denominator: [Polynomial; 2],
 }
 
 impl Response {
-    fn new(transfer: &[Polynomial; 2], names: &Names) -> Result<Self, AbsorberError> {
+    pub(super) fn new(transfer: &[Polynomial; 2], names: &Names) -> Result<Self, AbsorberError> {
         let parts = |polynomial: &Polynomial| -> Result<[Polynomial; 2], AbsorberError> {
             let mut parts = [Polynomial::zero(), Polynomial::zero()];
             for (exponent, coefficient) in by_powers(polynomial, names.s).iter().enumerate() {
@@ -306,7 +309,7 @@ fn in_unknown(polynomial: &Polynomial, unknown: Symbol, mu: Symbol) -> Option<In
 }
 
 /// The value of a polynomial in mu and letters that have these values.
-fn value(
+pub(super) fn value(
     polynomial: &Polynomial,
     values: &[(Symbol, &QuadraticSurd)],
     names: &Names,
@@ -415,11 +418,40 @@ fn equal_peaks(
     ))
 }
 
+/// The numbers of the lowest peak.
+pub(super) struct LowestPeak {
+    pub(super) p: QuadraticSurd,
+    pub(super) z: QuadraticSurd,
+    /// zeta^2.
+    pub(super) damping: QuadraticSurd,
+    /// h^2.
+    pub(super) height: QuadraticSurd,
+    /// a and b of w^2 + a w + b, whose roots are the peaks.
+    pub(super) peaks: [QuadraticSurd; 2],
+}
+
 /// The design with the lowest peak; `None` if the relation of p and rho is not linear in rho.
 fn lowest_peak(
     response: &Response,
     names: &Names,
 ) -> Result<Option<AbsorberDesign>, AbsorberError> {
+    let Some(lowest) = numbers_of_the_lowest_peak(response, names)? else { return Ok(None) };
+    let written = |value: &QuadraticSurd| value.sqrt_expr(names.mu);
+    Ok(Some(AbsorberDesign {
+        name: "lowest-peak",
+        words: "the highest amplitude at any frequency is the least (H-infinity)",
+        formulas: vec![
+            formula("tuning", "f", written(&lowest.p)?),
+            formula("damping", "zeta", written(&lowest.damping)?),
+            formula("height", "h", written(&lowest.height)?),
+        ],
+    }))
+}
+
+pub(super) fn numbers_of_the_lowest_peak(
+    response: &Response,
+    names: &Names,
+) -> Result<Option<LowestPeak>, AbsorberError> {
     const WHAT: &str = "the design with the lowest peak";
     let none = || AbsorberError::NoClosedForm(WHAT);
     let [numerator, denominator] = response.squares(names);
@@ -482,8 +514,8 @@ fn lowest_peak(
         let scale =
             RationalFunction::from_polynomial(&scale.product(&scale), names.mu).ok_or_else(none)?;
         let p = p.quotient(&q.constant(scale)).ok_or_else(none)?;
-        let values = [(names.p, &p), (names.rho, &rho)];
-        let [free, slope] = [free, slope].map(|part| value(part, &values, names).ok_or_else(none));
+        let numbers = [(names.p, &p), (names.rho, &rho)];
+        let [free, slope] = [free, slope].map(|part| value(part, &numbers, names).ok_or_else(none));
         let z = minus_quotient(&free?, &slope?).ok_or_else(none)?;
         let quarter = p.constant(RationalFunction::number(ratio(1, 4)));
         let damping = z.quotient(&p).ok_or_else(none)?.product(&quarter);
@@ -498,16 +530,10 @@ fn lowest_peak(
             number.is_some_and(|number| number > 0.0)
         };
         if [&p, &damping, &rest].into_iter().all(is_positive) {
-            let written = |value: &QuadraticSurd| value.sqrt_expr(names.mu);
-            return Ok(Some(AbsorberDesign {
-                name: "lowest-peak",
-                words: "the highest amplitude at any frequency is the least (H-infinity)",
-                formulas: vec![
-                    formula("tuning", "f", written(&p)?),
-                    formula("damping", "zeta", written(&damping)?),
-                    formula("height", "h", written(&height)?),
-                ],
-            }));
+            let numbers = [(names.p, &p), (names.rho, &rho), (names.z, &z)];
+            let peaks = [value(&a, &numbers, names), value(&b, &numbers, names)];
+            let [Some(a), Some(b)] = peaks else { return Err(none()) };
+            return Ok(Some(LowestPeak { peaks: [a, b], p, z, damping, height }));
         }
     }
     Ok(None)

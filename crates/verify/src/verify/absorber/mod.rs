@@ -4,11 +4,14 @@
 //! beside the truth, and the curves of a picture.
 //!
 //! - `tuned`: the frequency response of the two masses, searched for its lowest peak and variance.
+//! - `nonlinear`: both peaks of the response of the two equations, and the cubic spring that makes them
+//!   equally high.
 //! - `impact_sink`: the two masses from impact to impact.
 //! - `cubic_sink`: periodic motions of the sink by Runge-Kutta, and the two masses set free.
 
 mod cubic_sink;
 mod impact_sink;
+mod nonlinear;
 mod tuned;
 
 use super::Verdict;
@@ -26,7 +29,7 @@ pub struct JudgedAbsorber {
     pub tolerance: f64,
     /// The formulas, design by design.
     pub formulas: Vec<JudgedAbsorberFormula>,
-    /// A simulated motion of a sink; `None` for a tuned mass damper.
+    /// A simulated motion of a sink; `None` for a tuned or nonlinear absorber.
     pub motion: Option<AbsorberMotion>,
     /// The curves of a picture: of responses over frequency, or of motions over amplitude.
     pub curves: Vec<AbsorberCurve>,
@@ -151,6 +154,7 @@ pub fn judge_absorber(
     laws.check(at)?;
     let truth = match laws.kind {
         AbsorberKind::Tuned(excitation) => tuned::truth(laws, excitation, at),
+        AbsorberKind::Nonlinear => nonlinear::truth(laws, at),
         AbsorberKind::ImpactSink => impact_sink::truth(laws, at),
         AbsorberKind::CubicSink => cubic_sink::truth(laws, at),
     };

@@ -172,6 +172,17 @@ impl TwoMasses {
     }
 }
 
+/// Tuning, damping and height of the lowest peak under a force; `None` where doubles do not
+/// resolve the peaks.
+pub(super) fn lowest_peak(mass_ratio: f64) -> Option<[f64; 3]> {
+    if mass_ratio < LEAST_MASS_RATIO {
+        return None;
+    }
+    let system = TwoMasses { excitation: Excitation::Force, mass_ratio };
+    let (best, height) = system.best(&|absorber| system.highest(absorber));
+    Some([best.tuning, best.damping, height])
+}
+
 /// The true values of the designs, and response curves.
 pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) -> Truth {
     let mass_ratio = at.get(Symbol::new("mu")).unwrap_or(f64::NAN);

@@ -33,6 +33,7 @@
 //! | [`certificate`] | proves how far a formula is from the true motion | [`certificate::certify`] |
 //! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
 //! | [`response`] | follows steady states through resonances: branches, stability, bifurcations | [`response::respond`] |
+//! | [`absorber_verdict`] | judges absorbers by searches, branches and simulations | [`absorber_verdict::judge_absorber`] |
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
 //! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
@@ -82,7 +83,7 @@ pub use lindstedt_oscillator::{method, oscillator, solution};
 #[doc(inline)]
 pub use lindstedt_series::series;
 #[doc(inline)]
-pub use lindstedt_verify::{certificate, hill, response, trajectory, verify};
+pub use lindstedt_verify::{absorber_verdict, certificate, hill, response, trajectory, verify};
 
 use lindstedt_expr::{decimal, spelling, symbol, values};
 use lindstedt_numeric::interrupt;

@@ -1,11 +1,11 @@
 //! `lindstedt absorber KIND`.
 
 use crate::absorber::{AbsorberError, AbsorberKind, AbsorberLaws, Excitation, derive};
+use crate::absorber_verdict::{JudgedAbsorber, judge_absorber};
 use crate::export::{absorber as drawing, json};
 use crate::report::{self, AbsorberReport};
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{JudgedAbsorber, judge_absorber};
 use clap::Args;
 
 use super::answer::{Answer, Draw, no_such};

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
 use crate::absorber::{AbsorberKind, AbsorberLaws};
-use crate::verify::{AbsorberCurveKind, JudgedAbsorber};
+use crate::absorber_verdict::{AbsorberCurveKind, JudgedAbsorber};
 
 /// The response of a tuned mass damper with each design, that of a nonlinear absorber with and without
 /// its cubic spring, or the manifold of a sink with a motion
@@ -15,7 +15,7 @@ use crate::verify::{AbsorberCurveKind, JudgedAbsorber};
 ///
 /// ```
 /// use lindstedt::absorber::{AbsorberKind, Excitation, derive};
-/// use lindstedt::verify::judge_absorber;
+/// use lindstedt::absorber_verdict::judge_absorber;
 ///
 /// let laws = derive(AbsorberKind::Tuned(Excitation::Force))?;
 /// let judged = judge_absorber(&laws, &"mu = 1/20".parse()?, 0.01)?;
@@ -70,7 +70,7 @@ fn axes(kind: AbsorberKind) -> [&'static str; 3] {
 ///
 /// ```
 /// use lindstedt::absorber::{AbsorberKind, derive};
-/// use lindstedt::verify::judge_absorber;
+/// use lindstedt::absorber_verdict::judge_absorber;
 ///
 /// let laws = derive(AbsorberKind::ImpactSink)?;
 /// let judged = judge_absorber(&laws, &"r = 0.65, b = 1, mu = 0.01".parse()?, 0.01)?;

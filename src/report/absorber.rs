@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use super::driven::values_in_words;
 use super::{Block, Document, percent, size_in_percent};
 use crate::absorber::AbsorberLaws;
+use crate::absorber_verdict::JudgedAbsorber;
 use crate::decimal::decimal;
 use crate::derivation::DerivationLine;
 use crate::expr::Expr;
-use crate::verify::JudgedAbsorber;
 
 /// The formulas of an absorber to be reported.
 #[derive(Clone, Copy, Debug)]

@@ -8,11 +8,11 @@
 use std::f64::consts::PI;
 
 use lindstedt::absorber::{AbsorberError, AbsorberKind, AbsorberLaws, Excitation, derive};
+use lindstedt::absorber_verdict::{JudgedAbsorber, judge_absorber};
 use lindstedt::numeric::ode::root::find_root;
 use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::{ResponseRequest, respond};
-use lindstedt::verify::{JudgedAbsorber, judge_absorber};
 use lindstedt::{Values, Verdict};
 use nalgebra::{Matrix4, Vector4};
 use num_complex::Complex64;

@@ -32,6 +32,8 @@ pub mod certificate;
 
 pub mod response;
 
+pub mod absorber_verdict;
+
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
 pub use method::motion::Motion;
 pub use method::numbers::NoNumbers;

@@ -17,7 +17,6 @@
 //! slope          = log2( error(delta) / error(delta/2) )     -> the exponent of the first missing term
 //! ```
 
-mod absorber;
 mod amplitude_series;
 mod backbone;
 mod bounds;
@@ -42,10 +41,6 @@ mod transient;
 pub mod validity;
 mod values;
 
-pub use absorber::{
-    AbsorberCurve, AbsorberCurveKind, AbsorberMotion, JudgedAbsorber, JudgedAbsorberFormula,
-    judge_absorber,
-};
 pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
 pub use error::VerificationError;

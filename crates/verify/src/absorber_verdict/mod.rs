@@ -14,10 +14,10 @@ mod impact_sink;
 mod nonlinear;
 mod tuned;
 
-use super::Verdict;
 use crate::absorber::{AbsorberError, AbsorberKind, AbsorberLaws};
 use crate::symbol::Symbol;
 use crate::values::Values;
+use crate::verify::Verdict;
 
 /// The formulas of an absorber at values of its letters, judged.
 #[derive(Clone, Debug)]
@@ -137,7 +137,8 @@ struct Truth {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::absorber::{AbsorberKind, Excitation, derive};
-/// use lindstedt::verify::{Verdict, judge_absorber};
+/// use lindstedt::absorber_verdict::judge_absorber;
+/// use lindstedt::verify::Verdict;
 ///
 /// let laws = derive(AbsorberKind::Tuned(Excitation::Force))?;
 /// let judged = judge_absorber(&laws, &"mu = 1/20".parse()?, 0.01)?;

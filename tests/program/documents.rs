@@ -9,9 +9,10 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument,
-    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
-    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
+    ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
     OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
@@ -120,6 +121,9 @@ fn reads_back(document: &Value) {
         }
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
+        }
+        DocumentKind::Certificate if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
+            again::<CoupledCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
         DocumentKind::CertificateRange => again::<CertificateRangeDocument>(document),

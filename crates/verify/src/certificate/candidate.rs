@@ -25,7 +25,6 @@ use crate::expr::{Expr, ExprError};
 use crate::method::numbers::NoNumbers;
 use crate::numeric::harmonics::Transform;
 use crate::oscillator::{Oscillator, OscillatorError};
-use crate::response::ResponseError;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -95,9 +94,6 @@ pub enum NotCertified {
         "the motion from rest does not come to one that repeats itself with the drive in 400 of its periods"
     )]
     NotSettled,
-    /// No drive, or none of one period.
-    #[error(transparent)]
-    Drive(#[from] ResponseError),
     /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"

@@ -580,7 +580,7 @@ const MOST_WAVES: u32 = MOST_HARMONICS as u32 / 2;
 ///
 /// # Errors
 /// [`ResponseError`] if there is no drive, or none with one period.
-pub(crate) fn drive_frequency(forces: &[Expr], states: &[Symbol]) -> Result<Expr, ResponseError> {
+pub(super) fn drive_frequency(forces: &[Expr], states: &[Symbol]) -> Result<Expr, ResponseError> {
     let time = Symbol::new("t");
     if !forces.iter().any(|force| force.contains(time)) {
         return Err(ResponseError::NoDrive);

@@ -18,7 +18,7 @@ use super::super::super::{Certified, HIGHEST_HARMONIC};
 use super::super::Drive;
 use super::super::candidate::is_linear_in;
 use super::super::theorem::{correction, derivative_of_block, prove, waves_of_drive};
-use super::super::waves::in_waves;
+use super::super::waves::{common_frequency, in_waves};
 use super::{CoupledCertificate, last_harmonic_of_largest_block};
 use crate::coupled::CoupledEquations;
 use crate::exact::ball::Balls;
@@ -28,7 +28,6 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{CompiledList, Expr};
 use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::numeric::ode::{IntegrationOptions, Point, end_values};
-use crate::response::driven::drive_frequency;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -57,11 +56,7 @@ pub fn certify_coupled(
         .iter()
         .map(|rate| rate.substitute_all(&values))
         .collect::<Result<_, _>>()?;
-    let frequency = drive_frequency(&rates, &equations.rates.states)?.expand()?;
-    let frequency = match frequency.as_number() {
-        Some(number) => number.clone(),
-        None => return Err(NotCertified::DrivingFrequency(frequency.to_string())),
-    };
+    let frequency = common_frequency(&rates, Symbol::new("t"))?;
     let (damping, forces) = parts(equations, &rates, &frequency)?;
     let names = equations.coordinates.iter();
     let coordinates: Vec<Symbol> = names.map(|name| Symbol::new(name.written())).collect();
@@ -179,7 +174,14 @@ fn parts(
         });
         damping.push(own.collect::<Result<Vec<Expr>, NotCertified>>()?);
         let rest = force.substitute_all(&at_rest)?.substitute_all(&renamed)?;
-        forces.push(in_waves(&rest, time, frequency)?);
+        let rest = in_waves(&rest, time, frequency)?;
+        if rest.contains(time) {
+            return Err(NotCertified::NotCoupledDriven {
+                coordinate: name.to_string(),
+                term: rest.to_string(),
+            });
+        }
+        forces.push(rest);
     }
     Ok((damping, forces))
 }

@@ -276,6 +276,9 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/one-harmonic/1") => "/motions/0",
         Some("lindstedt/slow-equations/1") => "/modes/0",
         Some("lindstedt/stability/1") => "/curves/0",
+        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
+            "/drive"
+        }
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",

@@ -461,11 +461,11 @@ class CoupledCertificateDocument(Answer):
         highest_harmonic: The last harmonic of the block; at most 400, and the block has at most
             401 unknowns.
         inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
-        inverse: The approximate inverse of the derivative on the block, row by row: cosine and
-            sine of each harmonic, those of one coordinate after those of the other.
         nu: The weight of a harmonic from one to the next; 1.
         claim_r: The radius that is claimed: there is exactly one motion whose c and s are so near
             in the norm sum (|c_ik| + |s_ik|), where `odd` exactly one of odd harmonics.
+        inverse: The approximate inverse of the derivative on the block, row by row: cosine and
+            sine of each harmonic, those of one coordinate after those of the other.
     """
 
     schema: Literal["lindstedt/certificate/1"]
@@ -480,9 +480,9 @@ class CoupledCertificateDocument(Answer):
     s: tuple[tuple[str, ...], ...]
     highest_harmonic: int
     inverse_bits: int
-    inverse: tuple[tuple[str, ...], ...]
     nu: Literal["1"]
     claim_r: str
+    inverse: tuple[tuple[str, ...], ...]
 
 
 CoupledCertificateDocument.FIELDS = (
@@ -498,9 +498,9 @@ CoupledCertificateDocument.FIELDS = (
     ("s", "s", several(tuple)),
     ("highest_harmonic", "highest_harmonic", None),
     ("inverse_bits", "inverse_bits", None),
-    ("inverse", "inverse", several(tuple)),
     ("nu", "nu", None),
     ("claim_r", "claim_r", None),
+    ("inverse", "inverse", several(tuple)),
 )
 CoupledCertificateDocument.CONSTANTS = {'ode': "q''+g(q)*q'+h(q,c,s)=0", 'nu': '1'}
 

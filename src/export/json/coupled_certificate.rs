@@ -58,15 +58,15 @@ pub struct CoupledCertificateDocument {
     pub highest_harmonic: usize,
     /// The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
     pub inverse_bits: usize,
-    /// The approximate inverse of the derivative on the block, row by row: cosine and sine of each
-    /// harmonic, those of one coordinate after those of the other.
-    pub inverse: Vec<Vec<String>>,
     /// The weight of a harmonic from one to the next; 1.
     #[cfg_attr(feature = "schema", schemars(extend("const" = "1")))]
     pub nu: String,
     /// The radius that is claimed: there is exactly one motion whose c and s are so near in the norm
     /// sum (|c_ik| + |s_ik|), where `odd` exactly one of odd harmonics.
     pub claim_r: String,
+    /// The approximate inverse of the derivative on the block, row by row: cosine and sine of each
+    /// harmonic, those of one coordinate after those of the other.
+    pub inverse: Vec<Vec<String>>,
 }
 
 /// The document of kind `certificate` of a driven motion of several coordinates.
@@ -102,9 +102,9 @@ pub fn coupled_certificate(certificate: &CoupledCertificate) -> CoupledCertifica
         s: lists(&certificate.sines),
         highest_harmonic: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: lists(&certificate.inverse),
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),
+        inverse: lists(&certificate.inverse),
     }
 }
 

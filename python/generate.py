@@ -322,8 +322,10 @@ RESULTS = {
     "stability": "Stability",
     "audit": "Audit",
     "paper": "Audit",
-    "certify": "Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange",
-    "check": "Certificate | DampedCertificateDocument | ModeCertificateDocument",
+    "certify": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
+    " | CoupledCertificateDocument | CertificateRange",
+    "check": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
+    " | CoupledCertificateDocument",
 }
 #: The commands of an equation, which are methods of `Oscillator` too.
 OF_EQUATIONS = ("derive", "compare", "simulate", "response", "stability", "certify")
@@ -447,6 +449,7 @@ def commands_text(commands: list[dict[str, Any]]) -> str:
     kinds = {class_name(path.stem): path.stem for path in SCHEMAS.glob("*.json")}
     kinds["DampedCertificateDocument"] = "certificate"
     kinds["ModeCertificateDocument"] = "certificate"
+    kinds["CoupledCertificateDocument"] = "certificate"
     imports = [
         f"    from .documents.{kinds[name].replace('-', '_')} import {name}" for name in classes
     ]

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .comparison import Comparison
     from .designs import Optimization
     from .documents.absorber import Absorber
+    from .documents.certificate import CoupledCertificateDocument
     from .documents.certificate import DampedCertificateDocument
     from .documents.certificate import ModeCertificateDocument
     from .documents.certificate_range import CertificateRange
@@ -515,7 +516,7 @@ def certify(
     at: Values | None = None,
     progress: Progress | None = None,
     **values: Value,
-) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | CertificateRange:
     """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
     Args:
@@ -568,7 +569,7 @@ def check(
     tolerance: float | None = None,
     timeout: float | None = None,
     progress: Progress | None = None,
-) -> Certificate | DampedCertificateDocument | ModeCertificateDocument:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument:
     """Check a certificate that `certify` wrote, in exact arithmetic.
 
     Args:
@@ -838,7 +839,7 @@ class EquationCommands:
         at: Values | None = None,
         progress: Progress | None = None,
         **values: Value,
-    ) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CertificateRange:
+    ) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | CertificateRange:
         """A proof beside a formula: the motion exists, and how far the formula is off, from both sides.
 
         Args:

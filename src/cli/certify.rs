@@ -6,7 +6,8 @@ use crate::certificate::{self, Certified, DampedCertificate, NotCertified, Range
 use crate::coupled::CoupledEquations;
 use crate::exact::Rational;
 use crate::export::json::{
-    self, CertificateDocument, DampedCertificateDocument, ModeCertificateDocument,
+    self, CertificateDocument, CoupledCertificateDocument, DampedCertificateDocument,
+    ModeCertificateDocument,
 };
 use crate::export::printable_in_line;
 use crate::expr::parse_expression;
@@ -14,12 +15,12 @@ use crate::method::with_resonance_at;
 use crate::problem::{Problem, ReadingCommand};
 use crate::report::{self, AnyCertificate, CertificateReport, CertifiedQuestion};
 use crate::verify::Verdict;
-use crate::{Method, Options, Oscillator, Solution, Values, solve};
+use crate::{Method, Options, Oscillator, Solution, Symbol, Values, solve};
 use clap::Args;
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
-use super::derive::{self, EquationArguments, Solved};
+use super::derive::{self, EquationArguments, Solved, exact_values};
 use super::files::width;
 use super::modes::{self, Derived};
 use super::problem::{coupled_equations, problem};
@@ -93,7 +94,11 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     let problem = problem(&arguments.question.problem)?;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
-        return certified_mode(arguments, equations, &problem);
+        let driven = equations.rates.right.iter().any(|rate| rate.contains(Symbol::new("t")));
+        return match driven {
+            true => certified_coupled(arguments, &equations, &problem),
+            false => certified_mode(arguments, equations, &problem),
+        };
     }
     if arguments.mode.is_some() {
         return Err(Failure::Usage(
@@ -208,6 +213,42 @@ fn certified_mode(
     printed(&report, &arguments.common)
 }
 
+/// The proof of a steady motion of driven coordinates, that to which the motion from rest comes.
+fn certified_coupled(
+    arguments: &CertifyArguments,
+    equations: &CoupledEquations,
+    problem: &Problem,
+) -> Result<Outcome, Failure> {
+    let question = &arguments.question;
+    let given = [
+        ("--mode", arguments.mode.is_some()),
+        ("--range", arguments.range.is_some()),
+        ("--method", question.method.is_some()),
+        ("--order", question.order.is_some()),
+        ("--amplitude", question.amplitude.is_some()),
+        ("--small", question.small.is_some()),
+        ("--resonance", question.resonance.is_some()),
+    ];
+    let given = given.into_iter().find(|(_, given)| *given).map(|(option, _)| option);
+    if let Some(option) = given.or(question.of_one_coordinate()) {
+        return Err(Failure::Usage(format!(
+            "{option}: of several driven coordinates the motion alone is proved, without a formula; values are given by --at"
+        )));
+    }
+    let values = exact_values(&question.at, problem.values_of_motion())?.unwrap_or_default();
+    let (certificate, certified) =
+        with_progress("of this proof", || certificate::certify_coupled(equations, &values))
+            .map_err(|error| Failure::refused(&error, error.help()))?;
+    let report = CertificateReport {
+        question: Some(CertifiedQuestion::FromRest(&values)),
+        certificate: (&certificate).into(),
+        certified: &certified,
+        validity: None,
+        tolerance: tolerance(&arguments.common),
+    };
+    printed(&report, &arguments.common)
+}
+
 /// The formula of the steady motion under a drive; `None` if there is none.
 fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> {
     let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
@@ -265,7 +306,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let tolerance = tolerance(&arguments.common);
-    let (motion, damped, mode);
+    let (motion, damped, mode, coupled);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
     let (certificate, certified): (AnyCertificate, _) = if of_damped.contains(&ode.as_str()) {
         let document: DampedCertificateDocument =
@@ -277,6 +318,11 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
         mode = document.read().map_err(|error| unread(&error))?;
         ((&mode).into(), certificate::check_mode(&mode))
+    } else if ode == json::EQUATIONS_WITH_DRIVE {
+        let document: CoupledCertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        coupled = document.read().map_err(|error| unread(&error))?;
+        ((&coupled).into(), certificate::check_coupled(&coupled))
     } else {
         let document: CertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
@@ -326,6 +372,9 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
                 }
                 (None, AnyCertificate::Mode(certificate)) => {
                     json_text(&json::mode_certificate(certificate))
+                }
+                (None, AnyCertificate::Coupled(certificate)) => {
+                    json_text(&json::coupled_certificate(certificate))
                 }
             },
             format => no_such(format),

@@ -9,8 +9,9 @@ use super::modes::{modes_in_formulas, notes_on_rounding};
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, ModeAmplitude,
-    ModeCertificate, Multipliers, RangeEnd, SizeBounds, Validity, coordinate,
+    Certificate, Certified, CoupledCertificate, DampedCertificate, Enclosure, Errors,
+    JudgedFormula, ModeAmplitude, ModeCertificate, Multipliers, RangeEnd, SizeBounds, Validity,
+    coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
@@ -37,6 +38,8 @@ pub enum AnyCertificate<'a> {
     Damped(&'a DampedCertificate),
     /// The certificate of a free motion of several coordinates.
     Mode(&'a ModeCertificate),
+    /// The certificate of a driven motion of several coordinates.
+    Coupled(&'a CoupledCertificate),
 }
 
 impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
@@ -48,6 +51,12 @@ impl<'a> From<&'a Certificate> for AnyCertificate<'a> {
 impl<'a> From<&'a DampedCertificate> for AnyCertificate<'a> {
     fn from(certificate: &'a DampedCertificate) -> Self {
         Self::Damped(certificate)
+    }
+}
+
+impl<'a> From<&'a CoupledCertificate> for AnyCertificate<'a> {
+    fn from(certificate: &'a CoupledCertificate) -> Self {
+        Self::Coupled(certificate)
     }
 }
 
@@ -64,21 +73,24 @@ pub enum CertifiedQuestion<'a> {
     Formula(&'a Solution, &'a Values),
     /// The normal modes of coupled equations, of which there is one.
     Mode(&'a NormalModes, &'a Values),
+    /// The steady motion of driven coordinates to which the motion from rest comes, without a
+    /// formula.
+    FromRest(&'a Values),
 }
 
 impl<'a> CertifiedQuestion<'a> {
-    /// The answer of one coordinate; `None` for a mode.
+    /// The answer of one coordinate; `None` for several.
     pub(crate) const fn solution(self) -> Option<&'a Solution> {
         match self {
             Self::Formula(solution, _) => Some(solution),
-            Self::Mode(..) => None,
+            Self::Mode(..) | Self::FromRest(_) => None,
         }
     }
 
     /// The values.
     const fn values(self) -> &'a Values {
         match self {
-            Self::Formula(_, values) | Self::Mode(_, values) => values,
+            Self::Formula(_, values) | Self::Mode(_, values) | Self::FromRest(values) => values,
         }
     }
 }
@@ -89,6 +101,7 @@ impl AnyCertificate<'_> {
             Self::Motion(certificate) => certificate.formula.as_ref(),
             Self::Damped(certificate) => certificate.formula.as_ref(),
             Self::Mode(certificate) => certificate.formula.as_ref(),
+            Self::Coupled(_) => None,
         }
     }
 
@@ -98,6 +111,7 @@ impl AnyCertificate<'_> {
             Self::Motion(certificate) => certificate.bits,
             Self::Damped(certificate) => certificate.bits,
             Self::Mode(certificate) => certificate.bits,
+            Self::Coupled(certificate) => certificate.bits,
         }
     }
 
@@ -115,6 +129,16 @@ impl AnyCertificate<'_> {
                 let rows = certificate.coordinates.iter().zip(&certificate.forces);
                 rows.map(|(name, force)| &acceleration(name.derivative()) + force).collect()
             }
+            Self::Coupled(certificate) => {
+                let names = &certificate.coordinates;
+                let rows = certificate.damping.iter().zip(certificate.forces_in_time());
+                let rows = rows.zip(names).map(|((row, force), name)| {
+                    let drag = row.iter().zip(names);
+                    let drag = drag.map(|(entry, name)| entry * &Expr::from(name.derivative()));
+                    &(&acceleration(name.derivative()) + &drag.sum::<Expr>()) + &force
+                });
+                rows.collect()
+            }
         }
     }
 
@@ -123,6 +147,7 @@ impl AnyCertificate<'_> {
         match self {
             Self::Motion(_) | Self::Damped(_) => None,
             Self::Mode(certificate) => Some(listed(&certificate.coordinates)),
+            Self::Coupled(certificate) => Some(listed(&certificate.coordinates)),
         }
     }
 
@@ -140,6 +165,17 @@ impl AnyCertificate<'_> {
                 certificate.amplitude,
                 listed(&certificate.coordinates)
             ),
+            Self::Coupled(certificate) => {
+                let (periods, part) = match certificate.drive.periods {
+                    1 => ("the drive".to_owned(), String::new()),
+                    count => (format!("{count} periods of the drive"), format!("/{count}")),
+                };
+                format!(
+                    "periodic with {periods}, of the frequency {}: ({})(t) = X({omega}*t{part})",
+                    certificate.drive.frequency,
+                    listed(&certificate.coordinates),
+                )
+            }
             Self::Damped(certificate) => match &certificate.drive {
                 None => format!("a limit cycle: {letter}(t) = X({omega}*t)"),
                 Some(drive) if drive.periods == 1 => {
@@ -165,6 +201,8 @@ impl AnyCertificate<'_> {
                 format!("pair (1/{omega}^2, X), X of odd cosines,")
             }
             Self::Mode(_) => format!("pair (1/{omega}^2, X), X of cosines,"),
+            Self::Coupled(certificate) if certificate.odd => "motion X of odd harmonics".to_owned(),
+            Self::Coupled(_) => "motion X".to_owned(),
             Self::Damped(certificate) => match (certificate.drive.is_some(), certificate.odd) {
                 (true, false) => "motion X".to_owned(),
                 (true, true) => "motion X of odd harmonics".to_owned(),
@@ -183,6 +221,9 @@ impl AnyCertificate<'_> {
             Self::Damped(certificate) if certificate.odd => {
                 Some("of motions with even harmonics nothing is proved: one may be within r too")
             }
+            Self::Coupled(certificate) if certificate.odd => {
+                Some("of motions with even harmonics nothing is proved: one may be within r too")
+            }
             Self::Mode(certificate) if certificate.odd => {
                 Some("of motions with even harmonics nothing is proved: one may be within r too")
             }
@@ -195,6 +236,7 @@ impl AnyCertificate<'_> {
         match self {
             Self::Motion(_) | Self::Mode(_) => None,
             Self::Damped(certificate) => certificate.drive.as_ref().map(|drive| drive.harmonic),
+            Self::Coupled(certificate) => Some(certificate.drive.harmonic),
         }
     }
 
@@ -213,6 +255,10 @@ impl AnyCertificate<'_> {
                 certificate.highest,
                 certificate.coefficients.iter().map(Vec::len).max().unwrap_or(0),
             ),
+            Self::Coupled(certificate) => {
+                let lists = certificate.cosines.iter().chain(&certificate.sines);
+                (certificate.odd, certificate.highest, lists.map(Vec::len).max().unwrap_or(0))
+            }
         };
         let kind = if odd { "odd harmonics" } else { "harmonics" };
         format!(
@@ -326,7 +372,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             },
             notes_on_letters(solution),
         ],
-        None => {
+        Some(CertifiedQuestion::FromRest(_)) | None => {
             let line = |left| Block::Line(Cow::Owned(DerivationLine::equation(left, Expr::zero())));
             vec![certificate.left_sides().into_iter().map(line).collect()]
         }
@@ -343,12 +389,26 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.push(("motion", certificate.motion(letter, &omega)));
+    if matches!(report.question, Some(CertifiedQuestion::FromRest(_))) {
+        let chosen =
+            "the one that the motion from rest comes to, in numbers; others are not looked for";
+        facts.push(("chosen", chosen.to_owned()));
+    }
     match (&report.certified.amplitude, certificate.harmonic()) {
         (Some(amplitude), Some(harmonic)) => {
             let of =
                 if harmonic == 1 { String::new() } else { format!("of harmonic {harmonic}: ") };
             facts.push(("amplitude", of + &enclosed(amplitude)));
             facts.push(("stability", stability_of_driven(report.certified.multipliers.as_ref())));
+        }
+        (None, Some(harmonic)) => {
+            let names = certificate.coordinates().unwrap_or_default();
+            let of = if harmonic == 1 { String::new() } else { format!("harmonic {harmonic} of ") };
+            let all = names.split(", ").zip(&report.certified.amplitudes);
+            facts.extend(all.map(|(name, amplitude)| {
+                ("amplitude", format!("of {of}{name}: {}", enclosed(amplitude)))
+            }));
+            facts.push(("stability", "not proved".to_owned()));
         }
         _ => facts.push((letters.frequency.name(), enclosed(&report.certified.frequency))),
     }

@@ -4,10 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use lindstedt::certificate::{Enclosure, check, check_damped, check_mode};
+use lindstedt::certificate::{Enclosure, check, check_coupled, check_damped, check_mode};
 use lindstedt::exact::{Rational, ratio};
 use lindstedt::export::json::{
-    self, CertificateDocument, DampedCertificateDocument, ModeCertificateDocument,
+    self, CertificateDocument, CoupledCertificateDocument, DampedCertificateDocument,
+    ModeCertificateDocument,
 };
 use serde_json::{Value, json};
 
@@ -42,6 +43,72 @@ fn certified(folder: &Path, arguments: &[&str]) -> (PathBuf, Value) {
 
 fn read(document: &Value) -> Result<CertificateDocument, serde_json::Error> {
     serde_json::from_value(document.clone())
+}
+
+#[test]
+fn driven_coordinates_are_proved_and_proved_again() {
+    let folder = folder("driven-coordinates");
+    let pair = "x'' + x'/10 + 2*x - y + x^3/2 = 3*cos(Omega*t)/10; y'' + y'/10 + 2*y - x = 0";
+    let skew = "2*x'' + x'/5 + (x*y' + y*x')/20 + 2*x - y + x^2/9 = cos(t)/4 + sin(2*t)/20; \
+                y'' + y'/5 + 2*sin(y) - x = 0";
+    for question in [[pair, "--at", "Omega=11/10"].as_slice(), &[skew]] {
+        let (file, document) = certified(&folder, question);
+        let said = run(&[&["certify"], question].concat());
+        let said = String::from_utf8_lossy(&said.stdout).into_owned();
+        let path = file.to_str().expect("a path in text");
+        let checked = run(&["check", path]);
+        assert!(checked.status.success(), "{question:?}: {checked:?}");
+        // Nothing is said but what the file proves, and which motion was chosen at which values.
+        let again = String::from_utf8_lossy(&checked.stdout).into_owned();
+        let words = |text: &str| -> Vec<String> {
+            let lines = text.lines().map(str::trim);
+            let own = lines.filter(|line| !line.starts_with("at ") && !line.starts_with("chosen "));
+            own.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+        };
+        assert_eq!(words(&said), words(&again), "{question:?}");
+        assert!(said.contains("chosen") && said.contains("amplitude") && said.contains("of y: "));
+        let read: CoupledCertificateDocument =
+            serde_json::from_value(document.clone()).expect("a document");
+        let certificate = read.read().expect("a certificate");
+        assert_eq!(json::coupled_certificate(&certificate), read, "{question:?}");
+        assert_eq!(check_coupled(&certificate).expect("a proof").amplitudes.len(), 2);
+        let tampers: [Tamper; 13] = [
+            |document| document["claim_r"] = json!("1e-60"),
+            |document| document["c"][1][1] = json!("1"),
+            |document| document["s"][0][1] = json!("1"),
+            |document| document["inverse"][1][1] = json!("1000000000000000000000000000000"),
+            |document| document["odd"] = json!("yes"),
+            |document| document["ode"] = json!("q''+f(q)=0"),
+            |document| document["more"] = json!("1"),
+            |document| document["h"][1] = json!("y"),
+            |document| document["g"][1][0] = json!("x^2"),
+            |document| document["coordinates"] = json!(["c", "y"]),
+            |document| document["coordinates"] = json!(["x", "x"]),
+            |document| document["drive"]["driving_frequency"] = json!("4/3"),
+            |document| document["bits"] = json!(225),
+        ];
+        for (place, tamper) in tampers.into_iter().enumerate() {
+            let mut changed = document.clone();
+            tamper(&mut changed);
+            std::fs::write(&file, changed.to_string()).expect("a file");
+            let checked = run(&["check", path]);
+            assert_eq!(checked.status.code(), Some(1), "{question:?}: {place}");
+        }
+    }
+    for (arguments, code, expected) in [
+        ([pair, "--at", "Omega=1", "--range", "1:2"].as_slice(), 2, "--range: of several driven"),
+        (&[pair, "--at", "Omega=1", "--mode", "1"], 2, "--mode: of several driven"),
+        (&[pair, "--at", "Omega=1", "--cycle", "1"], 2, "--cycle: of several driven"),
+        (&[pair], 1, "add --at Omega=..."),
+        (&[pair, "--at", "Omega=pi/3"], 1, "the driving frequency pi/3 is no fraction"),
+        (&[pair, "--at", "Omega=1,k=1"], 1, "there is no parameter k"),
+        (&["x'' + x'^2 + x = cos(t); y'' + y' + y = x"], 1, "has `x'^2`"),
+    ] {
+        let refused = run(&[&["certify"], arguments].concat());
+        assert_eq!(refused.status.code(), Some(code), "{arguments:?}: {refused:?}");
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
 }
 
 #[test]

@@ -9,10 +9,11 @@ use std::process::Command;
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
-    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
-    LagrangianDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument,
-    MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
+    ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
@@ -120,6 +121,9 @@ fn reads_back(document: &Value) {
         }
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
+        }
+        DocumentKind::Certificate if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
+            again::<CoupledCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
         DocumentKind::CertificateRange => again::<CertificateRangeDocument>(document),
@@ -273,6 +277,9 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/one-harmonic/1") => "/motions/0",
         Some("lindstedt/slow-equations/1") => "/modes/0",
         Some("lindstedt/stability/1") => "/curves/0",
+        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
+            "/drive"
+        }
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",

@@ -9,7 +9,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/audit/1": ("audit", ("Audit",)),
     "lindstedt/catalog/1": ("catalog", ("Catalog",)),
     "lindstedt/certificate-range/1": ("certificate_range", ("CertificateRange",)),
-    "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument", "ModeCertificateDocument",)),
+    "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument", "ModeCertificateDocument", "CoupledCertificateDocument",)),
     "lindstedt/comparison/1": ("comparison", ("Comparison",)),
     "lindstedt/friction/1": ("friction", ("Friction",)),
     "lindstedt/impact-certificate/1": ("impact_certificate", ("ImpactCertificate",)),

@@ -436,6 +436,75 @@ ModeCertificateDocument.FIELDS = (
 ModeCertificateDocument.CONSTANTS = {'ode': "q''+f(q)=0", 'nu': '1'}
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class CoupledCertificateDocument(Answer):
+    """Numbers from which a steady motion of several coordinates with a drive, `q'' + g(q) q' + h(q,
+    cos(Omega t), sin(Omega t)) = 0`, can be proved. All numbers are text: integers, fractions
+    such as `-1/6`, decimals such as `2.5e-33`.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equations that g and h belong to.
+        coordinates: The names of the coordinates, none of them c or s.
+        g: The damping by velocities, expressions in the coordinates: a row for each equation,
+            which is the derivative of a function of the coordinates, dg_ij/dq_l = dg_il/dq_j.
+        h: The force of each equation, an expression in the coordinates, c = cos(Omega t) and s =
+            sin(Omega t): the mass matrix is inverted already.
+        drive: What drives the motion; `harmonic` is the one whose amplitudes are proved.
+        odd: Whether every g is even, every h odd and the motion of odd harmonics alone, and so
+            the block, and the only one within claim_r among those; h is odd in the coordinates
+            and in what of c and s changes its sign after half a period of the motion.
+        bits: `c` and `s` are integers times 2^-bits; at most 224.
+        c: The approximate cosine coefficients of each coordinate, that of the constant first.
+        s: The approximate sine coefficients of each coordinate by harmonic; that of the constant
+            is 0.
+        highest_harmonic: The last harmonic of the block; at most 400, and the block has at most
+            401 unknowns.
+        inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
+        nu: The weight of a harmonic from one to the next; 1.
+        claim_r: The radius that is claimed: there is exactly one motion whose c and s are so near
+            in the norm sum (|c_ik| + |s_ik|), where `odd` exactly one of odd harmonics.
+        inverse: The approximate inverse of the derivative on the block, row by row: cosine and
+            sine of each harmonic, those of one coordinate after those of the other.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["q''+g(q)*q'+h(q,c,s)=0"]
+    coordinates: tuple[str, ...]
+    g: tuple[tuple[str, ...], ...]
+    h: tuple[str, ...]
+    drive: CertificateDrive
+    odd: bool
+    bits: int
+    c: tuple[tuple[str, ...], ...]
+    s: tuple[tuple[str, ...], ...]
+    highest_harmonic: int
+    inverse_bits: int
+    nu: Literal["1"]
+    claim_r: str
+    inverse: tuple[tuple[str, ...], ...]
+
+
+CoupledCertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("coordinates", "coordinates", tuple),
+    ("g", "g", several(tuple)),
+    ("h", "h", tuple),
+    ("drive", "drive", CertificateDrive.from_json),
+    ("odd", "odd", None),
+    ("bits", "bits", None),
+    ("c", "c", several(tuple)),
+    ("s", "s", several(tuple)),
+    ("highest_harmonic", "highest_harmonic", None),
+    ("inverse_bits", "inverse_bits", None),
+    ("nu", "nu", None),
+    ("claim_r", "claim_r", None),
+    ("inverse", "inverse", several(tuple)),
+)
+CoupledCertificateDocument.CONSTANTS = {'ode': "q''+g(q)*q'+h(q,c,s)=0", 'nu': '1'}
+
+
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative
-#: motion, a limit cycle, a driven motion, or a free motion of several coordinates.
-Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument
+#: motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates.
+Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument

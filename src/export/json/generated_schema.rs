@@ -9,10 +9,11 @@ use serde_json::Value;
 
 use super::{
     AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
-    CertificateRangeDocument, ComparisonDocument, DampedCertificateDocument, DocumentKind,
-    FrictionDocument, ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument,
-    LagrangianDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument,
-    MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
+    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
+    ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
@@ -78,9 +79,10 @@ impl JsonSchema for EitherCertificate {
             generator.subschema_for::<CertificateDocument>(),
             generator.subschema_for::<DampedCertificateDocument>(),
             generator.subschema_for::<ModeCertificateDocument>(),
+            generator.subschema_for::<CoupledCertificateDocument>(),
         ];
         json_schema!({
-            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free motion of several coordinates.",
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates.",
             "anyOf": kinds,
         })
     }

@@ -19,6 +19,7 @@ pub mod catalog;
 pub mod certificate;
 pub mod certificate_range;
 pub mod comparison;
+pub mod coupled_certificate;
 pub mod damped_certificate;
 pub mod friction;
 #[cfg(feature = "schema")]
@@ -60,6 +61,9 @@ pub use catalog::{CatalogDocument, catalog};
 pub use certificate::{CertificateDocument, certificate};
 pub use certificate_range::{CertificateRangeDocument, certificate_range};
 pub use comparison::{ComparisonDocument, comparison};
+pub use coupled_certificate::{
+    CoupledCertificateDocument, EQUATIONS_WITH_DRIVE, coupled_certificate,
+};
 pub use damped_certificate::{
     DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate,
 };

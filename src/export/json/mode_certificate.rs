@@ -23,7 +23,7 @@ use crate::symbol::Symbol;
 pub const EQUATIONS_OF_MODES: &str = "q''+f(q)=0";
 
 /// The largest number of coordinates that is read.
-const MOST_COORDINATES: usize = 40;
+pub(super) const MOST_COORDINATES: usize = 40;
 
 /// Numbers from which a free motion of several coordinates, `q'' + f(q) = 0`, can be proved, and how
 /// far the formulas of a normal mode are off. All numbers are text: integers, fractions such as
@@ -175,11 +175,21 @@ pub fn mode_certificate(certificate: &ModeCertificate) -> ModeCertificateDocumen
 }
 
 /// An expression of a certain length at most.
-fn short_expression(text: &str, key: &str) -> Result<Expr, JsonError> {
+pub(super) fn short_expression(text: &str, key: &str) -> Result<Expr, JsonError> {
     match text.len() > LONGEST_FORCE {
         true => unexpected(key, "an expression of at most 2000 characters"),
         false => expression(text, key),
     }
+}
+
+/// The names of coordinates as symbols.
+pub(super) fn read_coordinates(names: &[String]) -> Result<Vec<Symbol>, JsonError> {
+    let read = |name: &String| {
+        let letter = short_expression(name, "coordinates")?.as_symbol();
+        let plain = letter.filter(|letter| letter.primes() == 0 && letter.name() != "t");
+        plain.map_or_else(|| unexpected("coordinates", "names, such as x"), Ok)
+    };
+    names.iter().map(read).collect()
 }
 
 impl CertificateFormulaOfMode {
@@ -222,12 +232,7 @@ impl ModeCertificateDocument {
         if counts.iter().any(|count| *count > MOST_COORDINATES) {
             return unexpected("coordinates", "at most 40 names");
         }
-        let coordinates = self.coordinates.iter().map(|name| {
-            let letter = short_expression(name, "coordinates")?.as_symbol();
-            let plain = letter.filter(|letter| letter.primes() == 0 && letter.name() != "t");
-            plain.map_or_else(|| unexpected("coordinates", "names, such as x"), Ok)
-        });
-        let coordinates: Vec<Symbol> = coordinates.collect::<Result<_, _>>()?;
+        let coordinates = read_coordinates(&self.coordinates)?;
         let amplitude = &self.amplitude;
         let measure = match (&amplitude.start_of, &amplitude.first_harmonic_of) {
             (Some(name), None) => {

@@ -60,6 +60,40 @@ pub enum NotCertified {
         "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
     )]
     NotDriven(String),
+    /// Driven coordinates with a term of another form.
+    #[error(
+        "the equation of {coordinate}'' has `{term}`: certificates of several driven coordinates are of q'' + G(q)*q' + h(q) = 0, h with sines and cosines of one drive"
+    )]
+    NotCoupledDriven {
+        /// The coordinate.
+        coordinate: String,
+        /// The term, of the acceleration with its sign changed.
+        term: String,
+    },
+    /// A coordinate of an equation of first order.
+    #[error("{0}' is given by an equation of first order: certificates are of accelerations")]
+    FirstOrder(String),
+    /// A damping whose forces are not the rates of functions of the positions.
+    #[error(
+        "the damping of an equation is not the rate of a function of the positions, as `x*y' + y*x'` is and `x*y'` is not: a proof of several driven coordinates needs that"
+    )]
+    DampingOfNoFunction,
+    /// A coordinate with the name of a wave of the drive.
+    #[error(
+        "the coordinate {0} has the name of a wave of the drive: in a certificate c and s are its cosine and its sine"
+    )]
+    WaveAsCoordinate(String),
+    /// A parameter without a value.
+    #[error("no value of {0}")]
+    NoValueOf(String),
+    /// A value of something that is no parameter.
+    #[error("there is no parameter {0}")]
+    NoParameter(String),
+    /// A motion from rest that does not come to one of the period of the drive.
+    #[error(
+        "the motion from rest does not come to one that repeats itself with the drive in 400 of its periods"
+    )]
+    NotSettled,
     /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
@@ -159,6 +193,14 @@ impl NotCertified {
             }
             Self::NotDriven(_) => {
                 "`response` and the verdict of `derive` follow such motions in numbers"
+            }
+            Self::NotCoupledDriven { .. } | Self::FirstOrder(_) | Self::DampingOfNoFunction => {
+                "`response` finds such motions in numbers"
+            }
+            Self::WaveAsCoordinate(_) => "give the coordinate another name",
+            Self::NoValueOf(name) => return Some(format!("add --at {name}=...")),
+            Self::NotSettled => {
+                "more damping, or another frequency: `simulate` shows the motion, `response` finds those that repeat themselves"
             }
             Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
             Self::NoSteadyMotion => {

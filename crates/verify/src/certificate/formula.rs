@@ -248,6 +248,7 @@ pub(super) fn certified(
         exponent: None,
         multipliers: None,
         amplitude: None,
+        amplitudes: vec![],
         copies: 1,
         law_is_held: formula
             .is_some_and(|formula| law::law_matches_frequency(formula, bits) == Ok(true)),

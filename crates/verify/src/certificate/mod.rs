@@ -14,7 +14,8 @@
 //!
 //! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own,
 //! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
-//! in `damped/`.
+//! in `damped/`; driven motions of several coordinates have a [`CoupledCertificate`], and the same
+//! theorem.
 //!
 //! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
 //! iteration): the proof rests on `theorem.rs` and on the arithmetic of `force.rs`,
@@ -37,8 +38,8 @@ use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
-    DampedCertificate, Drive, Multipliers, certify_cycle, certify_cycle_motion, certify_driven,
-    check_damped,
+    CoupledCertificate, DampedCertificate, Drive, Multipliers, certify_coupled, certify_cycle,
+    certify_cycle_motion, certify_driven, check_coupled, check_damped,
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
@@ -113,6 +114,9 @@ pub struct Certified {
     pub multipliers: Option<Multipliers>,
     /// Amplitude of the harmonic of a driven motion that the formula is about.
     pub amplitude: Option<Enclosure>,
+    /// Amplitude of the same harmonic of each coordinate, of a driven motion of several; empty for
+    /// others.
+    pub amplitudes: Vec<Enclosure>,
     /// The number of images of the proved motion under the symmetries of the equation, itself
     /// included: with a drive the motion any number of drive periods later, and for a symmetric
     /// equation its mirror image. A formula describes all of them.

@@ -367,7 +367,7 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
 
 /// Whether a term is a multiple of a symbol, or free of it. The derivative alone does not decide:
 /// that of `sgn` is zero.
-fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
+pub(super) fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
     let slope = term.differentiate(letter)?;
     let rest = (term - &(&slope * &Expr::from(letter))).expand()?;
     Ok(!slope.contains(letter) && !rest.contains(letter))
@@ -436,7 +436,7 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
         }
         let corrections = block[first..].iter().zip(&step.block[first..]);
         for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
-            match *wave {
+            match wave.function {
                 BasisFunction::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
                 BasisFunction::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
             }

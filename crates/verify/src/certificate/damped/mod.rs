@@ -4,9 +4,11 @@
 //! In: any numbers from which a motion may be proved. Out: a proof that there is exactly one motion
 //! near them, its frequency or amplitude, whether a cycle attracts, and the error of a formula for
 //! it. The phase of a motion on a cycle is free: here, and in the formula that is compared, the
-//! first harmonic has no sine. The phase of a driven motion is determined by the drive.
+//! first harmonic has no sine. The phase of a driven motion is determined by the drive. Driven
+//! motions of several coordinates are in `coupled/`, and the theorem is of any number.
 
 mod candidate;
+mod coupled;
 mod stability;
 mod theorem;
 mod waves;
@@ -24,6 +26,7 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
+pub use coupled::{CoupledCertificate, certify_coupled, check_coupled};
 pub use stability::Multipliers;
 use theorem::DampedProblem;
 
@@ -110,11 +113,12 @@ impl DampedCertificate {
     /// theorem takes.
     fn problem(&self) -> DampedProblem<'_> {
         DampedProblem {
-            damping: &self.damping,
-            force: &self.force,
+            damping: vec![vec![&self.damping]],
+            forces: vec![&self.force],
+            coordinates: vec![coordinate()],
             drive: self.drive.as_ref().map(|drive| drive.periods),
             odd: self.odd,
-            motion: self.motion(),
+            motions: vec![self.motion()],
             reciprocal: self.reciprocal_ball(),
             highest: self.highest,
             inverse: &self.inverse,
@@ -125,20 +129,16 @@ impl DampedCertificate {
 
     /// h with the sines and cosines of time `t`, where it has a drive.
     pub fn force_in_time(&self) -> Expr {
-        let Some(drive) = &self.drive else {
-            return self.force.clone();
-        };
-        let phase = &Expr::number(drive.frequency.clone()) * &Expr::symbol("t");
-        let waves = [phase.cos(), phase.sin()].into_iter().flatten();
-        let values = theorem::waves_of_drive().into_iter().zip(waves).collect();
-        // If the substitution has no value, the force is shown as it is checked.
-        self.force.substitute_all(&values).unwrap_or_else(|_| self.force.clone())
+        match &self.drive {
+            Some(drive) => drive.in_time(&self.force),
+            None => self.force.clone(),
+        }
     }
 
     /// Whether half a period later the equation is its mirror image.
     fn is_odd(&self) -> Result<bool, ExprError> {
         let mut problem = self.problem();
-        problem.motion = FourierSeries::exactly(vec![], vec![]);
+        problem.motions = vec![FourierSeries::exactly(vec![], vec![])];
         problem.is_odd()
     }
 
@@ -323,6 +323,7 @@ impl DampedCertificate {
                 Some(_) => stability::multipliers(&self.problem(), proof.radius),
             },
             amplitude,
+            amplitudes: vec![],
             copies: copies.len().max(1),
             law_is_held: formula.is_some_and(|formula| self.law_is_held(formula) == Ok(true)),
             formula: errors,
@@ -340,6 +341,15 @@ impl DampedCertificate {
 }
 
 impl Drive {
+    /// A force with the sines and cosines of time `t` in place of their symbols.
+    fn in_time(&self, force: &Expr) -> Expr {
+        let phase = &Expr::number(self.frequency.clone()) * &Expr::symbol("t");
+        let waves = [phase.cos(), phase.sin()].into_iter().flatten();
+        let values = theorem::waves_of_drive().into_iter().zip(waves).collect();
+        // If the substitution has no value, the force is shown as it is checked.
+        force.substitute_all(&values).unwrap_or_else(|_| force.clone())
+    }
+
     fn well_formed(&self) -> Result<(), &'static str> {
         const MOST_PERIODS: usize = 20;
         let small = |integer: &Integer| integer.bits() <= 700;

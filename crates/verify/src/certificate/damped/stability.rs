@@ -62,6 +62,10 @@ pub(super) fn multipliers(problem: &DampedProblem, radius: Bound) -> Option<Mult
     /// More than 2 pi.
     const TURN: f64 = 6.3;
     let [damping, stiffness] = problem.variational(DIGITS, radius)?;
+    let (damping, stiffness) = match (&damping[..], &stiffness[..]) {
+        ([damping], [stiffness]) => (damping.first()?.clone(), stiffness.first()?.clone()),
+        _ => return None,
+    };
     let mut exponent = WORKING.scaled(&WORKING.product(&WORKING.pi(), &damping.cosine(0)), -2);
     exponent.radius += damping.tail * Bound::exactly(TURN);
     let determinant = FourierSeries::constant(exponent).exponential()?.at_zero();
@@ -401,10 +405,10 @@ mod tests {
             assert_eq!(found.attracts, Some(true));
             let problem = certificate.problem();
             let motion = [0, 1].map(|kind| -> Vec<f64> {
-                let parts = 0..problem.motion.length();
+                let parts = 0..problem.motions[0].length();
                 parts
                     .map(|k| {
-                        let wave = [problem.motion.cosine(k), problem.motion.sine(k)];
+                        let wave = [problem.motions[0].cosine(k), problem.motions[0].sine(k)];
                         WORKING.nearest(&wave[kind])
                     })
                     .collect()

@@ -3,7 +3,8 @@
 //! In: an expression in time, and a frequency. Out: the same in `c = cos(Omega t)` and
 //! `s = sin(Omega t)`, exactly.
 
-use num_traits::ToPrimitive as _;
+use num_integer::Integer as _;
+use num_traits::{ToPrimitive as _, Zero as _};
 
 use super::super::candidate::NotCertified;
 use super::super::force::along_all;
@@ -32,6 +33,38 @@ pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<
         (sine, &FourierSeries::exactly(vec![], wave())),
     ];
     along_all(&value, &letters).ok()
+}
+
+/// The frequency of which those of all sines and cosines of time are whole multiples.
+///
+/// # Errors
+/// A frequency that is no fraction, or none at all.
+pub(super) fn common_frequency(
+    expressions: &[Expr],
+    time: Symbol,
+) -> Result<Rational, NotCertified> {
+    let mut common: Option<Rational> = None;
+    for expression in expressions {
+        expression.fold(|node, _: &[()]| -> Result<(), NotCertified> {
+            if let Node::Function(Function::Sin | Function::Cos, arguments) = node.node()
+                && let Some(argument) = arguments.first().filter(|argument| argument.contains(time))
+            {
+                let rate = argument.differentiate(time)?.expand()?;
+                let number = rate.as_number().map(num_traits::Signed::abs);
+                let number = number.filter(|number| !number.is_zero());
+                let own = number.ok_or_else(|| NotCertified::DrivingFrequency(rate.to_string()))?;
+                common = Some(match common.take() {
+                    None => own,
+                    Some(other) => Rational::new(
+                        own.numer().gcd(other.numer()),
+                        own.denom().lcm(other.denom()),
+                    ),
+                });
+            }
+            Ok(())
+        })?;
+    }
+    common.ok_or(NotCertified::NoSteadyMotion)
 }
 
 /// An expression with the symbols of `cos(Omega t)` and `sin(Omega t)` in place of time.

@@ -1,0 +1,258 @@
+use super::super::super::NotCertified;
+use super::*;
+use crate::coupled::CoupledEquations;
+use crate::exact::ball::Ball;
+use crate::exact::ratio;
+use crate::exact::rational::to_f64;
+use crate::expr::{CompiledFunction, parse_expression};
+
+pub(in super::super) const POTENTIAL_DAMPING: &str = "x'' + x'/5 + (x*y' + y*x')/20 + 2*x - y + x^3/5 + sin(y)/20 = cos(Omega*t)/4 + sin(2*Omega*t)/20; \
+     2*y'' + y'/5 + x'/20 + y^2*y'/10 + 3*y - x + x*y/10 = x*sin(Omega*t)/20";
+
+fn try_certify(equations: &str, at: &str) -> Result<(CoupledCertificate, Certified), NotCertified> {
+    let equations = CoupledEquations::parse(equations).expect("equations");
+    certify_coupled(&equations, &at.parse().expect("values"))
+}
+
+pub(in super::super) fn certified(equations: &str, at: &str) -> (CoupledCertificate, Certified) {
+    let found = try_certify(equations, at).unwrap_or_else(|error| panic!("{equations}: {error}"));
+    assert_eq!(check_coupled(&found.0).as_ref(), Ok(&found.1), "{equations}");
+    found
+}
+
+/// Whether an enclosure holds a number.
+fn holds(enclosure: &Enclosure, truth: &Ball) -> bool {
+    let apart = WORKING.difference(truth, &WORKING.fraction(&enclosure.middle));
+    WORKING.distance_from_zero(&apart) <= enclosure.radius.value()
+}
+
+/// The product of two complex numbers.
+fn times(a: &[Rational; 2], b: &[Rational; 2]) -> [Rational; 2] {
+    [&a[0] * &b[0] - &a[1] * &b[1], &a[0] * &b[1] + &a[1] * &b[0]]
+}
+
+#[test]
+fn a_linear_pair_has_the_amplitudes_of_its_complex_equations() {
+    // (K - w^2 M + i w C) q = f e^(i w t), by Cramer's rule in fractions.
+    let linear = "2*x'' + y'' + x'/10 - y'/20 + 2*x - y = 3*cos(w*t)/10 - sin(w*t)/7; \
+                  x'' + 3*y'' + y'/7 + 2*y - x = sin(w*t)/5";
+    for w in [ratio(11, 10), ratio(2, 3), ratio(9, 4)] {
+        let (certificate, proved) = certified(linear, &format!("w = {w}"));
+        let square = &w * &w;
+        let entry =
+            |m: i64, c: Rational, k: i64| [ratio(k, 1) - &square * Integer::from(m), &w * &c];
+        let a = entry(2, ratio(1, 10), 2);
+        let b = entry(1, ratio(-1, 20), -1);
+        let c = entry(1, ratio(0, 1), -1);
+        let d = entry(3, ratio(1, 7), 2);
+        // cos + i sin: the real part of f e^(i w t), so that sin has -i.
+        let f = [ratio(3, 10), ratio(1, 7)];
+        let g = [ratio(0, 1), ratio(-1, 5)];
+        let minus = |p: [Rational; 2], q: [Rational; 2]| [&p[0] - &q[0], &p[1] - &q[1]];
+        let determinant = minus(times(&a, &d), times(&b, &c));
+        let tops = [minus(times(&f, &d), times(&b, &g)), minus(times(&a, &g), times(&c, &f))];
+        let size = |z: &[Rational; 2]| &z[0] * &z[0] + &z[1] * &z[1];
+        for (coordinate, top) in tops.iter().enumerate() {
+            let exact = WORKING.fraction(&(size(top) / size(&determinant)));
+            let exact = WORKING.root(&exact, 2).expect("a root");
+            let amplitude = &proved.amplitudes[coordinate];
+            assert!(holds(amplitude, &exact), "{w}, {coordinate}: {amplitude:?}");
+            assert!(amplitude.radius.value() < 1e-31);
+            let other = WORKING.sum(&exact, &WORKING.fraction(&ratio(1, 1 << 60)));
+            assert!(!holds(amplitude, &other));
+        }
+        assert!(!certificate.odd, "proved among all harmonics");
+    }
+}
+
+/// The states at some parts of a period of the drive, by Runge-Kutta of fourth order from the start
+/// of the certificate.
+fn followed(certificate: &CoupledCertificate, moved: f64) -> [Vec<f64>; 3] {
+    const STEPS: usize = 16_000;
+    let count = certificate.coordinates.len();
+    let names: Vec<Symbol> =
+        certificate.coordinates.iter().copied().chain([Symbol::new("t")]).collect();
+    let compile =
+        |expression: &Expr| CompiledFunction::new(expression, &names).expect("a function");
+    let forces: Vec<_> = certificate.forces_in_time().iter().map(compile).collect();
+    let damping: Vec<Vec<_>> =
+        certificate.damping.iter().map(|row| row.iter().map(compile).collect()).collect();
+    let field = |t: f64, state: &[f64]| -> Vec<f64> {
+        let places: Vec<f64> = state[..count].iter().copied().chain([t]).collect();
+        let rate = |row: usize| {
+            let drag = damping[row].iter().zip(&state[count..]);
+            -forces[row].call(&places) - drag.map(|(g, v)| g.call(&places) * v).sum::<f64>()
+        };
+        state[count..].iter().copied().chain((0..count).map(rate)).collect()
+    };
+    let frequency = to_f64(&certificate.drive.frequency);
+    let motions = certificate.motions();
+    let places = motions.iter().map(|motion| WORKING.nearest(&motion.at_zero()));
+    let speeds =
+        motions.iter().map(|motion| frequency * WORKING.nearest(&motion.derivative().at_zero()));
+    let mut state: Vec<f64> = places.chain(speeds).collect();
+    state[0] += moved;
+    let start = state.clone();
+    let mut half = vec![];
+    let h = std::f64::consts::TAU / frequency / STEPS as f64;
+    for index in 0..STEPS {
+        if 2 * index == STEPS {
+            half = state.clone();
+        }
+        let t = h * index as f64;
+        let at = |rate: &[f64], part: f64| -> Vec<f64> {
+            state.iter().zip(rate).map(|(x, v)| x + part * h * v).collect()
+        };
+        let a = field(t, &state);
+        let b = field(t + 0.5 * h, &at(&a, 0.5));
+        let c = field(t + 0.5 * h, &at(&b, 0.5));
+        let d = field(t + h, &at(&c, 1.0));
+        for index in 0..2 * count {
+            state[index] += h / 6.0 * (a[index] + 2.0 * (b[index] + c[index]) + d[index]);
+        }
+    }
+    [start, half, state]
+}
+
+#[test]
+fn a_motion_comes_back_after_the_period_of_the_drive() {
+    let pair = "x'' + x'/10 + 2*x - y + x^3/2 = 3*cos(Omega*t)/10; y'' + y'/10 + 2*y - x = 0";
+    let pendulums =
+        "x'' + x'/5 + sin(x) + (x - y)/3 = cos(Omega*t)/2; y'' + y'/5 + 2*sin(y) + (y - x)/3 = 0";
+    let parametric = "x'' + x'/5 + (1 + cos(Omega*t)/5)*x - y/3 + x^2/9 = 1/5; \
+                      y'' + y'/5 + 3*y - x/3 + y^3 = sin(Omega*t)^2/3; z'' + z'/4 + 2*z + z^3/5 = y/2";
+    for (equations, at) in [
+        (pair, "Omega = 1.1"),
+        (pair, "Omega = 9/5"),
+        (pendulums, "Omega = 7/10"),
+        (parametric, "Omega = 5/7"),
+        (POTENTIAL_DAMPING, "Omega = 4/5"),
+    ] {
+        let (certificate, proved) = certified(equations, at);
+        assert!(proved.proof.radius.value() < 1e-25, "{equations}: {proved:?}");
+        let [start, half, end] = followed(&certificate, 0.0);
+        let apart = |one: &[f64], other: &[f64]| {
+            one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+        };
+        assert!(apart(&start, &end) < 1e-11, "{equations}: {start:?}, {end:?}");
+        let opposite = certificate.motions().into_iter().map(|motion| {
+            let signs = motion.cosines.iter().enumerate();
+            signs.map(|(k, c)| WORKING.nearest(c) * if k % 2 == 0 { 1.0 } else { -1.0 }).sum()
+        });
+        assert!(apart(&half, &opposite.collect::<Vec<f64>>()) < 1e-11, "{equations}");
+        let [start, _, end] = followed(&certificate, 1e-8);
+        assert!(apart(&start, &end) > 1e-10, "{equations}");
+    }
+}
+
+#[test]
+fn one_coordinate_of_several_is_that_of_one() {
+    use crate::certificate::certify_driven;
+    use crate::{Options, Oscillator, solve};
+    let one = "x'' + x'/5 + x + x^3/10 = cos(Omega*t)/2";
+    let oscillator = Oscillator::parse("x'' + x'/5 + x + x^3/10 - cos(Omega*t)/2 = 0");
+    let oscillator = oscillator.expect("an equation");
+    let solution = solve(&oscillator, &Options::default()).expect("a solution");
+    let at = "Omega = 6/5".parse().expect("values");
+    let (_, alone) = certify_driven(&oscillator, &solution, &at).expect("a certificate");
+    let alone = alone.amplitude.expect("an amplitude");
+    let (_, both) = certified(&format!("{one}; y'' + y'/3 + 2*y + y^2/5 = x/4"), "Omega = 6/5");
+    let apart = to_f64(&(&alone.middle - &both.amplitudes[0].middle)).abs();
+    assert!(apart <= alone.radius.value() + both.amplitudes[0].radius.value(), "{apart}");
+}
+
+#[test]
+fn numbers_that_do_not_fit_are_refused() {
+    let (sound, _) = certified(POTENTIAL_DAMPING, "Omega = 4/5");
+    let refused = |change: &dyn Fn(&mut CoupledCertificate)| {
+        let mut changed = sound.clone();
+        change(&mut changed);
+        check_coupled(&changed).expect_err("a refusal")
+    };
+    let expression = |text: &str| parse_expression(text).expect("an expression");
+    let malformed: [&dyn Fn(&mut CoupledCertificate); 15] = [
+        &|certificate| certificate.coordinates.clear(),
+        &|certificate| certificate.coordinates[1] = certificate.coordinates[0],
+        &|certificate| certificate.coordinates[1] = Symbol::new("s"),
+        &|certificate| certificate.forces.truncate(1),
+        &|certificate| certificate.damping.truncate(1),
+        &|certificate| certificate.damping[1].truncate(1),
+        &|certificate| certificate.cosines.truncate(1),
+        &|certificate| certificate.sines.truncate(1),
+        &|certificate| certificate.forces[0] = expression("x + z"),
+        &|certificate| certificate.damping[0][0] = expression("1/5 + s"),
+        // x y' alone is the rate of no function.
+        &|certificate| certificate.damping[0][0] = expression("1/5"),
+        &|certificate| certificate.highest = 399,
+        &|certificate| certificate.inverse.truncate(3),
+        &|certificate| certificate.drive.frequency = ratio(-4, 5),
+        &|certificate| certificate.sines[1][0] = Integer::from(1),
+    ];
+    for (place, change) in malformed.into_iter().enumerate() {
+        let error = refused(change);
+        assert!(matches!(error, CheckError::Malformed(_)), "{place}: {error:?}");
+    }
+    let unproved: [&dyn Fn(&mut CoupledCertificate); 9] = [
+        &|certificate| certificate.cosines[1][3] += Integer::from(1) << 20,
+        &|certificate| certificate.sines[0][1] += Integer::from(1) << 20,
+        &|certificate| certificate.sines[1] = vec![],
+        &|certificate| certificate.inverse.iter_mut().flatten().for_each(|e| *e = Integer::zero()),
+        &|certificate| {
+            let with = &certificate.forces[1] + &expression("y/1000000");
+            certificate.forces[1] = with;
+        },
+        &|certificate| certificate.damping[1][0] = expression("1/40 + 1/1000000"),
+        &|certificate| certificate.drive.frequency = ratio(4, 5) + ratio(1, 1_000_000_000),
+        &|certificate| {
+            certificate.odd = true;
+            let rows = certificate.problem().block().len();
+            certificate.inverse = vec![vec![Integer::zero(); rows]; rows];
+        },
+        &|certificate| certificate.claim = ratio(1, 1) / Integer::from(10).pow(40),
+    ];
+    for (place, change) in unproved.into_iter().enumerate() {
+        let error = refused(change);
+        assert!(!matches!(error, CheckError::Malformed(_)), "{place}: {error:?}");
+    }
+}
+
+#[test]
+fn motions_of_other_kinds_are_refused_with_the_reason() {
+    let refused = |equations: &str, at: &str| try_certify(equations, at).expect_err("a refusal");
+    let rest = "y'' + y'/5 + 2*y - x = 0";
+    for (first, term) in [
+        ("x'' + x'^3/5 + x = cos(t)", "x'^3/5"),
+        ("x'' + x'*y'/5 + x = cos(t)", "x'*y'/5"),
+        ("x'' + cos(t)*x'/5 + x = cos(t)", "x'*cos(t)/5"),
+    ] {
+        match refused(&format!("{first}; {rest}"), "") {
+            NotCertified::NotCoupledDriven { coordinate, term: found } => {
+                assert_eq!((coordinate.as_str(), found.as_str()), ("x", term));
+            }
+            error => panic!("{first}: {error:?}"),
+        }
+    }
+    let of = |first: &str, at: &str| refused(&format!("{first}; {rest}"), at);
+    let error = of("x'' + x*y'/5 + x'/5 + x = cos(t)", "");
+    assert!(matches!(error, NotCertified::DampingOfNoFunction), "{error:?}");
+    let error = of("x'' + x'/5 + x = cos(t) + cos(pi*t)", "");
+    assert!(matches!(error, NotCertified::DrivingFrequency(_)), "{error:?}");
+    let error = of("x'' + x'/5 + x = cos(pi*t)", "");
+    assert!(matches!(error, NotCertified::DrivingFrequency(_)), "{error:?}");
+    let error = of("x'' + x'/5 + x = t*cos(t)", "");
+    assert!(matches!(error, NotCertified::NotCoupledDriven { .. }), "{error:?}");
+    let error = of("x'' + x'/5 + k*x = cos(t)", "");
+    assert!(matches!(error, NotCertified::NoValueOf(name) if name == "k"));
+    let error = of("x'' + x'/5 + x = cos(t)", "k = 1");
+    assert!(matches!(error, NotCertified::NoParameter(name) if name == "k"));
+    // Without damping the free motion goes on, and where its period is a part of the drive's there is
+    // a family.
+    let error = of("x'' + x = cos(7*t/5)", "");
+    assert!(matches!(error, NotCertified::NotSettled), "{error:?}");
+    let error = of("x'' + x = cos(t/2)", "");
+    assert!(matches!(error, NotCertified::NotProved { .. }), "{error:?}");
+    let error = refused("s'' + s'/5 + s = cos(t); y'' + y'/5 + 2*y - s = 0", "");
+    assert!(matches!(error, NotCertified::WaveAsCoordinate(_)), "{error:?}");
+    let error = refused("x' + x = cos(t); y'' + y'/5 + 2*y - x = 0", "");
+    assert!(matches!(error, NotCertified::FirstOrder(_)), "{error:?}");
+}

@@ -17,7 +17,7 @@ use crate::exact::rational::to_f64;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
-use crate::method::pade::approximant;
+use crate::method::approximant;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, Degrees, Sum, definitions_behind};
 use crate::symbol::Symbol;

@@ -42,7 +42,7 @@ pub mod motion;
 pub mod multiple_scales;
 pub mod numbers;
 pub(crate) mod one_term;
-pub mod pade;
+pub(crate) mod pade;
 pub(crate) mod parameter_expansion;
 pub mod power_series;
 mod quotation;
@@ -56,6 +56,7 @@ pub(crate) mod variational_iteration;
 pub use default_method::default_method;
 pub use drive::{HarmonicExcitation, Quadrature};
 pub use harmonic_balance::MOST_HARMONICS;
+pub use pade::approximant;
 pub use refusal::{Reason, Refusal, Refuser};
 
 pub use resonance::with_resonance_at;

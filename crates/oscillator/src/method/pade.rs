@@ -102,7 +102,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::expr::{Expr, parse_expression};
-/// use lindstedt::{Symbol, method::pade::approximant};
+/// use lindstedt::{Symbol, method::approximant};
 ///
 /// let series = parse_expression("1 - a^2/8 + 7*a^4/1536")?.to_polynomial(&mut |_| None)?;
 /// let [above, below] = approximant(series.expect("a polynomial"), Symbol::new("a"), (1, 1))?;

@@ -228,7 +228,7 @@ pub struct QuadraticSurd {
     pub rational: RationalFunction,
     /// The factor of the root.
     pub coefficient: RationalFunction,
-    /// What is under the root; that of all numbers which are computed with each other.
+    /// The radicand, one for all numbers that are computed with each other.
     pub radicand: RationalFunction,
 }
 

@@ -24,7 +24,7 @@ use crate::solution::{Definition, defined_values};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// What shakes the main mass.
+/// The excitation of the main mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Excitation {
     /// A force on the main mass.
@@ -75,7 +75,7 @@ impl AbsorberKind {
 pub struct AbsorberLetter {
     /// The letter.
     pub name: &'static str,
-    /// What it is.
+    /// Its meaning in words.
     pub meaning: &'static str,
     /// The range of its values.
     pub range: (Bound<f64>, Bound<f64>),
@@ -90,7 +90,7 @@ pub struct AbsorberLaws {
     pub kind: AbsorberKind,
     /// The equations of motion.
     pub equations: Vec<(Expr, Expr)>,
-    /// What the letters of the equations and the formulas mean.
+    /// The meanings of the letters of the equations and the formulas.
     pub meanings: Vec<(Symbol, &'static str)>,
     /// The symbols that shorten the formulas.
     pub definitions: Vec<Definition>,

@@ -14,7 +14,9 @@ use num_traits::{ToPrimitive as _, Zero as _};
 use super::formula::{JudgedFormula, LettersOfLaw};
 use super::fourier_series::WORKING;
 use super::radii_polynomial::{Correction, NotProved};
-use super::theorem::{ConservativeProblem, Wave, correction, derivative_of_block, prove};
+use super::theorem::{
+    ConservativeProblem, CoordinateHarmonic, correction, derivative_of_block, prove,
+};
 use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula, law};
 use crate::decimal::neighbours;
 use crate::exact::ball::{Ball, Balls};
@@ -326,6 +328,48 @@ pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     sizes.take_while(|size| *size < HIGHEST_HARMONIC).take(8)
 }
 
+/// A block of a proof: its last harmonic, and whether it has odd harmonics alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BlockChoice {
+    pub(super) highest: usize,
+    pub(super) odd: bool,
+}
+
+/// The first proof in blocks of rising size. Where the motion has odd harmonics alone, a few blocks of
+/// all harmonics are tried first: a proof in them leaves nothing open, one among the odd ones says
+/// nothing of motions with even ones beside it.
+pub(super) fn first_proof(
+    odd: bool,
+    seen: usize,
+    largest: impl Fn(bool) -> usize,
+    mut attempt: impl FnMut(BlockChoice) -> Result<Certified, NotProved>,
+) -> Result<Certified, NotProved> {
+    /// Number of blocks of all harmonics that are tried before those of odd ones.
+    const ATTEMPTS: usize = 3;
+    let classes: &[(bool, usize)] = match odd {
+        true => &[(false, ATTEMPTS), (true, usize::MAX)],
+        false => &[(false, usize::MAX)],
+    };
+    let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
+    for &(odd, attempts) in classes {
+        let most = largest(odd);
+        let sizes = blocks(seen).take_while(|highest| *highest <= most);
+        for highest in sizes.take(attempts) {
+            match attempt(BlockChoice { highest, odd }) {
+                Err(error) if !matches!(error, NotProved::NoValue(_)) => reason = error,
+                found => return found,
+            }
+        }
+    }
+    Err(reason)
+}
+
+/// The largest odd number that is neither above one number nor another.
+pub(super) fn odd_below(one: usize, other: usize) -> usize {
+    let least = one.min(other).max(1);
+    if least % 2 == 1 { least } else { least - 1 }
+}
+
 /// The motion to be proved: `x'' + force = 0` from rest at `start`.
 struct ProofTarget {
     force: Expr,
@@ -543,9 +587,9 @@ pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), N
 pub(super) fn subtract_step(
     mu: &mut Integer,
     coefficients: &mut [&mut Vec<Integer>],
-    block: &[Wave],
+    block: &[CoordinateHarmonic],
     bits: usize,
-    step: &Correction<Wave>,
+    step: &Correction<CoordinateHarmonic>,
 ) {
     let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
     *mu -= short(&step.block[0]);

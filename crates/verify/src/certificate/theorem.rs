@@ -83,12 +83,12 @@ pub(super) struct ConservativeProblem<'a> {
 
 /// A harmonic of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Wave {
+pub(super) struct CoordinateHarmonic {
     pub(super) coordinate: usize,
     pub(super) harmonic: usize,
 }
 
-impl Wave {
+impl CoordinateHarmonic {
     /// The square of its harmonic.
     fn squared(self) -> u32 {
         u32::try_from(self.harmonic * self.harmonic).unwrap_or(u32::MAX)
@@ -102,9 +102,11 @@ impl ConservativeProblem<'_> {
     }
 
     /// The harmonics of the block, coordinate by coordinate.
-    pub(super) fn block(&self) -> Vec<Wave> {
+    pub(super) fn block(&self) -> Vec<CoordinateHarmonic> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
-        let of = |coordinate| harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic });
+        let of = |coordinate| {
+            harmonics.clone().map(move |harmonic| CoordinateHarmonic { coordinate, harmonic })
+        };
         (0..self.coordinates.len()).flat_map(of).collect()
     }
 
@@ -139,7 +141,7 @@ impl ConservativeProblem<'_> {
     }
 
     /// What the condition says of a harmonic: the derivative by its coefficient.
-    fn by_condition(&self, wave: Wave) -> Option<Ball> {
+    fn by_condition(&self, wave: CoordinateHarmonic) -> Option<Ball> {
         match &self.condition {
             Condition::Start { coordinate, .. } => {
                 (*coordinate == wave.coordinate).then(|| WORKING.integer(1))
@@ -253,7 +255,7 @@ struct Direction {
 
 impl Direction {
     /// Adds the middles of a correction.
-    fn add(&mut self, correction: &Correction<Wave>, block: &[Wave]) {
+    fn add(&mut self, correction: &Correction<CoordinateHarmonic>, block: &[CoordinateHarmonic]) {
         let added = |to: &Ball, ball: &Ball| Ball {
             middle: &to.middle + &ball.middle,
             radius: Bound::ZERO,
@@ -310,7 +312,9 @@ impl<'a> Theorem<'a> {
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(problem: ConservativeProblem) -> Result<Correction<Wave>, NotProved> {
+pub(super) fn correction(
+    problem: ConservativeProblem,
+) -> Result<Correction<CoordinateHarmonic>, NotProved> {
     Ok(BoundData::new(problem)?.correction())
 }
 
@@ -412,12 +416,12 @@ impl Slopes {
     }
 
     /// The coefficient of a harmonic of a force in the image of a harmonic of a coordinate.
-    fn coefficient(&self, row: Wave, column: Wave) -> Ball {
+    fn coefficient(&self, row: CoordinateHarmonic, column: CoordinateHarmonic) -> Ball {
         self.values[row.coordinate][column.coordinate].coefficient(row.harmonic, column.harmonic)
     }
 
     /// The same coefficient as a double.
-    fn near(&self, row: Wave, column: Wave) -> f64 {
+    fn near(&self, row: CoordinateHarmonic, column: CoordinateHarmonic) -> f64 {
         self.values[row.coordinate][column.coordinate].near(row.harmonic, column.harmonic)
     }
 
@@ -437,7 +441,7 @@ struct BoundData<'a> {
     /// `f(c)`.
     forces: Vec<FourierSeries>,
     /// The harmonics of the block.
-    block: Vec<Wave>,
+    block: Vec<CoordinateHarmonic>,
     /// The norm of the column of the condition.
     start: Bound,
     /// The norm of the inverse on the equations of the harmonics.
@@ -470,20 +474,21 @@ impl<'a> BoundData<'a> {
     }
 
     /// The harmonics of all coordinates from one up to another.
-    fn waves(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
+    fn waves(&self, from: usize, to: usize) -> impl Iterator<Item = CoordinateHarmonic> + use<> {
         let harmonics = self.harmonics(from, to);
-        let of =
-            move |coordinate| harmonics.clone().map(move |harmonic| Wave { coordinate, harmonic });
+        let of = move |coordinate| {
+            harmonics.clone().map(move |harmonic| CoordinateHarmonic { coordinate, harmonic })
+        };
         (0..self.forces.len()).flat_map(of)
     }
 
     /// The harmonics beyond the block, up to this one.
-    fn beyond(&self, to: usize) -> impl Iterator<Item = Wave> + use<> {
+    fn beyond(&self, to: usize) -> impl Iterator<Item = CoordinateHarmonic> + use<> {
         self.waves(self.problem.highest + 1, to)
     }
 
     /// `f_k`.
-    fn force(&self, wave: Wave) -> Ball {
+    fn force(&self, wave: CoordinateHarmonic) -> Ball {
         self.forces[wave.coordinate].cosine(wave.harmonic)
     }
 
@@ -494,7 +499,7 @@ impl<'a> BoundData<'a> {
 
     /// `B F`: the correction of `mu` and of every harmonic, the amount by which the approximation
     /// is off.
-    fn correction(&self) -> Correction<Wave> {
+    fn correction(&self) -> Correction<CoordinateHarmonic> {
         let last = Self::longest(&self.problem.motions).max(Self::longest(&self.forces));
         self.image(self.problem.off_condition(), last, |wave| {
             let place = self.problem.motions[wave.coordinate].cosine(wave.harmonic);
@@ -509,8 +514,8 @@ impl<'a> BoundData<'a> {
         &self,
         mut start: Ball,
         last: usize,
-        equation: impl Fn(Wave) -> Ball,
-    ) -> Correction<Wave> {
+        equation: impl Fn(CoordinateHarmonic) -> Ball,
+    ) -> Correction<CoordinateHarmonic> {
         let mut beyond = vec![];
         for wave in self.beyond(last) {
             let y = WORKING.scaled(&WORKING.divided(&equation(wave), wave.squared()), -1);
@@ -525,7 +530,7 @@ impl<'a> BoundData<'a> {
     }
 
     /// The norm of `mu` and harmonics.
-    fn norm(&self, vector: &Correction<Wave>) -> Bound {
+    fn norm(&self, vector: &Correction<CoordinateHarmonic>) -> Bound {
         let beyond: Bound = vector.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
         self.inverse.norm(&vector.block, WORKING) + beyond
     }
@@ -637,9 +642,11 @@ impl<'a> BoundData<'a> {
     }
 
     /// The column of a harmonic, in the block at this place or beyond it.
-    fn column(&self, slopes: &Slopes, column: Wave, place: Option<usize>) -> Bound {
+    fn column(&self, slopes: &Slopes, column: CoordinateHarmonic, place: Option<usize>) -> Bound {
         let (j, last) = (column.harmonic, slopes.width());
-        let part = |row: Wave| WORKING.product(&self.problem.mu, &slopes.coefficient(row, column));
+        let part = |row: CoordinateHarmonic| {
+            WORKING.product(&self.problem.mu, &slopes.coefficient(row, column))
+        };
         let (mut start, mut tail) = (Ball::zero(), Bound::ZERO);
         let from = (self.problem.highest + 1).max((j + 1).saturating_sub(last));
         for row in self.waves(from, j + last) {
@@ -753,7 +760,7 @@ mod tests {
         problem: &ConservativeProblem,
         motions: &[FourierSeries],
         mu: &Ball,
-        direction: Option<Wave>,
+        direction: Option<CoordinateHarmonic>,
     ) -> (Ball, Vec<FourierSeries>) {
         let value = |force: &Expr| problem.values_along(force, motions).expect("a value");
         let Some(wave) = direction else {
@@ -785,7 +792,7 @@ mod tests {
     fn size_of_image(
         system: &BoundData,
         (condition, equations): &(Ball, Vec<FourierSeries>),
-        less: Option<Option<Wave>>,
+        less: Option<Option<CoordinateHarmonic>>,
     ) -> f64 {
         let (mut start, mut beyond) = (WORKING.nearest(condition), 0.0);
         for wave in system.beyond(BoundData::longest(equations) + 1) {
@@ -801,10 +808,10 @@ mod tests {
         }
         let start = crate::exact::rational::from_f64(start).expect("a number");
         let mut vector = vec![WORKING.fraction(&start)];
-        let entry = |wave: &Wave| equations[wave.coordinate].cosine(wave.harmonic);
+        let entry = |wave: &CoordinateHarmonic| equations[wave.coordinate].cosine(wave.harmonic);
         vector.extend(system.block.iter().map(entry));
         let mut image = system.inverse.image(&vector, WORKING);
-        let place = |direction: Option<Wave>| match direction {
+        let place = |direction: Option<CoordinateHarmonic>| match direction {
             None => Some(0),
             Some(wave) => place_of(system, wave),
         };
@@ -814,12 +821,12 @@ mod tests {
         beyond + system.inverse.norm(&image, WORKING).value()
     }
 
-    fn place_of(system: &BoundData, wave: Wave) -> Option<usize> {
+    fn place_of(system: &BoundData, wave: CoordinateHarmonic) -> Option<usize> {
         system.block.iter().position(|other| *other == wave).map(|place| place + 1)
     }
 
     /// Every direction up to a harmonic, each with its weight in the norm.
-    fn directions(system: &BoundData, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn directions(system: &BoundData, highest: usize) -> Vec<(Option<CoordinateHarmonic>, f64)> {
         let waves = system.waves(0, highest).map(|wave| (Some(wave), 1.0));
         std::iter::once((None, system.inverse.sigma.value())).chain(waves).collect()
     }

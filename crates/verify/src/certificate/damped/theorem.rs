@@ -118,12 +118,12 @@ pub(super) struct DampedProblem<'a> {
 
 /// A cosine or a sine of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Wave {
+pub(super) struct CoordinateWave {
     pub(super) coordinate: usize,
     pub(super) function: BasisFunction,
 }
 
-impl Wave {
+impl CoordinateWave {
     /// Its harmonic.
     const fn harmonic(self) -> usize {
         self.function.harmonic()
@@ -141,7 +141,7 @@ impl Wave {
 }
 
 /// The wave whose coefficient is zero in a limit cycle, which says where it begins.
-const PHASE: Wave = Wave { coordinate: 0, function: BasisFunction::Sine(1) };
+const PHASE: CoordinateWave = CoordinateWave { coordinate: 0, function: BasisFunction::Sine(1) };
 
 impl DampedProblem<'_> {
     /// Whether p is an unknown.
@@ -155,17 +155,20 @@ impl DampedProblem<'_> {
     }
 
     /// The cosines and sines of some harmonics, coordinate by coordinate.
-    fn waves(&self, harmonics: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = Wave> {
+    fn waves(
+        &self,
+        harmonics: impl Iterator<Item = usize> + Clone,
+    ) -> impl Iterator<Item = CoordinateWave> {
         let functions = harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)]);
         let functions = functions.filter(|function| *function != BasisFunction::Sine(0));
         (0..self.coordinates.len()).flat_map(move |coordinate| {
-            functions.clone().map(move |function| Wave { coordinate, function })
+            functions.clone().map(move |function| CoordinateWave { coordinate, function })
         })
     }
 
     /// The equations of the block. For a limit cycle the sine of the first harmonic comes first:
     /// among the unknowns p takes its place.
-    pub(super) fn block(&self) -> Vec<Wave> {
+    pub(super) fn block(&self) -> Vec<CoordinateWave> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
         let waves = self.waves(harmonics);
         match self.is_free() {
@@ -324,7 +327,7 @@ pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(problem: DampedProblem) -> Result<Correction<Wave>, NotProved> {
+pub(super) fn correction(problem: DampedProblem) -> Result<Correction<CoordinateWave>, NotProved> {
     Ok(DampedBoundData::new(problem)?.correction())
 }
 
@@ -335,11 +338,13 @@ pub(super) fn correction(problem: DampedProblem) -> Result<Correction<Wave>, Not
 pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>>, NotProved> {
     let equations = DampedEquations::new(problem)?;
     let derivative = equations.derivative()?;
-    let entry = |row: Wave, place: usize| match place < equations.unknowns_before_waves() {
+    let entry = |row: CoordinateWave, place: usize| match place < equations.unknowns_before_waves()
+    {
         true => WORKING.nearest(&equations.by_reciprocal(row)),
         false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
-    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
+    let row =
+        |row: &CoordinateWave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
     Ok(equations.block.iter().map(row).collect())
 }
 
@@ -473,7 +478,7 @@ impl Derivative {
     }
 
     /// The coefficient of one wave in `p (G e)' + p^2 h' e` of another, e.
-    fn bent(&self, row: Wave, column: Wave) -> Ball {
+    fn bent(&self, row: CoordinateWave, column: CoordinateWave) -> Ball {
         let k = row.harmonic() as i64;
         let [by_damping, by_slope] = [&self.by_damping, &self.by_slopes]
             .map(|matrix| &matrix[row.coordinate][column.coordinate]);
@@ -494,7 +499,7 @@ impl Derivative {
 
     /// The entry of the derivative, `e'' + p (G e)' + p^2 h' e`: that of [`Self::bent`] and on the
     /// diagonal `-k^2` of `e''`.
-    fn entry(&self, row: Wave, column: Wave) -> Ball {
+    fn entry(&self, row: CoordinateWave, column: CoordinateWave) -> Ball {
         let bent = self.bent(row, column);
         match row == column {
             true => SHORT.difference(&bent, &SHORT.integer(i64::from(row.squared()))),
@@ -514,7 +519,7 @@ struct DampedEquations<'a> {
     forces: Vec<FourierSeries>,
     /// The equations of the block, the sine of the first harmonic first. Among the unknowns p takes
     /// the place of that sine.
-    block: Vec<Wave>,
+    block: Vec<CoordinateWave>,
 }
 
 impl<'a> DampedEquations<'a> {
@@ -569,7 +574,7 @@ impl<'a> DampedEquations<'a> {
     }
 
     /// The waves of all coordinates of the harmonics from one beyond the block up to another.
-    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> {
+    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = CoordinateWave> {
         let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
         let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
@@ -577,7 +582,7 @@ impl<'a> DampedEquations<'a> {
     }
 
     /// `p D_k + p^2 h_k`.
-    fn bent(&self, wave: Wave) -> Ball {
+    fn bent(&self, wave: CoordinateWave) -> Ball {
         WORKING.sum(
             &WORKING.product(&self.problem.reciprocal, &wave.of(&self.drag)),
             &WORKING.product(&self.squared, &wave.of(&self.forces)),
@@ -585,7 +590,7 @@ impl<'a> DampedEquations<'a> {
     }
 
     /// `D_k + 2 p h_k`, the derivative by p.
-    fn by_reciprocal(&self, wave: Wave) -> Ball {
+    fn by_reciprocal(&self, wave: CoordinateWave) -> Ball {
         let twice =
             WORKING.scaled(&WORKING.product(&self.problem.reciprocal, &wave.of(&self.forces)), 2);
         WORKING.sum(&wave.of(&self.drag), &twice)
@@ -633,7 +638,7 @@ impl<'a> DampedBoundData<'a> {
 
     /// `B F`: the correction of p and of every harmonic, the amount by which the approximation is
     /// off.
-    fn correction(&self) -> Correction<Wave> {
+    fn correction(&self) -> Correction<CoordinateWave> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
             (wave, WORKING.difference(&wave.of(&self.equations.problem.motions), &image))
@@ -729,7 +734,12 @@ impl<'a> DampedBoundData<'a> {
     }
 
     /// The column of a wave, in the block at this place or beyond it.
-    fn column(&self, derivative: &Derivative, column: Wave, place: Option<usize>) -> Bound {
+    fn column(
+        &self,
+        derivative: &Derivative,
+        column: CoordinateWave,
+        place: Option<usize>,
+    ) -> Bound {
         let (j, width) = (column.harmonic(), derivative.width());
         let tail: Bound = self
             .equations
@@ -925,8 +935,8 @@ mod tests {
         }
 
         /// DF on a direction, `None` that of p.
-        fn derivative(&self, direction: Option<Wave>) -> Vec<FourierSeries> {
-            let Some(Wave { coordinate, function }) = direction else {
+        fn derivative(&self, direction: Option<CoordinateWave>) -> Vec<FourierSeries> {
+            let Some(CoordinateWave { coordinate, function }) = direction else {
                 return self.by_reciprocal.clone();
             };
             let direction = wave(function);
@@ -951,7 +961,7 @@ mod tests {
     }
 
     /// The place of a wave among the unknowns of the block.
-    fn place_of(system: &DampedBoundData, wave: Wave) -> Option<usize> {
+    fn place_of(system: &DampedBoundData, wave: CoordinateWave) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
         let mut waves = system.equations.block[first..].iter();
         waves.position(|other| *other == wave).map(|place| place + first)
@@ -961,12 +971,12 @@ mod tests {
     fn size_of_image(
         system: &DampedBoundData,
         series: &[FourierSeries],
-        less: Option<Option<Wave>>,
+        less: Option<Option<CoordinateWave>>,
     ) -> f64 {
         let block = &system.equations.block;
         let vector: Vec<Ball> = block.iter().map(|wave| wave.of(series)).collect();
         let mut image = system.inverse.image(&vector, WORKING);
-        let place = |direction: Option<Wave>| match direction {
+        let place = |direction: Option<CoordinateWave>| match direction {
             None => Some(0),
             Some(direction) => place_of(system, direction),
         };
@@ -984,7 +994,7 @@ mod tests {
 
     /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it
     /// has in the norm.
-    fn directions(system: &DampedBoundData, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn directions(system: &DampedBoundData, highest: usize) -> Vec<(Option<CoordinateWave>, f64)> {
         let first = system.equations.unknowns_before_waves();
         let block = system.equations.block[first..].iter().copied();
         let waves = block.chain(system.equations.beyond(0, highest)).map(|wave| (Some(wave), 1.0));
@@ -993,7 +1003,7 @@ mod tests {
     }
 
     /// Every column of `1 - B DF` by its definition, that of p first.
-    fn columns(system: &DampedBoundData, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn columns(system: &DampedBoundData, highest: usize) -> Vec<(Option<CoordinateWave>, f64)> {
         let equations = &system.equations;
         let place = Place::of(
             &equations.problem,
@@ -1124,7 +1134,7 @@ mod tests {
             // So far that the norm of the step is h.
             match from {
                 None => reciprocal = WORKING.sum(&reciprocal, &within),
-                Some(Wave { coordinate, function }) => {
+                Some(CoordinateWave { coordinate, function }) => {
                     let step = wave(*function).product(&FourierSeries::constant(within.clone()));
                     motions[*coordinate] = motions[*coordinate].sum(&step);
                 }

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 use num_traits::Zero as _;
 
 use super::super::candidate::{
-    BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverse,
-    is_near, iterate, not_proved, subtract_step, units, weight, without_claims, written_out,
+    BITS, INVERSE_BITS, NOISE, NotCertified, claim_errors, claimed, few_units, first_proof,
+    inverse, is_near, iterate, not_proved, odd_below, subtract_step, units, weight, without_claims,
+    written_out,
 };
 use super::super::force::is_odd;
 use super::super::formula::{JudgedFormula, LettersOfLaw};
@@ -17,7 +18,6 @@ use super::super::theorem::{correction, prove};
 use super::super::{Certified, HIGHEST_HARMONIC, law};
 use super::{ModeAmplitude, ModeCertificate, last_harmonic_of_largest_block};
 use crate::exact::ball::Balls;
-use crate::exact::bound::Bound;
 use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::method::numbers::NoNumbers;
@@ -62,8 +62,6 @@ fn certified_mode(
 ) -> Result<(ModeCertificate, Certified), NotCertified> {
     /// The judge's verdict is not used.
     const ANY_TOLERANCE: f64 = 1.0;
-    /// Number of blocks of all harmonics that are tried before those of odd ones.
-    const ATTEMPTS: usize = 3;
     let _letters = system.letters.in_force();
     let judged = judge_mode(system, mode, at, ANY_TOLERANCE)?;
     let symbol = mode.amplitude.symbol();
@@ -114,35 +112,16 @@ fn certified_mode(
     certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     let unknowns = |certificate: &ModeCertificate| certificate.problem().block().len();
     refine(&mut certificate).map_err(|reason| not_proved(reason, unknowns(&certificate)))?;
-    // A proof among all harmonics leaves nothing open; one among the odd ones alone holds where an
-    // even multiple of the frequency is that of another motion.
-    let classes: &[(bool, usize)] = match odd {
-        true => &[(false, ATTEMPTS), (true, usize::MAX)],
-        false => &[(false, usize::MAX)],
-    };
-    let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
-    for &(odd, attempts) in classes {
-        certificate.odd = odd;
-        let most = last_harmonic_of_largest_block(certificate.coordinates.len(), odd);
-        let sizes = blocks(seen).take_while(|highest| *highest <= most);
-        for highest in sizes.take(attempts) {
-            certificate.highest = highest;
-            match proved(&mut certificate) {
-                Ok(certified) => return Ok((certificate, certified)),
-                Err(error @ NotProved::NoValue(_)) => {
-                    return Err(not_proved(error, unknowns(&certificate)));
-                }
-                Err(error) => reason = error,
-            }
-        }
+    let count = certificate.coordinates.len();
+    let largest = |odd| last_harmonic_of_largest_block(count, odd);
+    let found = first_proof(odd, seen, largest, |block| {
+        (certificate.highest, certificate.odd) = (block.highest, block.odd);
+        proved(&mut certificate)
+    });
+    match found {
+        Ok(certified) => Ok((certificate, certified)),
+        Err(reason) => Err(not_proved(reason, unknowns(&certificate))),
     }
-    Err(not_proved(reason, unknowns(&certificate)))
-}
-
-/// The largest odd number that is neither above one number nor another.
-fn odd_below(one: usize, other: usize) -> usize {
-    let least = one.min(other).max(1);
-    if least % 2 == 1 { least } else { least - 1 }
 }
 
 /// The coordinates, and f of `q'' + f(q) = 0` with numbers: the accelerations by the equations, for

@@ -9,8 +9,8 @@ use nalgebra::DMatrix;
 use num_traits::Zero as _;
 
 use super::super::super::candidate::{
-    BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claimed, few_units, inverted, iterate,
-    not_proved, shorten, subtract, units, written_out,
+    BITS, INVERSE_BITS, NOISE, NotCertified, claimed, few_units, first_proof, inverted, iterate,
+    not_proved, odd_below, shorten, subtract, units, written_out,
 };
 use super::super::super::fourier_series::{BasisFunction, WORKING};
 use super::super::super::radii_polynomial::NotProved;
@@ -22,7 +22,6 @@ use super::super::waves::{common_frequency, in_waves};
 use super::{CoupledCertificate, last_harmonic_of_largest_block};
 use crate::coupled::CoupledEquations;
 use crate::exact::ball::Balls;
-use crate::exact::bound::Bound;
 use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Rational};
 use crate::expr::{CompiledList, Expr};
@@ -40,8 +39,6 @@ pub fn certify_coupled(
     equations: &CoupledEquations,
     at: &Values,
 ) -> Result<(CoupledCertificate, Certified), NotCertified> {
-    /// Number of blocks of all harmonics that are tried before those of odd ones.
-    const ATTEMPTS: usize = 3;
     let (values, others) = at.split(&equations.parameters);
     if let Some((name, _)) = others.iter().next() {
         return Err(NotCertified::NoParameter(name.to_string()));
@@ -100,34 +97,16 @@ pub fn certify_coupled(
     certificate.highest = odd_below((3 * seen / 2).max(15), most);
     let unknowns = |certificate: &CoupledCertificate| certificate.problem().block().len();
     refine(&mut certificate).map_err(|reason| not_proved(reason, unknowns(&certificate)))?;
-    // A proof among all harmonics leaves nothing open.
-    let classes: &[(bool, usize)] = match odd {
-        true => &[(false, ATTEMPTS), (true, usize::MAX)],
-        false => &[(false, usize::MAX)],
-    };
-    let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
-    for &(odd, attempts) in classes {
-        certificate.odd = odd;
-        let most = last_harmonic_of_largest_block(count, odd);
-        let sizes = blocks(seen).take_while(|highest| *highest <= most);
-        for highest in sizes.take(attempts) {
-            certificate.highest = highest;
-            match proved(&mut certificate) {
-                Ok(certified) => return Ok((certificate, certified)),
-                Err(error @ NotProved::NoValue(_)) => {
-                    return Err(not_proved(error, unknowns(&certificate)));
-                }
-                Err(error) => reason = error,
-            }
-        }
+    let count = certificate.coordinates.len();
+    let largest = |odd| last_harmonic_of_largest_block(count, odd);
+    let found = first_proof(odd, seen, largest, |block| {
+        (certificate.highest, certificate.odd) = (block.highest, block.odd);
+        proved(&mut certificate)
+    });
+    match found {
+        Ok(certified) => Ok((certificate, certified)),
+        Err(reason) => Err(not_proved(reason, unknowns(&certificate))),
     }
-    Err(not_proved(reason, unknowns(&certificate)))
-}
-
-/// The largest odd number that is neither above one number nor another.
-fn odd_below(one: usize, other: usize) -> usize {
-    let least = one.min(other).max(1);
-    if least % 2 == 1 { least } else { least - 1 }
 }
 
 /// G and h of `q'' + G(q) q' + h(q, cos(Omega t), sin(Omega t)) = 0`, from the accelerations with

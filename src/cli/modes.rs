@@ -29,7 +29,11 @@ pub(super) fn run(
 ) -> Result<Outcome, Failure> {
     let question = &arguments.question;
     let method = question.method.as_deref().or(problem.method.as_deref());
-    if method == Some(Method::HarmonicBalance.name()) {
+    let order = question.order.or(problem.order);
+    if method == Some(Method::HarmonicBalance.name())
+        && equations.coordinates.len() == 2
+        && matches!(order, None | Some(Order::Power(1)))
+    {
         return super::one_harmonic::run(arguments, equations, problem);
     }
     let Derived { modes, values, letters } =
@@ -78,6 +82,9 @@ pub(super) fn run(
     })
 }
 
+/// The number of harmonics of a balance without a choice.
+const USUAL_HARMONICS: u32 = 2;
+
 /// The modes of coupled equations, with the values that are left once those that the equations need
 /// stand in them.
 pub(super) struct Derived {
@@ -107,10 +114,11 @@ pub(super) fn derived(
     }
     let method = question.method.as_deref().or(problem.method.as_deref());
     let is_pade = method == Some(Method::Pade.name());
-    if let Some(name) = method.filter(|name| !is_pade && *name != Method::LindstedtPoincare.name())
-    {
+    let is_balance = method == Some(Method::HarmonicBalance.name());
+    let is_series = method.is_none_or(|name| name == Method::LindstedtPoincare.name());
+    if let Some(name) = method.filter(|_| !(is_pade || is_balance || is_series)) {
         return Err(Failure::Usage(format!(
-            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with one harmonic by {}; their slow equations by {} or {}",
+            "--method {name}: the modes of coupled equations are derived by {}, with an approximant on top by {}, with a number of harmonics by {}; their slow equations by {} or {}",
             Method::LindstedtPoincare.name(),
             Method::Pade.name(),
             Method::HarmonicBalance.name(),
@@ -133,7 +141,7 @@ pub(super) fn derived(
         }
         (Some(_), false) => {
             return Err(Failure::Usage(
-                "--order: the order of modes is the highest power of the amplitude in omega^2; degrees are those of --method pade"
+                "--order: the order of modes is the highest power of the amplitude in omega^2, or the number of harmonics; degrees are those of --method pade"
                     .to_owned(),
             ));
         }
@@ -142,10 +150,25 @@ pub(super) fn derived(
     let refused = |error: ModeError| refused(&error, text);
     let system = free_system(equations, problem)?;
     let amplitude = amplitude(question, problem.amplitude.as_deref())?;
+    if is_balance {
+        let name = Method::HarmonicBalance.name();
+        if amplitude == Some(AmplitudeConvention::FirstHarmonic) {
+            return Err(Failure::Usage(format!(
+                "--amplitude: in a balance of harmonics the amplitude is the start of the first coordinate, {}",
+                AmplitudeConvention::Initial.name()
+            )));
+        }
+        if steps {
+            return Err(Failure::Usage(format!(
+                "--steps: --method {name} has no orders, its equations are in the answer"
+            )));
+        }
+    }
     let options = ModeOptions {
         mode: mode.map(|mode| mode as usize),
         order,
         pade,
+        harmonics: is_balance.then(|| order.unwrap_or(USUAL_HARMONICS)),
         amplitude: amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
         steps,
         supervision: session::supervision(),
@@ -218,6 +241,7 @@ fn judged(
             Ok(judged) => all.push(Ok(judged)),
             Err(
                 error @ (VerificationError::NoMode { .. }
+                | VerificationError::NoBalance { .. }
                 | VerificationError::VanishingDivisor { .. }
                 | VerificationError::NoValue { .. }),
             ) => all.push(Err(error.to_string())),

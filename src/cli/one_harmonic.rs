@@ -3,7 +3,7 @@
 use crate::coupled::CoupledEquations;
 use crate::export::json;
 use crate::modes::one_harmonic_modes;
-use crate::problem::{Order, Problem};
+use crate::problem::Problem;
 use crate::report::{self, OneHarmonicReport};
 use crate::solution::{AmplitudeConvention, Method};
 use crate::verify::judge_one_harmonic;
@@ -25,11 +25,6 @@ pub(super) fn run(
     let question = &arguments.question;
     let usage = |text: String| Err(Failure::Usage(text));
     let name = Method::HarmonicBalance.name();
-    if !matches!(question.order.or(problem.order), None | Some(Order::Power(1))) {
-        return usage(format!(
-            "--order: --method {name} of coupled equations has one harmonic, in closed form"
-        ));
-    }
     if arguments.mode.is_some() {
         return usage(format!(
             "--mode says nothing to --method {name}, whose families may have several modes"

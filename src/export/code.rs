@@ -195,7 +195,7 @@ pub fn solution<'a>(
 pub fn modes<'a>(report: &ModesReport, style: impl Into<CodeStyle<'a>>) -> Result<String, NoCode> {
     let _letters = report.modes.system.letters.in_force();
     let CodeStyle { language, prefix } = style.into();
-    writer::source(&modes::program(report).with_prefix(prefix), language.syntax())
+    writer::source(&modes::program(report)?.with_prefix(prefix), language.syntax())
 }
 
 /// A language: how everything looks in it.

@@ -4,6 +4,7 @@ use super::figure::{Curve, CurveStyle, FigureError, Panel, Points, figure};
 use crate::decimal::significant;
 use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
+use crate::solution::Method;
 use crate::verify::JudgedMode;
 
 /// Largest number of modes that are drawn: the slowest of those that were asked for.
@@ -48,9 +49,12 @@ pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
             });
         }
     }
+    let by = match report.modes.method() {
+        Method::HarmonicBalance => format!("by balance of {} harmonics", report.modes.order),
+        _ => format!("to order {}", report.modes.order),
+    };
     let caption = format!(
-        "Nonlinear normal modes to order {}: {second} against {first}, and half a period of {all}.",
-        report.modes.order
+        "Nonlinear normal modes {by}: {second} against {first}, and half a period of {all}."
     );
     figure(&panels, &caption)
 }

@@ -7,9 +7,10 @@ use num_traits::Zero;
 use super::{Block, Document, percent, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
-use crate::exact::Polynomial;
+use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
-use crate::modes::{NonlinearMode, NormalModes};
+use crate::modes::{ModeBalance, NonlinearMode, NormalModes};
+use crate::series::FourierSeries;
 use crate::solution::Sum;
 use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh, phase_beside};
@@ -97,12 +98,43 @@ fn head<'a>(report: &ModesReport<'a>) -> Vec<Vec<Block<'a>>> {
     let approximant = approximants.map_or(String::new(), |approximant| {
         format!(", omega^2 by its approximant {} in {amplitude}^2", approximant.degrees)
     });
+    let method = match balance_of(modes) {
+        Some(balance) => format!("balance of harmonics {}", balance.harmonics_in_words()),
+        None => {
+            format!("Lindstedt-Poincare to order {} in {amplitude}{approximant}", modes.order)
+        }
+    };
     let title = Block::Heading(format!(
-        "Nonlinear normal modes by Lindstedt-Poincare to order {} in {amplitude}{approximant}; {} = {FREQUENCY}*t",
-        modes.order,
+        "Nonlinear normal modes by {method}; {} = {FREQUENCY}*t",
         report.phase()
     ));
-    vec![question, vec![title]]
+    let mut sections = vec![question, vec![title]];
+    sections.extend(balance_of(modes).map(|balance| written_balance(report, balance)));
+    sections
+}
+
+/// The balance of harmonics, which all modes share but for their amplitudes.
+fn balance_of(modes: &NormalModes) -> Option<&ModeBalance> {
+    modes.modes.iter().flatten().find_map(|mode| mode.balance.as_ref())
+}
+
+/// The motion in the unknowns of a balance, and its equations.
+fn written_balance<'a>(report: &ModesReport<'a>, balance: &'a ModeBalance) -> Vec<Block<'a>> {
+    let mode = report.modes.modes.iter().flatten().next();
+    let mut blocks: Vec<Block> = mode.map_or(vec![], |mode| motion(report, mode));
+    match balance.equations.split_last() {
+        None => blocks.push(Block::Note(
+            "its equations are not written out: the forces are no polynomials, or they are too long to be read"
+                .to_owned(),
+        )),
+        Some((_, equations)) => {
+            let names: Vec<String> = balance.unknowns().iter().map(ToString::to_string).collect();
+            blocks.push(Block::Detail(format!("for {}:", names.join(", "))));
+            let equations = equations.iter();
+            blocks.extend(equations.map(|right| Block::Equality { left: Expr::zero(), right }));
+        }
+    }
+    blocks
 }
 
 fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
@@ -145,6 +177,7 @@ fn one_mode<'a>(
     let omega = Expr::from(FREQUENCY);
     let squared = &omega * &omega;
     match &mode.approximant {
+        _ if mode.balance.is_some() => {}
         // A quotient of rounded numbers would be one of long whole numbers.
         Some(own) if mode.rounded => {
             let taken = report.modes.system.names();
@@ -158,14 +191,8 @@ fn one_mode<'a>(
         Some(own) => blocks.push(Block::Equality { left: squared, right: &own.value }),
         None => blocks.push(law(squared, mode.ordered(&mode.frequency_squared))),
     }
-    for (coordinate, series) in coordinates.iter().zip(&mode.motion) {
-        blocks.push(Block::Harmonics {
-            coordinate: *coordinate,
-            series,
-            amplitude: mode.amplitude.symbol(),
-            rounded: mode.rounded,
-            phase: report.phase(),
-        });
+    if mode.balance.is_none() {
+        blocks.extend(motion(report, mode));
     }
     let others = coordinates.iter().zip(&mode.lines).enumerate();
     let others = others.filter(|(index, _)| *index != mode.along);
@@ -189,7 +216,24 @@ fn one_mode<'a>(
         Ok(judged) => Block::Facts(facts(judged)),
         Err(reason) => Block::Note(reason.clone()),
     }));
+    let coefficients = judged.iter().flat_map(|judged| judged.as_ref().ok());
+    let coefficients = coefficients.flat_map(|judged| &judged.coefficients);
+    blocks.extend(coefficients.map(|&(name, value)| Block::Value { name, value, source: None }));
     blocks
+}
+
+/// The harmonics of every coordinate.
+fn motion<'a>(report: &ModesReport<'a>, mode: &'a NonlinearMode) -> Vec<Block<'a>> {
+    let coordinates = report.modes.system.equations.coordinates.iter().zip(&mode.motion);
+    let harmonics =
+        |(coordinate, series): (&Symbol, &'a FourierSeries<Polynomials>)| Block::Harmonics {
+            coordinate: *coordinate,
+            series,
+            amplitude: mode.amplitude.symbol(),
+            rounded: mode.rounded,
+            phase: report.phase(),
+        };
+    coordinates.map(harmonics).collect()
 }
 
 /// The definition of the amplitude of a mode.
@@ -236,10 +280,16 @@ fn validity(modes: &NormalModes) -> Vec<Block<'static>> {
     let amplitude = modes.amplitude.symbol();
     let mut notes = vec![
         Block::Heading("Validity".to_owned()),
-        Block::Note(format!(
-            "truncated after {amplitude}^{}; an expansion for small {amplitude}",
-            modes.order
-        )),
+        Block::Note(match balance_of(modes) {
+            Some(balance) => format!(
+                "harmonics {} balanced, those above left out; solved by numbers at an amplitude, from the linear mode on",
+                balance.harmonics_in_words()
+            ),
+            None => format!(
+                "truncated after {amplitude}^{}; an expansion for small {amplitude}",
+                modes.order
+            ),
+        }),
     ];
     notes.extend(notes_on_rounding(modes));
     notes

@@ -493,6 +493,62 @@ fn one_harmonic_balances_at_every_member_of_a_family() {
     }
 }
 
+/// A balance is held to the equations that are printed, and to true motions that it approaches with
+/// the number of harmonics: forces of even and odd degree, of accelerations, of a sine, three
+/// coordinates, and a coordinate that rests in a mode.
+#[test]
+fn a_balance_of_harmonics_approaches_the_true_motion() {
+    let balanced = |equations: &str, harmonics: u32| {
+        modes_of(equations, &ModeOptions { harmonics: Some(harmonics), ..ModeOptions::default() })
+    };
+    for (equations, amplitude) in [
+        (PAIR, 1.5),
+        ("x'' + 2*x - y + x^2/3 + x^3/2 = 0; y'' + 2*y - x - x*y/5 = 0", 0.6),
+        ("2*x'' + x''*x^2 + x*x'^2 + 3*x - y = 0; y'' + 2*y - x = 0", 0.8),
+        ("x'' + sin(x) + (x - y)/3 = 0; y'' + sin(y) + (y - x)/3 = 0", 1.2),
+        ("x'' + 2*x - y + x^3 = 0; y'' + 2*y - x - z = 0; z'' + 3*z - y + z^3/2 = 0", 0.3),
+        ("x'' + x + x^3 = 0; y'' + 5*y + y^3 = 0", 1.0),
+    ] {
+        let mut before: Option<Vec<f64>> = None;
+        for harmonics in [2, 4, 8] {
+            let found = balanced(equations, harmonics);
+            let at = format!("A = {amplitude}").parse().expect("values");
+            let errors: Vec<f64> = formulas(&found)
+                .into_iter()
+                .map(|mode| {
+                    let judged = judge_mode(&found.system, mode, &at, 0.01).expect(equations);
+                    let balance = mode.balance.as_ref().expect("a balance");
+                    let known = judged.coefficients.iter().copied();
+                    let known = known.chain([
+                        (Symbol::new("A"), amplitude),
+                        (Symbol::new("omega"), judged.frequency.expect("a frequency")),
+                    ]);
+                    let known = known.collect();
+                    for equation in &balance.equations {
+                        let left = equation.evaluate(&known).expect("a value");
+                        assert!(left.abs() < 1e-10, "{equations}: {equation} is {left}");
+                    }
+                    judged.max_deviation
+                })
+                .collect();
+            let limit =
+                [0.05, 5e-3, 2e-4][[2, 4, 8].iter().position(|n| *n == harmonics).expect("one")];
+            for (index, error) in errors.iter().enumerate() {
+                assert!(*error < limit, "{equations}, {harmonics} harmonics: {errors:?}");
+                let last = before.as_ref().map_or(1.0, |before| before[index]);
+                assert!(*error < 0.3 * last || *error < 1e-9, "{equations}: {errors:?} {before:?}");
+            }
+            before = Some(errors);
+        }
+    }
+    // A force that is no polynomial has no equations that are written out.
+    let sine = balanced("x'' + sin(x) = 0; y'' + 2*y = 0", 3);
+    assert!(formulas(&sine)[0].balance.as_ref().is_some_and(|own| own.equations.is_empty()));
+    let none = FreeSystem::parse(PAIR).expect("equations");
+    let too_many = ModeOptions { harmonics: Some(1000), ..ModeOptions::default() };
+    assert!(matches!(derive(&none, &too_many), Err(ModeError::Order(1000, _))));
+}
+
 #[test]
 fn localised_modes_branch_off_where_it_was_published() {
     // Vakakis and Rand 1992: at K = 1/4, at any amplitude.

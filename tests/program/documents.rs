@@ -165,6 +165,7 @@ fn documents() -> Vec<(String, Value)> {
     }
     let cubic = "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0";
     add(&["derive", cubic, "--method", "harmonic-balance", "--at", "K=1/8,A=1/2"]);
+    add(&["derive", "modal-pair", "--method", "harmonic-balance", "--order", "2", "--at", "A=1"]);
     for file in files("examples/slow", ".toml") {
         add(&["derive", &file.to_string_lossy()]);
     }

@@ -1,28 +1,67 @@
 //! The program of nonlinear normal modes in any language: of each mode the frequency, and of each
 //! coordinate the displacement and the velocity.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::Zero as _;
 
 use super::program::{
-    FREQUENCY, FunctionPrologue, Harmonic, ProgramNames, angle, displacement_and_velocity,
-    in_order, lines_of, resolved, root_of_square, share_arguments, variables,
+    FREQUENCY, FunctionPrologue, Harmonic, ProgramNames, SEVERAL_EQUATIONS, angle,
+    displacement_and_velocity, in_order, lines_of, resolved, root_of_square, share_arguments,
+    variables,
 };
-use super::{Program, Routine, Statement, Value};
-use crate::exact::{Polynomial, Rational};
+use super::{NoCode, Program, Routine, Statement, Value};
+use crate::exact::rational::from_f64;
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::modes::NonlinearMode;
 use crate::report::{Block, Document, ModesReport};
+use crate::series::FourierSeries;
 use crate::symbol::{Symbol, fresh};
+use crate::verify::JudgedMode;
 
 /// The program of all modes that have a formula.
-pub(super) fn program(report: &ModesReport) -> Program {
-    let routines = report.judged_modes().flat_map(|(mode, _)| {
-        let program = Program { header: vec![], routines: one_mode(report, mode) };
-        program.with_prefix(&format!("mode{}_", mode.number)).routines
-    });
-    Program { routines: routines.collect(), header: header(report) }
+///
+/// # Errors
+/// [`NoCode`] for a balance of harmonics without values.
+pub(super) fn program(report: &ModesReport) -> Result<Program, NoCode> {
+    let mut routines = Vec::new();
+    for (mode, judged) in report.judged_modes() {
+        let own = match mode.balance {
+            Some(_) => {
+                one_mode(report, &in_numbers(mode, judged.and_then(|own| own.as_ref().ok()))?)
+            }
+            None => one_mode(report, mode),
+        };
+        let program = Program { header: vec![], routines: own };
+        routines.extend(program.with_prefix(&format!("mode{}_", mode.number)).routines);
+    }
+    Ok(Program { routines, header: header(report) })
+}
+
+/// A mode by balance of harmonics with the numbers that were found at the values.
+fn in_numbers(mode: &NonlinearMode, judged: Option<&JudgedMode>) -> Result<NonlinearMode, NoCode> {
+    let solved = || NoCode::SolvedByNumbers(SEVERAL_EQUATIONS.to_owned());
+    let judged = judged.ok_or_else(solved)?;
+    let number = |value: f64| from_f64(value).map(Polynomial::constant).ok_or(NoCode::Beyond);
+    let frequency = judged.frequency.ok_or(NoCode::NoMotion(None))?;
+    let mut known = BTreeMap::new();
+    for (name, value) in &judged.coefficients {
+        known.insert(*name, number(*value)?);
+    }
+    let of = |coefficient: &Polynomial| {
+        let name = coefficient.symbols().into_iter().next();
+        name.and_then(|name| known.get(&name).cloned()).unwrap_or_else(Polynomial::zero)
+    };
+    let in_numbers = |series: &FourierSeries<Polynomials>| {
+        series.map(POLYNOMIALS, |coefficient, _| of(coefficient))
+    };
+    Ok(NonlinearMode {
+        frequency_squared: number(frequency * frequency)?,
+        motion: mode.motion.iter().map(in_numbers).collect(),
+        rounded: true,
+        ..mode.clone()
+    })
 }
 
 /// The report without its formulas.
@@ -35,11 +74,13 @@ fn header(report: &ModesReport) -> Vec<String> {
                 | Block::Equality { .. }
                 | Block::Harmonics { .. }
                 | Block::Definition(_)
+                | Block::Detail(_)
         )
     };
     for section in &mut document.sections {
         section.retain(|block| !is_formula(block));
     }
+    document.sections.retain(|section| !section.is_empty());
     lines_of(&document)
 }
 

@@ -21,6 +21,10 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY as FREQUENCY_LETTER, of_frequency};
 use crate::verify::Verification;
 
+/// The reason why a balance of harmonics has no program without values.
+pub(super) const SEVERAL_EQUATIONS: &str =
+    "the frequency is a root of several equations, which numbers solve";
+
 pub(super) const FREQUENCY: &str = "angular_frequency";
 const DISPLACEMENT: &str = "displacement";
 const VELOCITY: &str = "velocity";
@@ -233,9 +237,7 @@ fn formula(solution: &Solution) -> Result<Law, String> {
         None if law.relation().is_some() => Err(format!(
             "the frequency is a root of a relation, which numbers follow from {AMPLITUDE} = 0 to the amplitude"
         )),
-        None if law.system().is_some() => {
-            Err("the frequency is a root of several equations, which numbers solve".to_owned())
-        }
+        None if law.system().is_some() => Err(SEVERAL_EQUATIONS.to_owned()),
         None => Err("the frequency is given by integrals, which numbers solve".to_owned()),
     }
 }

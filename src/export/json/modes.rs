@@ -9,7 +9,6 @@ use super::number::{Constant, Map, Polynomial, constants, finite, meanings, name
 use super::solution::Harmonic;
 use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
-use crate::solution::Method;
 use crate::symbol::Symbol;
 use crate::verify::JudgedMode;
 
@@ -27,9 +26,10 @@ pub struct ModesDocument {
     pub rest: Map<String>,
     /// The letters of the equations, in alphabetical order.
     pub parameters: Vec<String>,
-    /// The method: `lindstedt-poincare`, or `pade`, with an approximant of omega^2 on top.
+    /// The method: `lindstedt-poincare`; `pade`, with an approximant of omega^2 on top; or
+    /// `harmonic-balance`.
     pub method: String,
-    /// The highest power of the amplitude in omega^2 that was asked for.
+    /// The highest power of the amplitude in omega^2 that was asked for, or the number of harmonics.
     pub order: u32,
     /// What the amplitude measures: `first-harmonic` or `initial`.
     pub amplitude: String,
@@ -52,7 +52,7 @@ pub struct ModesDocument {
 pub struct ModeDocument {
     /// Its number, 1 for the slowest.
     pub number: usize,
-    /// The highest power of the amplitude in omega^2 that was reached.
+    /// The highest power of the amplitude in omega^2 that was reached, or the number of harmonics.
     pub order: u32,
     /// omega^2 of the linear mode.
     pub linear_omega_squared: Polynomial,
@@ -60,12 +60,16 @@ pub struct ModeDocument {
     pub shape: Map<Polynomial>,
     /// The factors of the coordinates in the sum of which the amplitude is that of the first harmonic.
     pub modal_coordinate: Map<Polynomial>,
-    /// omega^2 in powers of the amplitude.
+    /// omega^2 in powers of the amplitude; in omega itself where a balance gives it.
     pub omega_squared: Polynomial,
     /// A quotient of polynomials that agrees with omega_squared and stands for it, as text; left out
     /// where it was not asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approximant: Option<String>,
+    /// The balance of harmonics that determines omega and the coefficients of the motion; left out for
+    /// a series.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub balance: Option<ModeBalanceDocument>,
     /// The law in one line.
     pub formula: String,
     /// The harmonics of each coordinate in theta = omega*t.
@@ -87,6 +91,18 @@ pub struct ModeDocument {
     pub unjudged: Option<String>,
 }
 
+/// The balance of several harmonics of every coordinate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "ModeBalance"))]
+pub struct ModeBalanceDocument {
+    /// The harmonics that are balanced.
+    pub harmonics: Vec<usize>,
+    /// The unknowns: omega and the coefficients of the motion.
+    pub unknowns: Vec<String>,
+    /// Equations, each of them equal to zero; empty where they are not written out.
+    pub equations: Vec<String>,
+}
+
 /// A mode beside the true motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
@@ -95,6 +111,9 @@ pub struct ModeVerification {
     pub at: Map<Constant>,
     /// omega by the formula; null if its square is not positive.
     pub omega: Option<f64>,
+    /// The coefficients that a balance has at the values; left out for a series.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub coefficients: Map<f64>,
     /// omega of the true motion, by shooting.
     pub true_omega: f64,
     /// `omega/true_omega - 1`; null where there is no omega.
@@ -131,10 +150,7 @@ pub fn modes(report: &ModesReport) -> ModesDocument {
             equations.coordinates.iter().zip(modes.system.rest.iter().map(ToString::to_string)),
         ),
         parameters: texts(&equations.parameters),
-        method: match modes.modes.iter().flatten().any(|mode| mode.approximant.is_some()) {
-            true => Method::Pade.name().to_owned(),
-            false => Method::LindstedtPoincare.name().to_owned(),
-        },
+        method: modes.method().name().to_owned(),
         order: modes.order,
         amplitude: modes.amplitude.name().to_owned(),
         amplitude_symbol: modes.amplitude.symbol().to_string(),
@@ -181,6 +197,11 @@ fn one_mode(
         modal_coordinate: each(&mode.linear.modal),
         omega_squared: polynomial(&mode.frequency_squared),
         approximant: mode.approximant.as_ref().map(|_| mode.formula().replace("omega^2 = ", "")),
+        balance: mode.balance.as_ref().map(|balance| ModeBalanceDocument {
+            harmonics: balance.harmonics.clone(),
+            unknowns: texts(&balance.unknowns()),
+            equations: balance.equations.iter().map(ToString::to_string).collect(),
+        }),
         formula: mode.formula(),
         motion: named(coordinates.iter().zip(motion)),
         along: coordinates[mode.along].to_string(),
@@ -198,6 +219,7 @@ fn verification(judged: &JudgedMode) -> ModeVerification {
     ModeVerification {
         at: constants(&judged.at),
         omega: finite(judged.frequency),
+        coefficients: named(judged.coefficients.iter().copied()),
         true_omega: judged.true_frequency,
         relative_error: finite(judged.relative_error),
         max_deviation: judged.max_deviation,

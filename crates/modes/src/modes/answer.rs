@@ -6,6 +6,7 @@ use num_traits::Zero;
 
 use super::expansion::{Expansion, ExpansionStep, OverRing, Question};
 use super::free_system::ForceTerm;
+use super::harmonic_balance::{ModeBalance, balance, mode_of_balance};
 use super::inverse::HarmonicInverses;
 use super::linear::{DIGITS, LinearMode, LinearModes, NearResonance};
 use super::modal_line::modal_lines;
@@ -19,7 +20,7 @@ use crate::expr::Expr;
 use crate::interrupt::Supervision;
 use crate::method::approximant;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Degrees, Sum, definitions_behind};
+use crate::solution::{AmplitudeConvention, Definition, Degrees, Method, Sum, definitions_behind};
 use crate::symbol::Symbol;
 
 /// The order without a choice.
@@ -44,6 +45,8 @@ pub struct ModeOptions {
     /// The degrees in a^2 of numerator and denominator of an approximant of omega^2, in place of its
     /// series.
     pub pade: Option<(u32, u32)>,
+    /// The number of harmonics to balance, in place of a series.
+    pub harmonics: Option<u32>,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
     /// Whether the derivation is kept, order by order.
@@ -58,6 +61,7 @@ impl Default for ModeOptions {
             mode: None,
             order: None,
             pade: None,
+            harmonics: None,
             amplitude: AmplitudeConvention::FirstHarmonic,
             steps: false,
             supervision: Supervision::default(),
@@ -74,10 +78,22 @@ pub struct NormalModes {
     pub modes: Vec<Result<NonlinearMode, ModeError>>,
     /// The number of all modes.
     pub count: usize,
-    /// The highest power of the amplitude in omega^2 that was asked for.
+    /// The highest power of the amplitude in omega^2 that was asked for, or the number of harmonics.
     pub order: u32,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
+}
+
+impl NormalModes {
+    /// The method by which the modes were derived.
+    pub fn method(&self) -> Method {
+        let modes = || self.modes.iter().flatten();
+        match modes().find(|mode| mode.approximant.is_some()).or_else(|| modes().next()) {
+            Some(mode) if mode.balance.is_some() => Method::HarmonicBalance,
+            Some(mode) if mode.approximant.is_some() => Method::Pade,
+            _ => Method::LindstedtPoincare,
+        }
+    }
 }
 
 /// The linear mode at which a nonlinear one begins.
@@ -91,6 +107,26 @@ pub struct LinearShape {
     /// coordinates, each with its factor, of which the amplitude is that of the first harmonic. With
     /// symmetric matrices u is v.
     pub modal: Vec<Polynomial>,
+}
+
+impl LinearShape {
+    fn new(
+        system: &FreeSystem,
+        mode: &LinearMode,
+        round: &dyn Fn(&Polynomial) -> Polynomial,
+    ) -> Self {
+        let rounded_all = |entries: &[Polynomial]| entries.iter().map(round).collect();
+        Self {
+            square: round(&mode.square),
+            shape: rounded_all(&mode.shape),
+            modal: rounded_all(&modal_coordinate(&system.mass, mode)),
+        }
+    }
+
+    /// The first coordinate that moves.
+    pub(super) fn along(&self) -> usize {
+        self.shape.iter().position(|entry| !entry.is_zero()).unwrap_or(0)
+    }
 }
 
 /// A quotient of polynomials that agrees with a series.
@@ -114,16 +150,19 @@ pub struct Approximant {
 pub struct NonlinearMode {
     /// Its number, 1 for the slowest.
     pub number: usize,
-    /// The highest power of the amplitude in omega^2, inclusive.
+    /// The highest power of the amplitude in omega^2, inclusive, or the number of harmonics.
     pub order: u32,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
     /// The linear mode.
     pub linear: LinearShape,
-    /// omega^2 in powers of the amplitude.
+    /// omega^2 in powers of the amplitude; in omega itself where a balance gives it.
     pub frequency_squared: Polynomial,
     /// A quotient of polynomials in place of that series; `None` if it was not asked for.
     pub approximant: Option<Approximant>,
+    /// The balance of harmonics that determines omega and the coefficients of the motion; `None` for
+    /// a series.
+    pub balance: Option<ModeBalance>,
     /// The motion of each coordinate, a series of cosines of `theta = omega t`.
     pub motion: Vec<FourierSeries<Polynomials>>,
     /// The coordinate in which the modal lines are written: the first that moves in the linear mode.
@@ -156,6 +195,9 @@ impl NonlinearMode {
         system: &FreeSystem,
         values: &BTreeMap<Symbol, Expr>,
     ) -> Vec<NearResonance> {
+        if self.balance.is_some() {
+            return vec![];
+        }
         let Ok(numbers) = system.with_values(values) else { return vec![] };
         match LinearModes::new(&numbers.mass, &numbers.stiffness, numbers.names()) {
             Ok(linear) if linear.count() >= self.number => self.occurring(&linear),
@@ -175,6 +217,9 @@ impl NonlinearMode {
 
     /// The law in one line.
     pub fn formula(&self) -> String {
+        if let Some(balance) = &self.balance {
+            return format!("omega by the balance of harmonics {}", balance.harmonics_in_words());
+        }
         match &self.approximant {
             Some(own) if self.rounded => {
                 let [above, below] = [&own.above, &own.below].map(|part| self.ordered(part));
@@ -220,13 +265,31 @@ pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes,
         Some(number) if (1..=count).contains(&number) => number..=number,
         Some(number) => return Err(ModeError::NoSuchMode { number, count }),
     };
-    let force = system.force_terms(order + 1)?;
-    let modes = numbers
-        .map(|number| {
-            let mode = linear.mode(number - 1)?;
-            one_mode(&system, &force, &linear, number, &mode, order, options)
-        })
-        .collect();
+    let modes = match options.harmonics {
+        Some(harmonics) => {
+            let (balance, motion) = balance(&mut system, harmonics)?;
+            let of = |number| {
+                let mode = linear.mode(number - 1)?;
+                let shown = kept_digits(linear.is_rounded(number - 1));
+                let shape = LinearShape::new(&system, &mode, &shown);
+                let mut found = mode_of_balance(number, shape, balance.clone(), motion.clone());
+                let known = system.constants.iter().chain(linear.definitions()).cloned();
+                found.definitions = used(&found, &known.collect::<Vec<_>>());
+                found.rounded = linear.is_rounded(number - 1);
+                Ok(found)
+            };
+            numbers.map(of).collect()
+        }
+        None => {
+            let force = system.force_terms(order + 1)?;
+            let of = |number| {
+                let mode = linear.mode(number - 1)?;
+                one_mode(&system, &force, &linear, number, &mode, order, options)
+            };
+            numbers.map(of).collect()
+        }
+    };
+    let order = options.harmonics.unwrap_or(order);
     Ok(NormalModes { system, modes, count, order, amplitude: options.amplitude })
 }
 
@@ -333,6 +396,17 @@ fn in_polynomials(expansion: Expansion<Rationals>) -> Expansion<Polynomials> {
     }
 }
 
+/// The digits of a polynomial that are kept: of rounded numbers fifteen.
+fn kept_digits(rounded: bool) -> impl Fn(&Polynomial) -> Polynomial {
+    move |polynomial| match rounded {
+        true => polynomial.map(|number| match to_f64(number).abs() < NOISE {
+            true => Rational::zero(),
+            false => rounded_fraction(number, KEPT_DIGITS),
+        }),
+        false => polynomial.clone(),
+    }
+}
+
 /// The sums over the orders, each with its power of the amplitude.
 fn in_amplitude(
     system: &FreeSystem,
@@ -347,13 +421,7 @@ fn in_amplitude(
     let power = |exponent: usize| {
         Monomial::power_of(amplitude, i32::try_from(exponent).unwrap_or(i32::MAX))
     };
-    let round = |polynomial: &Polynomial| match rounded {
-        true => polynomial.map(|number| match to_f64(number).abs() < NOISE {
-            true => Rational::zero(),
-            false => rounded_fraction(number, KEPT_DIGITS),
-        }),
-        false => polynomial.clone(),
-    };
+    let round = kept_digits(rounded);
     let reached = expansion.frequency_squared.len() - 1;
     let mut frequency_squared = Polynomial::zero();
     for (exponent, coefficient) in expansion.frequency_squared.iter().enumerate() {
@@ -367,25 +435,22 @@ fn in_amplitude(
             sum.sum(&scaled)
         })
     });
-    let along = mode.shape.iter().position(|entry| !entry.is_zero()).unwrap_or(0);
+    let linear = LinearShape::new(system, mode, &round);
+    let along = linear.along();
     let lines = modal_lines(&expansion.motion, along, coordinates[along], amplitude);
-    let rounded_all = |entries: &[Polynomial]| entries.iter().map(round).collect();
     NonlinearMode {
         number,
         order: u32::try_from(reached).unwrap_or(u32::MAX),
         amplitude: options.amplitude,
-        linear: LinearShape {
-            square: round(&mode.square),
-            shape: rounded_all(&mode.shape),
-            modal: rounded_all(&modal_coordinate(&system.mass, mode)),
-        },
+        linear,
         frequency_squared: round(&frequency_squared),
         approximant: None,
+        balance: None,
         motion: motion
             .map(|series| series.map(POLYNOMIALS, |coefficient, _| round(coefficient)))
             .collect(),
         along,
-        lines: rounded_all(&lines),
+        lines: lines.iter().map(&round).collect(),
         near: vec![],
         definitions: vec![],
         rounded,

@@ -169,7 +169,7 @@ impl ModeError {
                 "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
             ),
             Self::NotTwo(_) | Self::EvenDegree(_) | Self::NotPolynomial(_) | Self::NoClosedForm => Some(
-                "without --method the modes are series in the amplitude; `lindstedt response --vary omega=FROM:TO` finds them in numbers".to_owned(),
+                "--order 2 balances several harmonics, by numbers at an amplitude; without --method the modes are series in the amplitude; `lindstedt response --vary omega=FROM:TO` finds them in numbers".to_owned(),
             ),
             Self::Taylor(_) => Some(
                 "`lindstedt response --vary omega=FROM:TO` finds the modes of such forces in numbers".to_owned(),

@@ -219,7 +219,7 @@ impl FreeSystem {
     }
 
     /// The left side of each equation less its right side.
-    fn residuals(&self) -> Vec<Expr> {
+    pub(super) fn residuals(&self) -> Vec<Expr> {
         let sides = self.rows.iter().filter_map(|row| self.equations.equations.get(*row));
         sides.map(|(left, right)| left - right).collect()
     }

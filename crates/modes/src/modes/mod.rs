@@ -18,12 +18,14 @@
 //! - `expansion`: the orders of frequency and motion.
 //! - `modal_line`: the other coordinates as functions of the first.
 //! - `steps`: the derivation order by order.
+//! - `harmonic_balance`: modes by balance of several harmonics, solved by numbers at an amplitude.
 //! - `one_harmonic`: modes of two coordinates with one harmonic, in closed form.
 
 mod answer;
 mod error;
 mod expansion;
 mod free_system;
+mod harmonic_balance;
 mod inverse;
 pub(crate) mod linear;
 pub(crate) mod matrix;
@@ -35,6 +37,7 @@ mod steps;
 pub use answer::{Approximant, LinearShape, ModeOptions, NonlinearMode, NormalModes, derive};
 pub use error::ModeError;
 pub use free_system::FreeSystem;
+pub use harmonic_balance::{BalanceStart, ModeBalance, ModeInNumbers};
 pub use linear::NearResonance;
 pub use one_harmonic::{
     OneHarmonicBranchPoint, OneHarmonicFamily, OneHarmonicModes, one_harmonic_modes,

@@ -81,6 +81,71 @@ pub fn follow<Point, End>(
     }
 }
 
+/// Returns the motions at parts of an amplitude up to all of it, followed from a linear motion in
+/// eighths that are halved where `near` finds no motion near a guess at a part. `linear` has the
+/// unknowns of the linear motion at a part, `unknowns` those of a motion; the last of them changes
+/// with the square of the amplitude at first.
+///
+/// # Errors
+/// The part that was reached.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::continuation::in_amplitude;
+/// use nalgebra::DVector;
+///
+/// // omega^2 = 1 + 3 a^2/4 at a = 2.
+/// let linear = |_: f64| DVector::from_element(1, 1.0);
+/// let near = |_: DVector<f64>, part: f64| Some(DVector::from_element(1, 1.0 + 3.0 * part * part));
+/// let found = in_amplitude(linear, near, |motion| motion)?;
+/// assert_eq!(found.last().map(|(part, motion)| (*part, motion[0])), Some((1.0, 4.0)));
+/// # Ok::<(), f64>(())
+/// ```
+pub fn in_amplitude<Motion>(
+    linear: impl Fn(f64) -> DVector<f64>,
+    mut near: impl FnMut(DVector<f64>, f64) -> Option<Motion>,
+    unknowns: impl Fn(&Motion) -> &DVector<f64>,
+) -> Result<Vec<(f64, Motion)>, f64> {
+    /// Steps of the amplitude, and halvings of a step.
+    const STEPS: usize = 8;
+    const HALVINGS: usize = 6;
+    let mut known: Vec<(f64, Motion)> = Vec::new();
+    let mut step = 1.0 / STEPS as f64;
+    let mut reached = 0.0_f64;
+    let mut halvings = 0;
+    while reached < 1.0 {
+        let next = (reached + step).min(1.0);
+        let guess = match known.as_slice() {
+            [.., (before, first), (last, second)] => {
+                let part = (next - last) / (last - before);
+                let (first, second) = (unknowns(first), unknowns(second));
+                second + (second - first) * part
+            }
+            [(last, motion)] => {
+                let mut guess = linear(next);
+                let index = guess.len() - 1;
+                guess[index] += (unknowns(motion)[index] - guess[index]) * (next / last).powi(2);
+                guess
+            }
+            [] => linear(next),
+        };
+        match near(guess, next) {
+            Some(motion) => {
+                known.push((next, motion));
+                reached = next;
+            }
+            None => {
+                halvings += 1;
+                step *= 0.5;
+                if halvings > HALVINGS {
+                    return Err(reached);
+                }
+            }
+        }
+    }
+    Ok(known)
+}
+
 /// Returns the Jacobian of n equations for n + 1 unknowns, bordered with `row` as its last row.
 pub fn bordered(jacobian: &DMatrix<f64>, row: &DVector<f64>) -> DMatrix<f64> {
     let count = jacobian.nrows();

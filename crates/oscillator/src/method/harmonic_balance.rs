@@ -148,8 +148,8 @@ fn projections(
     Ok(lines)
 }
 
-/// The harmonics of an order.
-pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
+/// The harmonics of an order: odd ones of an odd force, else the mean and as many as the order says.
+pub fn harmonics(order: u32, odd: bool) -> Vec<usize> {
     let order = order as usize;
     match odd {
         true => (0..order).map(|n| 2 * n + 1).collect(),

@@ -55,7 +55,7 @@ pub(crate) mod variational_iteration;
 
 pub use default_method::default_method;
 pub use drive::{HarmonicExcitation, Quadrature};
-pub use harmonic_balance::MOST_HARMONICS;
+pub use harmonic_balance::{MOST_HARMONICS, harmonics};
 pub use pade::approximant;
 pub use refusal::{Reason, Refusal, Refuser};
 

@@ -107,6 +107,18 @@ pub enum VerificationError {
         /// The amplitude up to which the motions were followed.
         reached: f64,
     },
+    /// A balance of harmonics has no motion of a mode at the amplitude.
+    #[error(
+        "the balance of mode {number}, in steps of {} from rest on, has motions up to {} alone", amplitude.written(), decimal(*reached)
+    )]
+    NoBalance {
+        /// The number of the mode.
+        number: usize,
+        /// The symbol of the amplitude.
+        amplitude: Symbol,
+        /// The amplitude up to which the balance was followed.
+        reached: f64,
+    },
     /// A divisor of a formula vanishes at the values.
     #[error(
         "mode {number} has no formula at these values: its divisor {divisor} is zero there, an internal resonance"

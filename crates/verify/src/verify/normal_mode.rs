@@ -16,7 +16,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Verdict, VerificationError};
 use crate::exact::Doubles;
-use crate::modes::{FreeSystem, NearResonance, NonlinearMode};
+use crate::modes::{BalanceStart, FreeSystem, ModeInNumbers, NearResonance, NonlinearMode};
+use crate::numeric::continuation::in_amplitude;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, defined_values};
 use crate::symbol::Symbol;
@@ -36,6 +37,8 @@ pub struct JudgedMode {
     pub tolerance: f64,
     /// omega by the formula; `None` if its square is not positive.
     pub frequency: Option<f64>,
+    /// The coefficients that a balance of harmonics has at the values; none of a series.
+    pub coefficients: Vec<(Symbol, f64)>,
     /// omega of the true motion.
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
@@ -53,12 +56,6 @@ pub struct JudgedMode {
     pub paths: [Vec<Vec<f64>>; 2],
     /// The verdict on the frequency.
     pub verdict: Verdict,
-}
-
-/// The formula in numbers.
-struct Formula {
-    frequency_squared: f64,
-    motion: Vec<FourierSeries<Doubles>>,
 }
 
 /// A true motion of a mode.
@@ -106,8 +103,8 @@ pub fn judge_mode(
     if size == 0.0 {
         return Err(VerificationError::AtRest);
     }
-    let formula = formula_at(mode, &numbers)?;
     let truth = TrueMode::new(system, mode, &numbers)?;
+    let formula = formula_at(mode, &truth, &numbers)?;
     let motions = truth.followed_to(size, mode.number, amplitude)?;
     let Some((_, whole)) = motions.last().cloned() else {
         return Err(VerificationError::NoMode { number: mode.number, amplitude, reached: 0.0 });
@@ -119,7 +116,7 @@ pub fn judge_mode(
     for (part, motion) in &motions {
         let mut smaller = numbers.clone();
         smaller.insert(amplitude, part * size);
-        let frequency = formula_at(mode, &smaller)?.frequency_squared.sqrt();
+        let frequency = formula_at(mode, &truth, &smaller)?.frequency_squared.sqrt();
         errors.push((*part, error(frequency, motion)));
     }
     let by_formula: Vec<Vec<f64>> = (0..=POINTS)
@@ -135,7 +132,14 @@ pub fn judge_mode(
             deviation = deviation.max((formula - truth).abs());
         }
     }
+    let coefficients = mode.balance.as_ref().map_or(vec![], |balance| {
+        let harmonics = formula.motion.iter().flat_map(|series| {
+            balance.harmonics.iter().map(|&harmonic| series.cosine(harmonic).evaluate(0.0))
+        });
+        balance.coefficients.iter().flatten().copied().zip(harmonics).collect()
+    });
     Ok(JudgedMode {
+        coefficients,
         at: at.clone(),
         tolerance,
         frequency,
@@ -206,11 +210,28 @@ fn symbol_values(
         .collect())
 }
 
+/// The mode in numbers.
 fn formula_at(
     mode: &NonlinearMode,
+    truth: &TrueMode,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<Formula, VerificationError> {
+) -> Result<ModeInNumbers, VerificationError> {
     let values = symbol_values(mode, numbers)?;
+    if let Some(balance) = &mode.balance {
+        let amplitude = mode.amplitude.symbol();
+        let size = numbers[&amplitude];
+        let start = BalanceStart {
+            shape: &truth.shape,
+            frequency_squared: truth.linear_frequency.powi(2),
+            along: mode.along,
+        };
+        let nothing = |reached: f64| {
+            let reached = reached * size;
+            VerificationError::NoBalance { number: mode.number, amplitude, reached }
+        };
+        let found = balance.followed_to(start, &values, size).map_err(nothing)?;
+        return found.into_iter().last().map(|(_, motion)| motion).ok_or_else(|| nothing(0.0));
+    }
     let value_of = |name: Symbol| values.get(&name).copied();
     let missing = |name| VerificationError::Missing(vec![name]);
     let frequency_squared = match &mode.approximant {
@@ -231,7 +252,7 @@ fn formula_at(
             });
         }
     }
-    Ok(Formula { frequency_squared, motion })
+    Ok(ModeInNumbers { frequency_squared, motion })
 }
 
 /// The equations with numbers, and the definition of the amplitude.
@@ -320,52 +341,15 @@ impl TrueMode {
         number: usize,
         symbol: Symbol,
     ) -> Result<Vec<(f64, Motion)>, VerificationError> {
-        /// Steps of the amplitude, and halvings of a step.
-        const STEPS: usize = 8;
-        const HALVINGS: usize = 6;
         let count = self.shape.len();
-        let linear = |amplitude: f64| {
-            let start = self.shape.iter().map(|entry| entry * amplitude);
+        let linear = |part: f64| {
+            let start = self.shape.iter().map(|entry| entry * part * amplitude);
             DVector::from_iterator(count + 1, start.chain([PI / self.linear_frequency]))
         };
-        let mut known: Vec<(f64, Motion)> = Vec::new();
-        let mut step = 1.0 / STEPS as f64;
-        let mut reached = 0.0_f64;
-        let mut halvings = 0;
-        while reached < 1.0 {
-            let next = (reached + step).min(1.0);
-            let guess = match known.as_slice() {
-                [.., (before, first), (last, second)] => {
-                    let part = (next - last) / (last - before);
-                    &second.unknowns + (&second.unknowns - &first.unknowns) * part
-                }
-                [(last, motion)] => {
-                    let mut guess = linear(next * amplitude);
-                    let moved = (motion.unknowns[count] - guess[count]) * (next / last).powi(2);
-                    guess[count] += moved;
-                    guess
-                }
-                [] => linear(next * amplitude),
-            };
-            match self.motion_near(guess, next * amplitude) {
-                Some(motion) => {
-                    known.push((next, motion));
-                    reached = next;
-                }
-                None => {
-                    halvings += 1;
-                    step *= 0.5;
-                    if halvings > HALVINGS {
-                        return Err(VerificationError::NoMode {
-                            number,
-                            amplitude: symbol,
-                            reached: reached * amplitude,
-                        });
-                    }
-                }
-            }
-        }
-        Ok(known)
+        let near = |guess: DVector<f64>, part: f64| self.motion_near(guess, part * amplitude);
+        in_amplitude(linear, near, |motion| &motion.unknowns).map_err(|reached| {
+            VerificationError::NoMode { number, amplitude: symbol, reached: reached * amplitude }
+        })
     }
 
     /// The motion that Newton's method finds from a guess; `None` if it does not converge.

@@ -179,6 +179,12 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
     let verdict = judged
         .verdict
         .map(|verdict| ("verdict", format!("{} (error <= {within})", verdict.name())));
+    let slope = judged.slope.map(|slope| {
+        (
+            "slope of the error",
+            format!("{slope:.2}: the deviation falls with this power of all that is small"),
+        )
+    });
     if let Some(transient) = &judged.transient {
         let mut facts = vec![
             ("until", decimal(transient.until)),
@@ -204,6 +210,7 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
                 },
             ));
         }
+        facts.extend(slope);
         facts.extend(verdict);
         return vec![
             Block::Heading(format!(
@@ -222,8 +229,11 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
         return blocks;
     }
     let names = slow.amplitudes.iter().chain(&slow.phases);
+    let undriven = judged.steady.iter().any(|motion| motion.frequency.is_some());
+    let frequencies = if undriven { &["omega", "true omega"][..] } else { &[] };
     let head: Vec<Heading> = names
         .map(|name| Heading::from(name.name()))
+        .chain(frequencies.iter().copied().map(Heading::from))
         .chain(["stable", "true motion"].map(Heading::from))
         .collect();
     let rows = judged.steady.iter().map(|motion| {
@@ -233,8 +243,13 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
             Some(growth) if growth > 0.0 => "no",
             _ => "neutral",
         };
+        let both = match motion.frequency {
+            Some((own, truth)) => [decimal(own), truth.map_or("-".to_owned(), decimal)],
+            None => ["-".to_owned(), "-".to_owned()],
+        };
         numbers
             .map(|number| decimal(*number))
+            .chain(both.into_iter().filter(|_| undriven))
             .chain([stable.to_owned(), beside_truth(motion)])
             .collect::<Vec<String>>()
     });
@@ -252,7 +267,10 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
             "phases that no drive fixes go on turning; those listed are of one moment".to_owned(),
         ));
     }
-    blocks.extend(verdict.map(|verdict| Block::Facts(vec![verdict])));
+    let facts: Vec<_> = slope.into_iter().chain(verdict).collect();
+    if !facts.is_empty() {
+        blocks.push(Block::Facts(facts));
+    }
     blocks
 }
 

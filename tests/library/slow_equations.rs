@@ -14,7 +14,7 @@ use lindstedt::multiple_scales::{
     CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion, SlowNumbers, derive,
 };
 use lindstedt::solution::Method;
-use lindstedt::verify::judge_slow_motion;
+use lindstedt::verify::{JudgedSteadyMotion, judge_slow_motion};
 use lindstedt::{Oscillator, Symbol, Values, Verdict};
 use num_complex::Complex;
 
@@ -312,6 +312,48 @@ fn transients_are_followed_at_both_orders() {
     };
     let [first, second] = [1, 2].map(error);
     assert!(second < 1e-4 && first > 100.0 * second, "{first} and {second}");
+}
+
+/// Steady motions of self-excited oscillators are held against cycles whose period is sought, and the
+/// measured slope of every kind of motion is that of the order: driven, self-excited in resonance 1:1
+/// and 1:3, and transients, with a small parameter and without.
+#[test]
+fn the_deviation_falls_with_the_order() {
+    let locked = "x'' + x - eps*(1 - x^2)*x' = eps*k*(y' - x'); y'' + w^2*y - eps*(1 - y^2)*y' = eps*k*(x' - y')";
+    let third = "x'' + x - eps*(1 - x^2)*x' = eps*k*y; y'' + 9*y - eps*(1 - y^2)*y' = eps*k*x^3";
+    let driven = "u'' + u'/50 + u - 2*u*v/5 = 0; v'' + v'/50 + 4*v - 3*u^2/10 = F*cos(Omega*t)";
+    let coupled = "x'' + 2*x - y + x'/50 + x^3/2 = cos(W*t)/50; y'' + y'/50 + 2*y - x = 0";
+    for (equations, resonance, order, at, slope) in [
+        (locked, "w = omega1", 1, "eps = 1/20, k = 2, w = 51/50", 2.0),
+        (third, "", 1, "eps = 1/20, k = 3/10", 1.0),
+        (third, "", 2, "eps = 1/20, k = 3/10", 2.0),
+        (third, "", 3, "eps = 1/20, k = 3/10", 3.0),
+        (driven, "omega2 = 2*omega1, Omega = omega2", 1, "F = 1/125, Omega = 201/100", 1.0),
+        (driven, "omega2 = 2*omega1, Omega = omega2", 2, "F = 1/125, Omega = 201/100", 2.0),
+        (driven, "omega2 = 2*omega1, Omega = omega2", 3, "F = 1/125, Omega = 201/100", 3.0),
+        (coupled, "W = omega1", 2, "W = 101/100", 2.0),
+        ("x'' + x - x*y = 0; y'' + 4*y - x^2 = 0", "", 1, "a1 = 1/40, a2 = 1/200", 1.0),
+        ("x'' + x - x*y = 0; y'' + 4*y - x^2 = 0", "", 2, "a1 = 1/40, a2 = 1/200", 2.0),
+    ] {
+        let found = slow(equations, resonance, Some(order));
+        let judged = judge_slow_motion(&found, &at.parse().expect("values"), 0.2).expect("judged");
+        let measured = judged.slope.expect(equations);
+        assert!((measured - slope).abs() < 0.1, "{equations}, order {order}: {measured}");
+        if judged.transient.is_none() {
+            let compared = judged.steady.iter().filter(|motion| motion.compared);
+            let stable = compared.filter(|motion| motion.state.is_stable());
+            let agree = |motion: &&JudgedSteadyMotion| motion.truly_stable == Some(true);
+            assert!(stable.clone().count() > 0 && stable.clone().all(|motion| agree(&motion)));
+            for motion in stable {
+                let undriven = found.system.drives.is_empty();
+                assert_eq!(motion.frequency.is_some(), undriven, "{equations}");
+                if let Some((own, truth)) = motion.frequency {
+                    let error = own / truth.expect("a true frequency") - 1.0;
+                    assert!(error.abs() < 3e-4, "{equations}, order {order}: {error}");
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -63,6 +63,10 @@ pub struct SlowEquationsDocument {
     pub has_families: bool,
     /// The motion from the amplitudes that were given, beside the true one; null without them.
     pub transient: Option<TransientDocument>,
+    /// The measured exponent of the deviation by halving of everything that is small; left out where it
+    /// was not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slope: Option<f64>,
     /// `pass` or `fail`; null where nothing was compared.
     pub verdict: Option<String>,
     /// The largest error that passes; null without values.
@@ -134,6 +138,12 @@ pub struct SlowSteadyDocument {
     pub error: Option<f64>,
     /// Whether the true motion is stable, by its multipliers; null where it is not known.
     pub truly_stable: Option<bool>,
+    /// The frequency of a motion that nothing drives; left out of others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub omega: Option<f64>,
+    /// The true frequency of a motion that nothing drives; left out where it was not found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub true_omega: Option<f64>,
 }
 
 /// A motion by the slow equations beside the true one.
@@ -258,6 +268,7 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
         transient: judged
             .and_then(|judged| judged.transient.as_ref())
             .map(|own| transient(report, own)),
+        slope: judged.and_then(|judged| finite(judged.slope)),
         verdict: judged.and_then(|judged| judged.verdict).map(|verdict| verdict.name().to_owned()),
         tolerance: judged.map(|judged| judged.tolerance),
     })
@@ -274,6 +285,8 @@ fn steady(report: &SlowReport, motion: &JudgedSteadyMotion) -> SlowSteadyDocumen
         growth: finite(state.growth),
         error: finite(motion.error),
         truly_stable: motion.truly_stable,
+        omega: motion.frequency.map(|(own, _)| own),
+        true_omega: motion.frequency.and_then(|(_, truth)| finite(truth)),
     }
 }
 

@@ -11,11 +11,13 @@ use super::slow_equations::{
     PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, slow_phases,
 };
 use super::{CoupledSystem, MultipleScalesError, SlowSteadyState};
+use crate::coupled::CoupledEquations;
 use crate::decimal::rounded_fraction;
 use crate::exact::rational::{Integer, ratio, to_f64};
 use crate::exact::{ComplexPolynomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
+use crate::modes::ModeError;
 use crate::solution::Definition;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -62,6 +64,8 @@ pub struct SlowMotion {
     pub small_order: usize,
     /// The resonances, as people write them.
     pub resonances: Vec<String>,
+    /// The resonances, as relations between the linear frequencies and those of drives.
+    pub(super) relations: Vec<Resonance>,
     /// The linear frequencies, the modes in their order.
     pub frequencies: Vec<Expr>,
     /// The shape of each mode: the coordinates in which it moves.
@@ -136,6 +140,40 @@ impl SlowMotion {
         self.base.is_some() && modes.all(|(locked, a)| *a == 0.0 || (*locked && self.is_driven()))
     }
 
+    /// The slow equations of the system in which everything small is multiplied by a factor, each term
+    /// by the power of it that is its order, and the detunings with the damping; its equations are those
+    /// of its own system. Amplitudes stay as they are: the deviation from the true motion falls with a
+    /// power of the factor.
+    ///
+    /// # Errors
+    /// [`MultipleScalesError`], and where the equations cannot be written.
+    pub fn with_small_terms_times(&self, factor: &Rational) -> Result<Self, MultipleScalesError> {
+        let options = MultipleScalesOptions {
+            order: Some(self.order),
+            averaging: self.averaging,
+            ..MultipleScalesOptions::default()
+        };
+        derive_scaled(&self.system, &options, Some(&self.relations), factor)
+    }
+
+    /// Whether the slow phases tie the moving modes of a steady motion to each other: without a drive
+    /// it is periodic then.
+    pub fn is_locked_together(&self, state: &SlowSteadyState) -> bool {
+        let moving: Vec<usize> =
+            (0..state.amplitudes.len()).filter(|mode| state.amplitudes[*mode] > 0.0).collect();
+        let of_moving = |turns: &Vec<i32>| {
+            turns.iter().enumerate().all(|(mode, turn)| *turn == 0 || moving.contains(&mode))
+        };
+        let ties: Vec<&Vec<i32>> = self
+            .slow_phases
+            .iter()
+            .map(|(_, turns)| turns)
+            .filter(|turns| of_moving(turns))
+            .collect();
+        // The slow phases are independent of each other.
+        moving.len() == ties.len() + 1
+    }
+
     /// `a_j'` and `phi_j'` as expressions.
     ///
     /// # Errors
@@ -183,6 +221,17 @@ pub fn derive(
     if let Some(order) = options.order.filter(|order| *order > HIGHEST_ORDER) {
         return Err(MultipleScalesError::Order(order, HIGHEST_ORDER));
     }
+    derive_scaled(system, options, None, &Rational::one())
+}
+
+/// The slow equations of a system in which everything small is multiplied by a factor, each term by
+/// the power of it that is its order; of these relations between the frequencies where they are known.
+fn derive_scaled(
+    system: &CoupledSystem,
+    options: &MultipleScalesOptions,
+    relations: Option<&[Resonance]>,
+    factor: &Rational,
+) -> Result<SlowMotion, MultipleScalesError> {
     let mut form = ModalForm::new(system)?;
     let drives: Vec<Polynomial> =
         system.drives.iter().map(|rate| drive_frequency(rate, &mut form)).collect();
@@ -202,11 +251,12 @@ pub fn derive(
         degree: highest_degree(system),
         forced: &forced,
     };
-    let resonances: Vec<Resonance> = match &options.resonance {
-        Some(text) => frequencies.parse(text)?,
-        None => frequencies.near()?,
+    let resonances: Vec<Resonance> = match (relations, &options.resonance) {
+        (Some(relations), _) => relations.to_vec(),
+        (None, Some(text)) => frequencies.parse(text)?,
+        (None, None) => frequencies.near()?,
     };
-    let reference = References::new(system, &mut form, &drives, &resonances)?;
+    let mut reference = References::new(system, &mut form, &drives, &resonances)?;
     let polar = polar_names(&form);
     let small_order = match system.small {
         Some(_) => 1,
@@ -216,7 +266,14 @@ pub fn derive(
     if order < small_order {
         return Err(MultipleScalesError::BelowBalance { asked: order, lowest: small_order });
     }
-    let terms = ordered(system, &reference, &form.projection, small_order);
+    let mut terms = ordered(system, &reference, &form.projection, small_order);
+    let power = |order: usize| num_traits::pow(factor.clone(), order);
+    for own in terms.iter_mut().flatten() {
+        own.term.coefficient = own.term.coefficient.map(|number| number * power(own.order));
+    }
+    for own in &mut reference.meanings {
+        own.meaning = Expr::number(power(small_order)) * &own.meaning;
+    }
     let leaves_out = terms.iter().flatten().any(|term| term.order > order);
     let problem = Problem {
         terms,
@@ -245,7 +302,70 @@ pub fn derive(
         Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem };
     let mut slow = derivation.answer(&expansion, written, leaves_out)?;
     slow.averaging = options.averaging;
+    slow.relations = resonances;
+    if !factor.is_one() {
+        slow.system = scaled_system(system, &form, &reference, &problem)?;
+    }
     Ok(slow)
+}
+
+/// The system whose small terms and detunings are those of a problem, as equations.
+fn scaled_system(
+    system: &CoupledSystem,
+    form: &ModalForm,
+    reference: &References,
+    problem: &Problem,
+) -> Result<CoupledSystem, MultipleScalesError> {
+    let known = form.names.definitions.iter().chain(&reference.meanings);
+    let in_letters = |polynomial: &Polynomial| -> Result<Expr, MultipleScalesError> {
+        // Later names use those before them.
+        let mut found = Expr::from(polynomial);
+        for definition in known.clone().rev() {
+            found = found.substitute(definition.symbol, &definition.meaning)?;
+        }
+        Ok(found)
+    };
+    let count = system.mass.len();
+    // The stiffness with the frequencies nu - sigma: K + M V diag((nu - sigma)^2 - omega^2) P M.
+    let mut changes = Vec::new();
+    for (mode, frequency) in form.frequencies.iter().enumerate() {
+        let [nu, sigma, own] =
+            [&reference.references[mode], &problem.detunings[mode], &frequency.value];
+        let moved = in_letters(nu)? - in_letters(sigma)?;
+        changes.push(moved.integer_power(2)? - in_letters(own)?.integer_power(2)?);
+    }
+    let times_mass = |vector: &dyn Fn(usize) -> Polynomial, mass: &dyn Fn(usize) -> Polynomial| {
+        let products = (0..count).map(|index| vector(index).product(&mass(index)));
+        products.fold(Polynomial::zero(), |sum, product| sum + product)
+    };
+    let mut sides = Vec::new();
+    for (row, terms) in problem.terms.iter().enumerate() {
+        let mut left = Vec::new();
+        for (column, name) in system.equations.coordinates.iter().enumerate() {
+            let place = Expr::from(*name);
+            let acceleration = Expr::from(name.derivative().derivative());
+            left.push(in_letters(&system.mass[row][column])? * acceleration);
+            left.push(in_letters(&system.stiffness[row][column])? * &place);
+            for (mode, change) in changes.iter().enumerate() {
+                let shape = times_mass(&|index| form.shapes[index][mode].clone(), &|index| {
+                    system.mass[row][index].clone()
+                });
+                let onto = times_mass(&|index| form.projection[mode][index].clone(), &|index| {
+                    system.mass[index][column].clone()
+                });
+                left.push(in_letters(&shape)? * change * in_letters(&onto)? * &place);
+            }
+        }
+        for own in terms {
+            left.push(in_letters(&own.term.coefficient)? * own.term.product(system)?);
+        }
+        sides.push((Expr::sum(left), Expr::zero()));
+    }
+    let equations = CoupledEquations::new(sides).map_err(ModeError::from)?;
+    match equations.coordinates == system.equations.coordinates {
+        true => Ok(CoupledSystem { equations, ..system.clone() }),
+        false => Err(MultipleScalesError::NotScaled),
+    }
 }
 
 /// The parts of a derivation.
@@ -325,6 +445,7 @@ impl Derivation<'_> {
             averaging: false,
             small_order: problem.small_order,
             resonances,
+            relations: vec![],
             frequencies: form
                 .frequencies
                 .iter()

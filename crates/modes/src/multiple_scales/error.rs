@@ -61,6 +61,9 @@ pub enum MultipleScalesError {
         "averaging is of the first order here: means of the forces along the linear motion, and those of the lowest degree have none"
     )]
     NoMean,
+    /// Equations in which the small terms are multiplied by a factor have other coordinates.
+    #[error("with smaller small terms the equations have another order of coordinates")]
+    NotScaled,
     /// A derivation that was interrupted.
     #[error("interrupted")]
     Interrupted,

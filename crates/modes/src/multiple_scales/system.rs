@@ -75,6 +75,28 @@ impl SmallTerm {
     }
 }
 
+impl SmallTerm {
+    /// What stands beside the coefficient: powers of the coordinates of a system, and waves in time.
+    pub(super) fn product(&self, system: &CoupledSystem) -> Result<Expr, ExprError> {
+        let mut factors = Vec::new();
+        for wave in &self.waves {
+            let angle = Expr::number(wave.multiple.clone())
+                * &system.drives[wave.drive]
+                * Expr::from(Symbol::new("t"));
+            factors.push(match wave.quadrature {
+                Quadrature::Cosine => angle.cos()?,
+                Quadrature::Sine => angle.sin()?,
+            });
+        }
+        for (index, primes, exponent) in &self.powers {
+            let name = system.equations.coordinates[*index];
+            let name = (0..*primes).fold(name, |name, _| name.derivative());
+            factors.push(Expr::from(name).integer_power(i64::from(*exponent))?);
+        }
+        Ok(Expr::product(factors))
+    }
+}
+
 /// The highest Taylor polynomial of a force that is no polynomial.
 const TAYLOR_DEGREE: u32 = 7;
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! steady:     y(T) = y(0) by Newton's method from the formula,   error = max |q_formula - q_true| / max |q_true|
+//! undriven:   T is an unknown as well, and y(0) lies in the plane at right angles to the motion of the formula
 //! transient:  the motion from a_j, phi_j by the slow equations, and the true one from the same start
 //! ```
 //!
@@ -11,11 +12,14 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
 
+use super::slope::slopes_of;
 use super::{Verdict, VerificationError};
-use crate::expr::{CompiledList, Expr};
+use crate::exact::rational::{from_f64, ratio};
+use crate::expr::{CompiledList, Expr, ExprError};
 use crate::interrupt::Interrupt;
 use crate::multiple_scales::{EnergyExchange, SlowMotion, SlowNumbers, SlowSteadyState};
 use crate::symbol::Symbol;
@@ -40,6 +44,9 @@ pub struct JudgedSlowMotion {
     pub has_families: bool,
     /// The motion from the amplitudes that were given; `None` without them.
     pub transient: Option<JudgedTransient>,
+    /// Measured exponent of the deviation of the transient, or of the largest stable steady motion, by
+    /// halving of everything that is small; `None` if rounding hides it or nothing was compared.
+    pub slope: Option<f64>,
     /// Whether the stable steady motions, or the transient, are within the tolerance; `None` where
     /// none was compared.
     pub verdict: Option<Verdict>,
@@ -50,11 +57,13 @@ pub struct JudgedSlowMotion {
 pub struct JudgedSteadyMotion {
     /// The steady motion of the slow equations.
     pub state: SlowSteadyState,
-    /// Whether the motion is periodic with the drive, so that the true one was sought.
+    /// Whether the motion is periodic, so that the true one was sought.
     pub compared: bool,
-    /// The largest deviation of a coordinate over a period, as a part of the largest displacement;
-    /// `None` if no true motion was found near.
+    /// The largest deviation of a coordinate over a period, at the same part of it, over the largest
+    /// displacement; `None` if no true motion was found near.
     pub error: Option<f64>,
+    /// The frequency of a motion that nothing drives, and the true one where it was found.
+    pub frequency: Option<(f64, Option<f64>)>,
     /// Whether the true motion is stable, by its multipliers.
     pub truly_stable: Option<bool>,
 }
@@ -106,7 +115,7 @@ pub fn judge_slow_motion(
 ) -> Result<JudgedSlowMotion, VerificationError> {
     let truth = TrueMotion::new(slow, at)?;
     let started = slow.amplitudes.iter().any(|name| truth.numbers.contains_key(name));
-    let transient = if started { Some(truth.transient()?) } else { None };
+    let transient = if started { Some(truth.transient(None)?) } else { None };
     let mut has_families = false;
     let steady = match started {
         true => vec![],
@@ -123,7 +132,43 @@ pub fn judge_slow_motion(
     };
     let within = |error: &Option<f64>| error.is_some_and(|error| error <= tolerance);
     let verdict = (!errors.is_empty()).then(|| Verdict::from_passed(errors.iter().all(within)));
-    Ok(JudgedSlowMotion { at: at.clone(), tolerance, steady, has_families, transient, verdict })
+    let slope = match &transient {
+        Some(transient) => slope(slow, transient.error, |smaller, halvings| {
+            let longer = 2.0_f64.powi(halvings * i32::try_from(slow.small_order).unwrap_or(1));
+            let truth = TrueMotion::new(smaller, at).ok()?;
+            Some(truth.transient(Some(transient.until * longer)).ok()?.error)
+        }),
+        None => {
+            let stable = |motion: &&JudgedSteadyMotion| motion.state.is_stable();
+            steady.iter().find(stable).and_then(|motion| {
+                slope(slow, motion.error?, |smaller, _| {
+                    let truth = TrueMotion::new(smaller, at).ok()?;
+                    truth.judged(truth.nearest(&motion.state)?).error
+                })
+            })
+        }
+    };
+    let at = at.clone();
+    Ok(JudgedSlowMotion { at, tolerance, steady, has_families, transient, slope, verdict })
+}
+
+/// The exponent of an error, by halving of everything that is small: `error` is that of smaller terms
+/// with the number of halvings, `whole` that of the terms as they are.
+fn slope(
+    slow: &SlowMotion,
+    whole: f64,
+    error: impl Fn(&SlowMotion, i32) -> Option<f64>,
+) -> Option<f64> {
+    const HALVINGS: i32 = 2;
+    /// True motions are accurate to some 1e-11.
+    const FLOOR: f64 = 1e-9;
+    let smaller = (1..=HALVINGS).map_while(|halvings| {
+        let part = ratio(1, 1 << halvings);
+        error(&slow.with_small_terms_times(&part).ok()?, halvings)
+    });
+    let errors: Vec<f64> =
+        std::iter::once(whole).chain(smaller).take_while(|error| *error >= FLOOR).collect();
+    slopes_of(&errors)
 }
 
 /// The equations with numbers, and the formulas of the motion.
@@ -137,6 +182,10 @@ struct TrueMotion<'a> {
     /// The coordinates, then their velocities, at the time, amplitudes and phases, with the rates of
     /// these.
     motion: CompiledList,
+    /// The rates of coordinates and velocities where no time stands in them.
+    rates: CompiledList,
+    /// The reference frequency of each mode.
+    references: Vec<f64>,
     base: Option<f64>,
 }
 
@@ -185,7 +234,16 @@ impl<'a> TrueMotion<'a> {
         let motion = motion_and_velocity(slow, &named).map_err(|error| failed(&error))?;
         let base = slow.base.as_ref().map(|base| base.evaluate(&named)).transpose();
         let base = base.map_err(|error| failed(&error))?;
-        Ok(Self { slow, numbers, slow_numbers, solver, varied, motion, base })
+        let references = slow.references.iter().map(|nu| nu.evaluate(&named).unwrap_or(f64::NAN));
+        let references = references.collect();
+        let right: Vec<Expr> = rates
+            .right
+            .iter()
+            .map(|rate| in_numbers(rate, named.iter().chain([(&t, &0.0)])))
+            .collect::<Result<_, _>>()
+            .map_err(|error| failed(&error))?;
+        let rates = CompiledList::new(&right, &rates.states).map_err(|error| failed(&error))?;
+        Ok(Self { slow, numbers, slow_numbers, solver, varied, motion, rates, references, base })
     }
 
     /// Coordinates, then velocities, at a time.
@@ -209,53 +267,141 @@ impl<'a> TrueMotion<'a> {
 
     /// A steady motion beside the true one, which is sought from its start.
     fn judged(&self, state: SlowSteadyState) -> JudgedSteadyMotion {
-        let Some(base) = self.base.filter(|_| self.slow.is_periodic(&state)) else {
-            return JudgedSteadyMotion { state, compared: false, error: None, truly_stable: None };
+        let driven = self.base.filter(|_| self.slow.is_periodic(&state)).map(f64::abs);
+        let own = if driven.is_none() { self.own_frequency(&state) } else { None };
+        let Some(frequency) = driven.or(own) else {
+            return JudgedSteadyMotion {
+                state,
+                compared: false,
+                error: None,
+                frequency: None,
+                truly_stable: None,
+            };
         };
-        let period = TAU / base.abs();
-        let amplitudes: Vec<Complex<f64>> = state
-            .amplitudes
-            .iter()
-            .zip(&state.phases)
-            .map(|(a, phase)| Complex::from_polar(a / 2.0, *phase))
-            .collect();
-        let found = self.closed(period, &self.at(0.0, &amplitudes));
-        let error = found.as_ref().and_then(|(start, _)| {
-            let times: Vec<f64> =
-                (0..=POINTS).map(|index| period * index as f64 / POINTS as f64).collect();
-            let truth = self.followed(start, &times)?;
-            let formula = times.iter().map(|time| self.at(*time, &amplitudes)).collect::<Vec<_>>();
+        let place = |time: f64| {
+            let modes = state.amplitudes.iter().zip(&state.phases).zip(&state.turning);
+            let amplitudes: Vec<Complex<f64>> = modes
+                .map(|((a, phase), rate)| Complex::from_polar(a / 2.0, phase + rate * time))
+                .collect();
+            self.at(time, &amplitudes)
+        };
+        let found = self.closed(TAU / frequency, &place(0.0), own.is_some());
+        let parts = |period: f64| -> Vec<f64> {
+            (0..=POINTS).map(|index| period * index as f64 / POINTS as f64).collect()
+        };
+        let error = found.as_ref().and_then(|found| {
+            let truth = self.followed(&found.start, &parts(found.period))?;
+            let formula = parts(TAU / frequency).into_iter().map(place).collect::<Vec<_>>();
             deviation(&formula, &truth)
         });
-        let truly_stable = found.map(|(_, largest)| largest < 1.0);
-        JudgedSteadyMotion { state, compared: true, error, truly_stable }
+        let truth = found.as_ref().map(|found| TAU / found.period);
+        JudgedSteadyMotion {
+            state,
+            compared: true,
+            error,
+            frequency: own.map(|own| (own, truth)),
+            truly_stable: found.map(|found| found.largest < 1.0),
+        }
     }
 
-    /// The start of the motion that closes after a period, near this one, and the size of its largest
-    /// multiplier.
-    fn closed(&self, period: f64, near: &[f64]) -> Option<(Vec<f64>, f64)> {
+    /// The steady motion whose amplitudes are nearest to those of another, of the same stability.
+    fn nearest(&self, other: &SlowSteadyState) -> Option<SlowSteadyState> {
+        /// The largest distance in the amplitudes; beyond it the motion is another one.
+        const OTHER: f64 = 0.2;
+        const STARTS: usize = 100;
+        let known = std::slice::from_ref(other);
+        let found = self.slow_numbers.steady_states_near(known, STARTS, Interrupt::default());
+        let apart = |state: &SlowSteadyState| {
+            let pairs = state.amplitudes.iter().zip(&other.amplitudes);
+            pairs.map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+        };
+        let size = other.amplitudes.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let alike = found
+            .isolated
+            .into_iter()
+            .filter(|state| state.is_stable() == other.is_stable() && apart(state) <= OTHER * size);
+        alike.min_by(|one, other| apart(one).total_cmp(&apart(other)))
+    }
+
+    /// The frequency of a steady motion that nothing drives, of which those of all its modes are
+    /// multiples; `None` of rest, and where the slow phases leave the modes free of each other.
+    fn own_frequency(&self, state: &SlowSteadyState) -> Option<f64> {
+        /// The largest number of periods of the slowest mode in one of the motion, and the largest
+        /// distance of a ratio from a whole number.
+        const PERIODS: i32 = 12;
+        const WHOLE: f64 = 1e-6;
+        if !self.slow.system.drives.is_empty() || !self.slow.is_locked_together(state) {
+            return None;
+        }
+        let modes = self.references.iter().zip(&state.turning).zip(&state.amplitudes);
+        let moving: Vec<f64> =
+            modes.filter(|(_, a)| **a > 0.0).map(|((nu, rate), _)| (nu + rate).abs()).collect();
+        let slowest = moving.iter().copied().reduce(f64::min).filter(|slowest| *slowest > 0.0)?;
+        let divides = |part: &f64| {
+            moving.iter().all(|mode| {
+                let ratio = mode / part;
+                (ratio - ratio.round()).abs() < WHOLE
+            })
+        };
+        (1..=PERIODS).map(|periods| slowest / f64::from(periods)).find(divides)
+    }
+
+    /// The motion that closes after a period, near one with this start. Where nothing drives it the
+    /// period is an unknown, and the start stays in the plane at right angles to the motion there.
+    fn closed(&self, period: f64, near: &[f64], undriven: bool) -> Option<ClosedMotion> {
         const ITERATIONS: usize = 12;
         let count = near.len();
-        let mut start = DVector::from_column_slice(near);
+        let near = DVector::from_column_slice(near);
+        let along = self.rates_at(near.as_slice());
+        let (mut start, mut period) = (near.clone(), period);
         let size = start.norm();
         for _ in 0..ITERATIONS {
             let varied = Variations::start(start.as_slice(), false);
             let path = self.varied.solve([0.0, period], &varied).ok()?;
             let end = path.states_at(period).filter(|_| path.reason() == PathEnd::Reached)?;
             let map = DMatrix::from_fn(count, count, |row, column| end[count * (column + 1) + row]);
-            let rest = DVector::from_fn(count, |row, _| end[row] - start[row]);
-            let step = (&map - DMatrix::identity(count, count)).lu().solve(&rest)?;
-            if !step.iter().all(|entry| entry.is_finite()) || step.norm() > size {
+            let mut rest = DVector::from_fn(count, |row, _| end[row] - start[row]);
+            let mut slopes = &map - DMatrix::identity(count, count);
+            if undriven {
+                let leaving = self.rates_at(&end[..count]);
+                slopes = slopes.insert_column(count, 0.0).insert_row(count, 0.0);
+                slopes.view_mut((0, count), (count, 1)).copy_from(&leaving);
+                slopes.view_mut((count, 0), (1, count)).tr_copy_from(&along);
+                rest = rest.insert_row(count, along.dot(&(&start - &near)));
+            }
+            let step = slopes.lu().solve(&rest)?;
+            let moved = step.rows(0, count);
+            if !step.iter().all(|entry| entry.is_finite()) || moved.norm() > size {
                 return None;
             }
-            start -= &step;
-            if step.norm() <= 1e-11 * size {
-                let multipliers = map.complex_eigenvalues();
-                let largest = multipliers.iter().map(|value| value.norm()).fold(0.0, f64::max);
-                return Some((start.as_slice().to_vec(), largest));
+            start -= moved;
+            let later = if undriven { step[count] } else { 0.0 };
+            // A period of another motion.
+            if later.abs() > 0.3 * period {
+                return None;
+            }
+            period -= later;
+            if moved.norm() <= 1e-11 * size && later.abs() <= 1e-11 * period {
+                let mut multipliers: Vec<f64> =
+                    multipliers(&map)?.iter().map(|value| value.norm()).collect();
+                if undriven {
+                    // The motion itself, later: a multiplier that is one.
+                    let apart = |size: &f64| (size - 1.0).abs();
+                    multipliers.sort_by(|one, other| apart(one).total_cmp(&apart(other)));
+                    multipliers.remove(0);
+                }
+                let largest = multipliers.into_iter().fold(0.0, f64::max);
+                return Some(ClosedMotion { start: start.as_slice().to_vec(), period, largest });
             }
         }
         None
+    }
+
+    /// The rates of coordinates and velocities.
+    fn rates_at(&self, states: &[f64]) -> DVector<f64> {
+        let mut rates = DVector::from_element(states.len(), f64::NAN);
+        self.rates.call(states, &mut vec![], rates.as_mut_slice());
+        rates
     }
 
     /// The coordinates of the true motion at these times.
@@ -274,8 +420,8 @@ impl<'a> TrueMotion<'a> {
             .collect()
     }
 
-    /// The motion from the amplitudes and phases that were given, over some slow times.
-    fn transient(&self) -> Result<JudgedTransient, VerificationError> {
+    /// The motion from the amplitudes and phases that were given, until a time, or over some slow times.
+    fn transient(&self, until: Option<f64>) -> Result<JudgedTransient, VerificationError> {
         /// The turns of the slow motion, and the greatest number of waves and of points.
         const TURNS: f64 = 2.0;
         const WAVES: f64 = 400.0;
@@ -307,24 +453,19 @@ impl<'a> TrueMotion<'a> {
             .into_iter()
             .chain(self.numbers.clone())
             .collect();
-        let frequencies: Vec<f64> = self
-            .slow
-            .references
-            .iter()
-            .map(|nu| nu.evaluate(&values).unwrap_or(f64::NAN).abs())
-            .collect();
+        let frequencies: Vec<f64> = self.references.iter().map(|nu| nu.abs()).collect();
         let slowest = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
         let fastest = frequencies.iter().copied().fold(0.0, f64::max);
         let rate = self.slow_numbers.rates(&amplitudes).iter().map(|rate| rate.norm()).sum::<f64>();
         let longest = WAVES * TAU / slowest;
-        let until = if rate > 0.0 && size > 0.0 {
-            (TURNS * TAU * size / rate).min(longest)
-        } else {
-            longest
+        let some_turns = match rate > 0.0 && size > 0.0 {
+            true => (TURNS * TAU * size / rate).min(longest),
+            false => longest,
         };
         let exchange = self.exchange(&values);
         // A whole exchange is compared where it is not too long.
-        let until = exchange.as_ref().map_or(until, |own| until.max(own.period.min(longest)));
+        let whole = exchange.as_ref().map_or(0.0, |own| own.period.min(longest));
+        let until = until.unwrap_or(some_turns.max(whole));
         let start = self.at(0.0, &amplitudes);
         // Some thirty points a wave of the fastest mode, each reached by steps of the slow equations.
         let points = (32.0 * until * fastest / TAU).ceil().clamp(64.0, 40_000.0) as usize;
@@ -381,6 +522,20 @@ impl<'a> TrueMotion<'a> {
     }
 }
 
+/// A true motion that comes back.
+struct ClosedMotion {
+    /// Coordinates and velocities at `t = 0`.
+    start: Vec<f64>,
+    period: f64,
+    /// The size of the largest multiplier, that of the motion itself left out.
+    largest: f64,
+}
+
+/// The eigenvalues of a matrix, without more steps than such a matrix takes.
+fn multipliers(map: &DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
+    Some(Schur::try_new(map.clone(), f64::EPSILON, 10_000)?.complex_eigenvalues())
+}
+
 /// The largest deviation over the largest displacement; `None` where the truth stands still.
 fn deviation(formula: &[Vec<f64>], truth: &[Vec<f64>]) -> Option<f64> {
     let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
@@ -414,17 +569,21 @@ fn motion_and_velocity(
         .motion
         .iter()
         .chain(&velocities)
-        .map(|expression| {
-            let known: BTreeMap<Symbol, Expr> = named
-                .iter()
-                .filter(|(name, _)| expression.contains(**name))
-                .filter_map(|(name, value)| {
-                    Some((*name, Expr::number(crate::exact::rational::from_f64(*value)?)))
-                })
-                .collect();
-            expression.substitute_all(&known)
-        })
+        .map(|expression| in_numbers(expression, named))
         .collect::<Result<_, _>>()?;
     let arguments: Vec<Symbol> = std::iter::once(t).chain(own()).chain(rates).collect();
     Ok(CompiledList::new(&all, &arguments)?)
+}
+
+/// An expression with the numbers of these names.
+fn in_numbers<'a>(
+    expression: &Expr,
+    named: impl IntoIterator<Item = (&'a Symbol, &'a f64)>,
+) -> Result<Expr, ExprError> {
+    let known: BTreeMap<Symbol, Expr> = named
+        .into_iter()
+        .filter(|(name, _)| expression.contains(**name))
+        .filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))))
+        .collect();
+    expression.substitute_all(&known)
 }

@@ -51,11 +51,9 @@ pub(super) fn run(
             "{option}: it is of one coordinate; slow equations of coupled ones take --order, --small, --resonance and --at"
         )));
     }
-    for (option, given) in [
-        ("--mode", arguments.mode.is_some()),
-        ("--steps", arguments.steps),
-        ("--amplitude", question.amplitude.is_some()),
-    ] {
+    for (option, given) in
+        [("--mode", arguments.mode.is_some()), ("--amplitude", question.amplitude.is_some())]
+    {
         if given {
             return Err(Failure::Usage(format!(
                 "{option} says nothing to the slow equations of coupled oscillators, which are of all modes together"
@@ -93,6 +91,7 @@ pub(super) fn run(
     let options = MultipleScalesOptions {
         order,
         averaging,
+        steps: arguments.steps,
         resonance: question.resonance.clone().or_else(|| problem.resonance.clone()),
         values: values.as_ref().map(Values::numbers).unwrap_or_default(),
         supervision: session::supervision(),

@@ -49,6 +49,11 @@ pub fn slow_equations<'a>(report: &SlowReport<'a>) -> Result<Document<'a>, ExprE
     }));
     let mut sections = vec![question, vec![title(slow)]];
     sections.push(linear_modes(slow));
+    if !slow.derivation.is_empty() {
+        let lines = slow.derivation.iter().map(|line| Block::Line(Cow::Borrowed(line)));
+        sections
+            .push(std::iter::once(Block::Heading("Derivation".to_owned())).chain(lines).collect());
+    }
     let mut rates = vec![Block::Heading("Motion and slow equations".to_owned())];
     for (name, motion) in slow.system.equations.coordinates.iter().zip(&slow.motion) {
         rates.push(line(Expr::from(*name), motion.clone()));

@@ -68,6 +68,18 @@ fn a_mode_is_chosen_by_its_number() {
     ] {
         assert!(lines.contains(&line.into()), "{lines:?}");
     }
+    // Of slow equations: by hand, the term alpha1*u*v at exp(i*t) is B2 times the conjugate of B1.
+    let slow = "u'' + 2*mu*u' + u = alpha*u*v; v'' + 4*v = u^2/3";
+    let steps = json(&["derive", slow, "--resonance", "omega2 = 2*omega1", "--steps"]);
+    let lines = steps["derivation"].as_array().expect("lines");
+    for line in [
+        "eta1_0 = B1*exp(i*t)",
+        "no exp(i*t) on the right:  2*D1B1*i = alpha*B2*Bc1 - 2*B1*i*mu",
+        "fixes:  D1B2 = -B1^2*i/12",
+        "eta2_1 = B1*Bc1/12",
+    ] {
+        assert!(lines.contains(&line.into()), "{lines:?}");
+    }
     for (more, words) in [
         (&["--mode", "3"][..], "there is no mode 3: there are 2"),
         (&["--taylor", "3"], "--taylor: it is of one coordinate"),

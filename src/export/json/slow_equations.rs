@@ -53,6 +53,9 @@ pub struct SlowEquationsDocument {
     /// Waves that are near the frequency of a mode they are not in resonance with, where values are known: a
     /// divisor is small.
     pub near: Vec<NearDivisorDocument>,
+    /// The derivation line by line, as text; left out where it was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivation: Option<Vec<String>>,
     /// Whether coefficients are rounded to fifteen digits.
     pub numerical: bool,
     /// The values at which steady motions, or a motion, were computed; null without values.
@@ -257,6 +260,8 @@ pub fn slow_equations(report: &SlowReport) -> Result<SlowEquationsDocument, Expr
                 distance: near.distance,
             })
             .collect(),
+        derivation: (!slow.derivation.is_empty())
+            .then(|| slow.derivation.iter().map(ToString::to_string).collect()),
         numerical: slow.rounded,
         at: judged.map(|judged| constants(&judged.at)),
         steady: judged

@@ -10,9 +10,10 @@ use super::resonance::{Frequencies, Lattice, Resonance, alias};
 use super::slow_equations::{
     PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, slow_phases,
 };
-use super::{CoupledSystem, MultipleScalesError, SlowSteadyState};
+use super::{CoupledSystem, MultipleScalesError, SlowSteadyState, steps};
 use crate::coupled::CoupledEquations;
 use crate::decimal::rounded_fraction;
+use crate::derivation::DerivationLine;
 use crate::exact::rational::{Integer, ratio, to_f64};
 use crate::exact::{ComplexPolynomial, Polynomial, Rational};
 use crate::expr::Expr;
@@ -44,6 +45,8 @@ pub struct MultipleScalesOptions {
     /// The resonances, such as `omega2 = 2*omega1, Omega = omega2`, or `none`; without them those
     /// that are near, where the frequencies are numbers.
     pub resonance: Option<String>,
+    /// Whether the derivation is kept, order by order.
+    pub steps: bool,
     /// Values of parameters, by which resonances are found where none are asked for; the formulas keep
     /// the letters.
     pub values: BTreeMap<Symbol, f64>,
@@ -98,6 +101,8 @@ pub struct SlowMotion {
     pub motion: Vec<Expr>,
     /// Symbols that the formulas introduce; each may use those before it.
     pub definitions: Vec<Definition>,
+    /// The derivation order by order; empty if it was not asked for.
+    pub derivation: Vec<DerivationLine>,
     /// Whether coefficients are rounded to fifteen digits.
     pub rounded: bool,
     /// Whether terms of the equations are of a higher order, and so left out.
@@ -300,7 +305,7 @@ fn derive_scaled(
     let written = resonances.iter().map(|resonance| frequencies.written(resonance)).collect();
     let derivation =
         Derivation { system, form: &form, reference: &reference, polar: &polar, problem: &problem };
-    let mut slow = derivation.answer(&expansion, written, leaves_out)?;
+    let mut slow = derivation.answer(&expansion, written, leaves_out, options.steps)?;
     slow.averaging = options.averaging;
     slow.relations = resonances;
     if !factor.is_one() {
@@ -384,6 +389,7 @@ impl Derivation<'_> {
         expansion: &Expansion,
         resonances: Vec<String>,
         leaves_out: bool,
+        keeps_steps: bool,
     ) -> Result<SlowMotion, MultipleScalesError> {
         let Self { system, form, reference, polar, problem } = self;
         let round = |polynomial: &Polynomial| match form.rounded {
@@ -478,6 +484,13 @@ impl Derivation<'_> {
                 .collect(),
             motion,
             definitions: vec![],
+            derivation: match keeps_steps {
+                true => {
+                    let coordinates = &system.equations.coordinates;
+                    steps::derivation(coordinates, problem, expansion, form, polar, &round)?
+                }
+                false => vec![],
+            },
             rounded: form.rounded,
             leaves_out,
             near: form.near.clone(),
@@ -504,6 +517,7 @@ fn used(
         names.extend(slow.rate(mode)?.iter().flat_map(Expr::symbols));
     }
     names.extend(slow.detunings.iter().flat_map(|detuning| detuning.meaning.symbols()));
+    names.extend(slow.derivation.iter().flat_map(DerivationLine::symbols));
     let mut kept: Vec<Definition> = Vec::new();
     for definition in definitions.into_iter().rev() {
         if names.contains(&definition.symbol) {

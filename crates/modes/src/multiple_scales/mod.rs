@@ -24,6 +24,7 @@
 //! - `relations`: steady motions in closed form, their phases eliminated.
 //! - `exchange`: constants of motions that nothing damps, and the period of their exchange.
 //! - `steady`: steady motions in numbers, with their stability.
+//! - `steps`: the derivation order by order.
 //!
 //! Cost: the products of the force in as many orders, `O(order^2)` products of waves with
 //! polynomials in the amplitudes for each factor of a term.
@@ -37,6 +38,7 @@ mod relations;
 mod resonance;
 mod slow_equations;
 mod steady;
+mod steps;
 mod system;
 
 pub use answer::{MultipleScalesOptions, NearDivisor, SlowMotion, derive};

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 use lindstedt::expr::{CompiledList, Expr, parse_expression};
 use lindstedt::method::{Options, solve};
+use lindstedt::modes::ModeError;
 use lindstedt::multiple_scales::{
     CoupledSystem, MultipleScalesError, MultipleScalesOptions, SlowMotion, SlowNumbers, derive,
 };
@@ -314,6 +315,10 @@ fn transients_are_followed_at_both_orders() {
     assert!(second < 1e-4 && first > 100.0 * second, "{first} and {second}");
 }
 
+const RING: &str =
+    "x'' + 3*x - y - z + x^3 = 0; y'' + 3*y - z - x + y^3 = 0; z'' + 3*z - x - y + z^3 = 0";
+const RING_OF_FIVE: &str = "a'' + 3*a - b - f + a^3 = 0; b'' + 3*b - c - a + b^3 = 0; c'' + 3*c - d - b + c^3 = 0; d'' + 3*d - f - c + d^3 = 0; f'' + 3*f - a - d + f^3 = 0";
+
 /// Steady motions of self-excited oscillators are held against cycles whose period is sought, and the
 /// measured slope of every kind of motion is that of the order: driven, self-excited in resonance 1:1
 /// and 1:3, and transients, with a small parameter and without.
@@ -334,6 +339,9 @@ fn the_deviation_falls_with_the_order() {
         (coupled, "W = omega1", 2, "W = 101/100", 2.0),
         ("x'' + x - x*y = 0; y'' + 4*y - x^2 = 0", "", 1, "a1 = 1/40, a2 = 1/200", 1.0),
         ("x'' + x - x*y = 0; y'' + 4*y - x^2 = 0", "", 2, "a1 = 1/40, a2 = 1/200", 2.0),
+        // Modes of one frequency: a ring of three, and one of five whose roots are no fractions.
+        (RING, "", 2, "a1 = 1/20, a2 = 1/20, a3 = 1/30", 2.0),
+        (RING_OF_FIVE, "", 2, "a1 = 1/30, a2 = 1/20, a3 = 1/30, a4 = 1/30, a5 = 1/40", 2.0),
     ] {
         let found = slow(equations, resonance, Some(order));
         let judged = judge_slow_motion(&found, &at.parse().expect("values"), 0.2).expect("judged");
@@ -365,6 +373,11 @@ fn refusals_name_what_is_in_the_way() {
         };
         derive(&system, &options(order, resonance)).expect_err(equations)
     };
+    let defective = refused("x'' + x + y + x^3 = 0; y'' + y = 0", "none", None);
+    assert!(
+        matches!(defective, MultipleScalesError::Modes(ModeError::Defective { .. })),
+        "{defective}"
+    );
     let gyroscope = refused("x'' + x - g*y' = 0; y'' + y + g*x' + x^3 = 0", "", None);
     assert!(matches!(gyroscope, MultipleScalesError::Gyroscopic(_)), "{gyroscope}");
     let open = refused("x'' + x + x^3 = F*cos(W*t); y'' + 2*y + x*y = 0", "", None);

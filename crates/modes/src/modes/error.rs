@@ -58,6 +58,14 @@ pub enum ModeError {
         "the linear equations have squares of frequencies that are not real, as with follower forces"
     )]
     NotReal,
+    /// A frequency with fewer shapes than modes.
+    #[error(
+        "omega^2 = {square} belongs to more modes than it has shapes: the linear motion grows in proportion to time, as with follower forces"
+    )]
+    Defective {
+        /// The square of the frequency.
+        square: String,
+    },
     /// There is no mode of this number.
     #[error("there is no mode {number}: there are {count}")]
     NoSuchMode {

@@ -135,6 +135,18 @@ impl LinearModes {
         }
     }
 
+    /// The mode of this index, where those of one frequency may be any basis of their shapes, each
+    /// independent of the others in mass and stiffness.
+    ///
+    /// # Errors
+    /// [`ModeError`] for a mode that does not oscillate, and for shapes that are fewer than the modes.
+    pub(crate) fn mode_of_basis(&self, index: usize) -> Result<LinearMode, ModeError> {
+        match self {
+            Self::Numbers(modes) => modes.mode_of_basis(index),
+            Self::Two(modes) => modes.mode(index),
+        }
+    }
+
     /// The number of modes.
     pub(crate) fn count(&self) -> usize {
         match self {
@@ -257,34 +269,55 @@ impl NumberModes {
     }
 
     fn mode(&self, index: usize) -> Result<LinearMode, ModeError> {
-        let number = index + 1;
-        let Root { value, exact } = &self.roots[index];
-        let square = match exact {
-            true => value.to_string(),
-            false => significant_fraction(value, 6),
-        };
-        if value.is_negative() {
-            return Err(ModeError::Unstable { number, square });
-        }
-        if value.is_zero() {
-            return Err(ModeError::NoStiffness { number });
-        }
+        let Root { value, .. } = &self.roots[index];
         let equal = self
             .roots
             .iter()
             .enumerate()
             .find(|(other, root)| *other != index && root.value == *value);
-        if let Some((other, _)) = equal {
-            return Err(ModeError::EqualFrequencies { number, other: other + 1, square });
+        match equal {
+            Some((other, _)) if value.is_positive() => {
+                let (number, other, square) = (index + 1, other + 1, self.square_in_words(index));
+                Err(ModeError::EqualFrequencies { number, other, square })
+            }
+            _ => self.mode_of_basis(index),
         }
+    }
+
+    /// The square of a frequency, for messages.
+    fn square_in_words(&self, index: usize) -> String {
+        match &self.roots[index] {
+            Root { value, exact: true } => value.to_string(),
+            Root { value, exact: false } => significant_fraction(value, 6),
+        }
+    }
+
+    fn mode_of_basis(&self, index: usize) -> Result<LinearMode, ModeError> {
+        let number = index + 1;
+        let Root { value, exact } = &self.roots[index];
+        if value.is_negative() {
+            return Err(ModeError::Unstable { number, square: self.square_in_words(index) });
+        }
+        if value.is_zero() {
+            return Err(ModeError::NoStiffness { number });
+        }
+        let equal: Vec<usize> =
+            (0..self.roots.len()).filter(|other| self.roots[*other].value == *value).collect();
+        let place = equal.iter().position(|other| *other == index).unwrap_or(0);
         let singular = self.matrix_at(value);
         let tidy = |entry: &Rational| tidied(entry, *exact);
-        let shape = matrix::null_vector(&singular, &tidy);
-        let left = matrix::null_vector(&matrix::transposed(&singular), &tidy);
-        let mass = matrix::dot(&left, &matrix::applied(&self.mass, &shape));
-        if mass.is_zero() {
-            return Err(ModeError::NotReal);
+        let transposed = matrix::transposed(&singular);
+        let shapes = matrix::null_vectors(&singular, equal.len(), &tidy);
+        let lefts = matrix::null_vectors(&transposed, equal.len(), &tidy);
+        let all_vanish = |of: &Matrix, vectors: &[Vec<Rational>]| {
+            vectors.iter().all(|vector| matrix::vanishes(of, vector))
+        };
+        if equal.len() > 1 && !(all_vanish(&singular, &shapes) && all_vanish(&transposed, &lefts)) {
+            return Err(ModeError::Defective { square: self.square_in_words(index) });
         }
+        let (shape, left, mass) = self
+            .independent(shapes, lefts, place, &tidy)
+            .ok_or_else(|| ModeError::Defective { square: self.square_in_words(index) })?;
         let constants =
             |vector: Vec<Rational>| vector.into_iter().map(Polynomial::constant).collect();
         Ok(LinearMode {
@@ -293,6 +326,38 @@ impl NumberModes {
             left: constants(left),
             inverse_mass: Polynomial::constant(mass.recip()),
         })
+    }
+
+    /// The pair at this place of shapes and left shapes that the mass matrix makes orthogonal to those
+    /// before it, by the method of Gram and Schmidt, and their product with it; `None` where that vanishes.
+    fn independent(
+        &self,
+        shapes: Vec<Vec<Rational>>,
+        lefts: Vec<Vec<Rational>>,
+        place: usize,
+        tidy: &dyn Fn(&Rational) -> Rational,
+    ) -> Option<(Vec<Rational>, Vec<Rational>, Rational)> {
+        let product = |left: &[Rational], shape: &[Rational]| {
+            matrix::dot(left, &matrix::applied(&self.mass, shape))
+        };
+        let without = |from: &[Rational], factor: Rational, other: &[Rational]| -> Vec<Rational> {
+            from.iter().zip(other).map(|(entry, other)| tidy(&(entry - &factor * other))).collect()
+        };
+        let mut known: Vec<(Vec<Rational>, Vec<Rational>, Rational)> = Vec::new();
+        for (mut shape, mut left) in shapes.into_iter().zip(lefts) {
+            for (before, left_before, mass) in &known {
+                shape = without(&shape, product(left_before, &shape) / mass, before);
+                left = without(&left, product(&left, before) / mass, left_before);
+            }
+            let shape = matrix::first_is_one(&shape, tidy);
+            let left = matrix::first_is_one(&left, tidy);
+            let mass = product(&left, &shape);
+            if mass.is_zero() {
+                return None;
+            }
+            known.push((shape, left, mass));
+        }
+        (place < known.len()).then(|| known.swap_remove(place))
     }
 
     /// `K - lambda M`.

@@ -112,11 +112,19 @@ pub(crate) fn inverse(matrix: &Matrix, tidy: Tidy) -> Option<Matrix> {
 
 /// The vector that a matrix of rank n - 1 makes zero; its first entry that is not zero is one.
 pub(crate) fn null_vector(matrix: &Matrix, tidy: Tidy) -> Vec<Rational> {
+    null_vectors(matrix, 1, tidy).swap_remove(0)
+}
+
+/// As many independent vectors as a matrix of rank `n - number` makes zero; the first entry of each
+/// that is not zero is one. A matrix of higher rank has no such vectors: what they leave is for the
+/// caller to look at.
+pub(crate) fn null_vectors(matrix: &Matrix, number: usize, tidy: Tidy) -> Vec<Vec<Rational>> {
     let count = matrix.len();
+    let rank = count.saturating_sub(number);
     let mut rows = matrix.clone();
     let mut columns: Vec<usize> = (0..count).collect();
-    // Full pivoting leaves the zero in the last place.
-    for pivot in 0..count.saturating_sub(1) {
+    // Full pivoting leaves the zeros in the last places.
+    for pivot in 0..rank {
         let places = (pivot..count).flat_map(|row| (pivot..count).map(move |column| (row, column)));
         let largest = places.max_by(|one, other| {
             size(&rows[one.0][one.1]).total_cmp(&size(&rows[other.0][other.1]))
@@ -130,22 +138,35 @@ pub(crate) fn null_vector(matrix: &Matrix, tidy: Tidy) -> Vec<Rational> {
         columns.swap(pivot, column);
         eliminate_below(&mut rows, pivot, tidy);
     }
-    let mut found = vec![Rational::zero(); count];
-    found[count - 1] = Rational::one();
-    for row in (0..count.saturating_sub(1)).rev() {
-        let known = dot(&rows[row][row + 1..], &found[row + 1..]);
-        if !rows[row][row].is_zero() {
-            found[row] = tidy(&(-known / &rows[row][row]));
+    let vector = |free: usize| {
+        let mut found = vec![Rational::zero(); count];
+        found[free] = Rational::one();
+        for row in (0..rank).rev() {
+            let known = dot(&rows[row][row + 1..], &found[row + 1..]);
+            if !rows[row][row].is_zero() {
+                found[row] = tidy(&(-known / &rows[row][row]));
+            }
         }
+        let mut vector = vec![Rational::zero(); count];
+        for (place, entry) in columns.iter().zip(found) {
+            vector[*place] = if size(&entry) < NEGLIGIBLE { Rational::zero() } else { entry };
+        }
+        first_is_one(&vector, tidy)
+    };
+    (rank..count).map(vector).collect()
+}
+
+/// A vector over its first entry that is not zero.
+pub(crate) fn first_is_one(vector: &[Rational], tidy: Tidy) -> Vec<Rational> {
+    match vector.iter().find(|entry| !entry.is_zero()) {
+        Some(first) => vector.iter().map(|entry| tidy(&(entry / first))).collect(),
+        None => vector.to_vec(),
     }
-    let mut vector = vec![Rational::zero(); count];
-    for (place, entry) in columns.into_iter().zip(found) {
-        vector[place] = if size(&entry) < NEGLIGIBLE { Rational::zero() } else { entry };
-    }
-    if let Some(first) = vector.iter().find(|entry| !entry.is_zero()).cloned() {
-        vector.iter_mut().for_each(|entry| *entry = tidy(&(&*entry / &first)));
-    }
-    vector
+}
+
+/// Whether a matrix makes a vector zero, but for what rounding leaves.
+pub(crate) fn vanishes(matrix: &Matrix, vector: &[Rational]) -> bool {
+    applied(matrix, vector).iter().all(|entry| size(entry) < NEGLIGIBLE)
 }
 
 #[cfg(test)]

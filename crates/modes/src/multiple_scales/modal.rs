@@ -191,7 +191,7 @@ impl ModalForm {
             near: vec![],
         };
         for index in 0..count {
-            let mode = modes.mode(index)?;
+            let mode = modes.mode_of_basis(index)?;
             for (row, entry) in form.shapes.iter_mut().zip(&mode.shape) {
                 row[index] = entry.clone();
             }

@@ -50,9 +50,7 @@ pub(super) fn coupled_equations(
     let coupled = |error: CoupledError| Failure::refused(&error, error.help());
     let of_file = |error: ProblemError| Failure::refused(&error, error.help());
     if let Some(equations) = problem.coupled_equations(reader).map_err(of_file)? {
-        let equations = CoupledEquations::of_mechanism(&equations).map_err(coupled)?;
-        let mechanism = problem.mechanism().map_err(of_file)?.mechanism;
-        return Ok(Some(equations.with_energy(&mechanism.kinetic + &mechanism.potential)));
+        return CoupledEquations::of_mechanism(&equations).map(Some).map_err(coupled);
     }
     match &problem.equation {
         Some(text) if text.contains(';') => {

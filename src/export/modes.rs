@@ -1,11 +1,12 @@
-//! Nonlinear normal modes as a picture: each motion in the plane of two coordinates, and in time.
+//! Nonlinear normal modes as a picture: each motion in the plane of two coordinates and in time, and
+//! the backbones of all.
 
 use super::figure::{Curve, CurveStyle, FigureError, Panel, Points, figure};
 use crate::decimal::significant;
 use crate::modes::NonlinearMode;
 use crate::report::ModesReport;
 use crate::solution::Method;
-use crate::verify::JudgedMode;
+use crate::verify::{BackbonePoint, JudgedMode};
 
 /// Largest number of modes that are drawn: the slowest of those that were asked for.
 const MOST_MODES: usize = 6;
@@ -20,7 +21,8 @@ struct DrawnMode {
 }
 
 /// The modal lines at the values, by the formulas over the true motions: the second coordinate against
-/// the first, and half a period of every coordinate; of the first six modes.
+/// the first, and half a period of every coordinate; of the first six modes, with their frequencies
+/// against the energy.
 ///
 /// # Errors
 /// [`FigureError`], as of [`figure`]; without values there is nothing to draw.
@@ -44,19 +46,56 @@ pub fn picture(report: &ModesReport) -> Result<String, FigureError> {
                 title: &mode.title,
                 x_label,
                 y_label,
-                curves: curves(points),
+                curves: curves_of(points),
                 ..Panel::default()
             });
         }
     }
+    let backbone = backbones(report);
+    panels.extend(backbone.as_ref().map(|(x_label, curves)| Panel {
+        title: "Backbones: the frequency of each mode",
+        x_label,
+        y_label: "omega",
+        curves: curves_of(curves),
+        ..Panel::default()
+    }));
     let by = match report.modes.method() {
         Method::HarmonicBalance => format!("by balance of {} harmonics", report.modes.order),
         _ => format!("to order {}", report.modes.order),
     };
     let caption = format!(
-        "Nonlinear normal modes {by}: {second} against {first}, and half a period of {all}."
+        "Nonlinear normal modes {by}: {second} against {first}, and half a period of {all}; and the frequency against {}.",
+        backbone.as_ref().map_or("", |(label, _)| label)
     );
     figure(&panels, &caption)
+}
+
+/// The true frequency and that of the formula, of each mode against the energy, or against the amplitude
+/// where that is not known of all.
+fn backbones(report: &ModesReport) -> Option<(String, [Vec<Points>; 2])> {
+    let judged: Vec<&JudgedMode> = report
+        .judged_modes()
+        .filter_map(|(_, judged)| judged?.as_ref().ok())
+        .take(MOST_MODES)
+        .collect();
+    let points = || judged.iter().flat_map(|judged| &judged.backbone);
+    let has_energy = points().all(|point| point.energy.is_some());
+    let label = match has_energy {
+        true => "energy".to_owned(),
+        false => format!("amplitude {}", report.modes.amplitude.symbol()),
+    };
+    let of = |value: &dyn Fn(&BackbonePoint) -> Option<f64>| -> Vec<Points> {
+        let curve = |judged: &&JudgedMode| -> Points {
+            let places = judged.backbone.iter().filter_map(|point| {
+                let along = if has_energy { point.energy? } else { point.amplitude };
+                Some((along, value(point)?))
+            });
+            places.collect()
+        };
+        judged.iter().map(curve).filter(|points| points.len() > 1).collect()
+    };
+    let both = [of(&|point| point.frequency), of(&|point| Some(point.true_frequency))];
+    both.iter().all(|curves| !curves.is_empty()).then_some((label, both))
 }
 
 fn drawn(mode: &NonlinearMode, judged: &JudgedMode) -> DrawnMode {
@@ -82,7 +121,7 @@ fn drawn(mode: &NonlinearMode, judged: &JudgedMode) -> DrawnMode {
 }
 
 /// The formula over the true motion.
-fn curves([formula, truth]: &[Vec<Points>; 2]) -> Vec<Curve<'_>> {
+fn curves_of([formula, truth]: &[Vec<Points>; 2]) -> Vec<Curve<'_>> {
     let styles = [("true motion", CurveStyle::RUNGE_KUTTA), ("formula", CurveStyle::FORMULA)];
     let each = [truth, formula].into_iter().zip(styles);
     each.flat_map(|(all, (label, style))| {

@@ -493,6 +493,36 @@ fn one_harmonic_balances_at_every_member_of_a_family() {
     }
 }
 
+/// The backbone goes from the linear mode to the amplitude, and its energy is that of the potential where
+/// the motion turns, of typed equations and of a mechanism.
+#[test]
+fn a_backbone_has_the_energy_of_its_turns() {
+    let pair = FreeSystem::parse(PAIR).expect("equations");
+    let pendulum = Mechanism::parse(&["r", "x"], "(r'^2 + r^2*x'^2)/2", "7*(r - 1)^2/2 - r*cos(x)");
+    let pendulum = pendulum.and_then(|mechanism| mechanism.equations()).expect("equations");
+    let pendulum = FreeSystem::of_mechanism(&pendulum).expect("a system");
+    let of_pair = |q: &[f64]| q[0] * q[0] + q[1] * q[1] - q[0] * q[1] + q[0].powi(4) / 8.0;
+    let of_pendulum = |q: &[f64]| {
+        let potential = |r: f64, x: f64| 3.5 * (r - 1.0) * (r - 1.0) - r * x.cos();
+        let rest = 1.0 + 1.0 / 7.0;
+        potential(rest + q[0], q[1]) - potential(rest, 0.0)
+    };
+    let cases: [(&FreeSystem, &dyn Fn(&[f64]) -> f64); 2] =
+        [(&pair, &of_pair), (&pendulum, &of_pendulum)];
+    for (system, potential) in cases {
+        let found = derive(system, &to_order(4)).expect("modes");
+        for mode in formulas(&found) {
+            let at = "a = 2/5".parse().expect("values");
+            let judged = judge_mode(&found.system, mode, &at, 0.01).expect("judged");
+            let [first, .., last] = judged.backbone.as_slice() else { panic!("a backbone") };
+            assert_eq!((first.amplitude, first.energy), (0.0, Some(0.0)));
+            assert_eq!(last.true_frequency, judged.true_frequency);
+            let energy = potential(&judged.paths[1][0]);
+            assert!((last.energy.expect("an energy") - energy).abs() < 1e-12 * (1.0 + energy));
+        }
+    }
+}
+
 /// A balance is held to the equations that are printed, and to true motions that it approaches with
 /// the number of harmonics: forces of even and odd degree, of accelerations, of a sine, three
 /// coordinates, and a coordinate that rests in a mode.

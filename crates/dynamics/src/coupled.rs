@@ -10,9 +10,13 @@
 //! those of second order. Accelerations may be coupled: the highest derivatives follow from linear
 //! equations (L. Meirovitch, *Fundamentals of Vibrations*, 2001, section 7.2).
 
-use std::collections::BTreeSet;
+mod energy;
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
+
+pub use energy::Energy;
 
 use crate::expr::{Expr, ExprError, ParseError, parse_equations};
 use crate::mechanics::{EquationsOfMotion, MechanicsError, Rates, linear};
@@ -143,13 +147,22 @@ impl CoupledEquations {
     /// # Errors
     /// [`CoupledError`].
     pub fn of_mechanism(equations: &EquationsOfMotion) -> Result<Self, CoupledError> {
-        Self::new(equations.left.iter().map(|left| (left.clone(), Expr::zero())).collect())
+        let sides = equations.left.iter().map(|left| (left.clone(), Expr::zero())).collect();
+        Ok(Self { energy: Some(equations.energy.clone()), ..Self::new(sides)? })
     }
 
-    /// Returns these equations with their energy, a function of the states.
-    #[must_use]
-    pub fn with_energy(self, energy: Expr) -> Self {
-        Self { energy: Some(energy), ..self }
+    /// The equations with expressions in place of names, in their energy too.
+    ///
+    /// # Errors
+    /// [`CoupledError`].
+    pub fn substituted(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, CoupledError> {
+        let sides = self
+            .equations
+            .iter()
+            .map(|(left, right)| Ok((left.substitute_all(values)?, right.substitute_all(values)?)));
+        let energy = self.energy.as_ref().map(|energy| energy.substitute_all(values));
+        let sides = sides.collect::<Result<_, ExprError>>()?;
+        Ok(Self { energy: energy.transpose()?, ..Self::new(sides)? })
     }
 
     /// Solves equations, given by their sides, for the highest derivatives.

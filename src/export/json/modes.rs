@@ -118,12 +118,29 @@ pub struct ModeVerification {
     pub true_omega: f64,
     /// `omega/true_omega - 1`; null where there is no omega.
     pub relative_error: Option<f64>,
+    /// The mode from small amplitudes up to this one, the linear motion first.
+    #[serde(default)]
+    pub backbone: Vec<ModeBackbonePoint>,
     /// Largest deviation of a coordinate at the same theta, as a part of the largest displacement.
     pub max_deviation: f64,
     /// The measured exponent of the error of omega; null if rounding hides it.
     pub slope: Option<f64>,
     /// `pass` or `fail`.
     pub verdict: String,
+}
+
+/// A motion of a mode at an amplitude.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct ModeBackbonePoint {
+    /// The amplitude.
+    pub amplitude: f64,
+    /// omega by the formula; null if its square is not positive.
+    pub omega: Option<f64>,
+    /// omega of the true motion.
+    pub true_omega: f64,
+    /// The energy of the true motion over that of rest; null where the forces have no potential that is known.
+    pub energy: Option<f64>,
 }
 
 /// The document of kind `modes`.
@@ -222,6 +239,16 @@ fn verification(judged: &JudgedMode) -> ModeVerification {
         coefficients: named(judged.coefficients.iter().copied()),
         true_omega: judged.true_frequency,
         relative_error: finite(judged.relative_error),
+        backbone: judged
+            .backbone
+            .iter()
+            .map(|point| ModeBackbonePoint {
+                amplitude: point.amplitude,
+                omega: finite(point.frequency),
+                true_omega: point.true_frequency,
+                energy: finite(point.energy),
+            })
+            .collect(),
         max_deviation: judged.max_deviation,
         slope: finite(judged.slope),
         verdict: judged.verdict.name().to_owned(),

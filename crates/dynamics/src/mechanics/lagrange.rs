@@ -34,6 +34,8 @@ pub struct EquationsOfMotion {
     /// The sums of parameters that enter as one; the equations above have the sums, not their
     /// names.
     pub combinations: Vec<Combination>,
+    /// Kinetic and potential energy together, in coordinates and velocities.
+    pub energy: Expr,
 }
 
 impl fmt::Display for EquationsOfMotion {
@@ -79,6 +81,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, Mech
         left: Vec::new(),
         divisors: Vec::new(),
         combinations: Vec::new(),
+        energy: &mechanism.kinetic + &mechanism.potential,
     };
     for index in 0..coordinates.len() {
         let (left, divisor) = equations.printed(index)?;
@@ -161,6 +164,7 @@ impl EquationsOfMotion {
         for entry in entries.chain(others) {
             *entry = written_out(entry, &combinations)?;
         }
+        self.energy = written_out(&self.energy, &combinations)?;
         self.combinations = combinations;
         Ok(self)
     }

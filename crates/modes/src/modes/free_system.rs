@@ -179,11 +179,7 @@ impl FreeSystem {
     /// # Errors
     /// [`ModeError`] where an expression has no value.
     pub fn with_values(&self, values: &BTreeMap<Symbol, Expr>) -> Result<Self, ModeError> {
-        let sides =
-            self.equations.equations.iter().map(|(left, right)| {
-                Ok((left.substitute_all(values)?, right.substitute_all(values)?))
-            });
-        let equations = CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)?;
+        let equations = self.equations.substituted(values)?;
         let rest = self.rest.iter().map(|place| place.substitute_all(values));
         Ok(Self {
             letters: self.letters,

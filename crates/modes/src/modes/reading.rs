@@ -7,7 +7,7 @@ use num_traits::Zero;
 use super::ModeError;
 use crate::coupled::{CoupledEquations, CoupledError};
 use crate::exact::{Polynomial, Rational};
-use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS};
+use crate::expr::{Expr, NAMES_OF_ANSWERS};
 use crate::mechanics::{EquationsOfMotion, equilibria};
 use crate::solution::Definition;
 use crate::symbol::{Symbol, fresh};
@@ -30,11 +30,7 @@ pub(crate) fn counted_from_rest(
         .collect();
     let counted: BTreeMap<Symbol, Expr> =
         place.iter().map(|(name, place)| (*name, place + &Expr::from(*name))).collect();
-    let sides = coupled
-        .equations
-        .iter()
-        .map(|(left, right)| Ok((left.substitute_all(&counted)?, right.substitute_all(&counted)?)));
-    Ok((CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)?, rest))
+    Ok((coupled.substituted(&counted)?, rest))
 }
 
 /// Coordinates, velocities and accelerations, each zero.
@@ -83,9 +79,5 @@ pub(crate) fn with_own_names_apart(
     if apart.is_empty() {
         return Ok(equations);
     }
-    let sides = equations
-        .equations
-        .iter()
-        .map(|(left, right)| Ok((left.substitute_all(&apart)?, right.substitute_all(&apart)?)));
-    Ok(CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)?)
+    Ok(equations.substituted(&apart)?)
 }

@@ -247,12 +247,7 @@ impl CoupledSystem {
         &self,
         values: &BTreeMap<Symbol, Expr>,
     ) -> Result<Self, MultipleScalesError> {
-        let sides =
-            self.equations.equations.iter().map(|(left, right)| {
-                Ok((left.substitute_all(values)?, right.substitute_all(values)?))
-            });
-        let equations = CoupledEquations::new(sides.collect::<Result<_, ExprError>>()?)
-            .map_err(ModeError::from)?;
+        let equations = self.equations.substituted(values).map_err(ModeError::from)?;
         let rest = self.rest.iter().map(|place| place.substitute_all(values));
         let small = self.small.filter(|name| equations.parameters.contains(name));
         Ok(Self { rest: rest.collect::<Result<_, ExprError>>()?, ..Self::new(equations, small)? })

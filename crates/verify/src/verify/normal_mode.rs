@@ -15,6 +15,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Verdict, VerificationError};
+use crate::coupled::Energy;
 use crate::exact::Doubles;
 use crate::modes::{BalanceStart, FreeSystem, ModeInNumbers, NearResonance, NonlinearMode};
 use crate::numeric::continuation::in_amplitude;
@@ -51,11 +52,27 @@ pub struct JudgedMode {
     /// Measured exponent of the error of the frequency, from two amplitudes of which one is half of
     /// the other, as small as rounding allows; `None` if it hides the error.
     pub slope: Option<f64>,
+    /// The mode from small amplitudes up to this one.
+    pub backbone: Vec<BackbonePoint>,
     /// Half a period by the formula and in truth, at equal steps of theta from 0 to pi: the
     /// coordinates at each.
     pub paths: [Vec<Vec<f64>>; 2],
     /// The verdict on the frequency.
     pub verdict: Verdict,
+}
+
+/// A motion of a mode at an amplitude up to that at which it is judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BackbonePoint {
+    /// The amplitude.
+    pub amplitude: f64,
+    /// omega by the formula; `None` if its square is not positive.
+    pub frequency: Option<f64>,
+    /// omega of the true motion.
+    pub true_frequency: f64,
+    /// The energy of the true motion over that of rest; `None` where the forces have no potential that is
+    /// known.
+    pub energy: Option<f64>,
 }
 
 /// A true motion of a mode.
@@ -112,12 +129,30 @@ pub fn judge_mode(
     let frequency = Some(formula.frequency_squared.sqrt()).filter(|omega| *omega > 0.0);
     let error = |frequency: f64, motion: &Motion| frequency / motion.frequency() - 1.0;
     let relative_error = frequency.map(|frequency| error(frequency, &whole));
+    let energy = Energy::new(&system.equations, &at.split(&system.equations.parameters).0);
+    let count = system.equations.coordinates.len();
     let mut errors = Vec::new();
+    let linear = Some(truth.linear_frequency);
+    let mut backbone = vec![BackbonePoint {
+        amplitude: 0.0,
+        frequency: linear,
+        true_frequency: truth.linear_frequency,
+        energy: energy.as_ref().map(|_| 0.0),
+    }];
     for (part, motion) in &motions {
         let mut smaller = numbers.clone();
         smaller.insert(amplitude, part * size);
         let frequency = formula_at(mode, &truth, &smaller)?.frequency_squared.sqrt();
         errors.push((*part, error(frequency, motion)));
+        let start = motion.unknowns.iter().take(count).copied();
+        let start: Vec<f64> = start.chain(std::iter::repeat_n(0.0, count)).collect();
+        let energy = energy.as_ref().map(|energy| energy.over(&vec![0.0; 2 * count], &start));
+        backbone.push(BackbonePoint {
+            amplitude: part * size,
+            frequency: Some(frequency).filter(|omega| *omega > 0.0),
+            true_frequency: motion.frequency(),
+            energy: energy.filter(|energy| energy.is_finite()),
+        });
     }
     let by_formula: Vec<Vec<f64>> = (0..=POINTS)
         .map(|index| {
@@ -140,6 +175,7 @@ pub fn judge_mode(
     });
     Ok(JudgedMode {
         coefficients,
+        backbone,
         at: at.clone(),
         tolerance,
         frequency,

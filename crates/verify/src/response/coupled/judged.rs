@@ -310,10 +310,7 @@ impl CoupledProblem<'_> {
             stuck: orbit.kept.stuck,
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
-            energy: self
-                .energy
-                .as_ref()
-                .map(|(energy, rest)| energy.over(&self.in_time, rest, start)),
+            energy: self.energy.as_ref().map(|(energy, rest)| energy.over(rest, start)),
         }
     }
 

@@ -16,7 +16,7 @@
 //! - `starts`: the motions from which branches of a driven system start; `guesses`: those of one
 //!   harmonic.
 //! - `cycles`: the same for systems that nothing drives; `equilibria`: where these rest.
-//! - `modes`: nonlinear normal modes, the free motions without damping; `energy`: their energy.
+//! - `modes`: nonlinear normal modes, the free motions without damping.
 //! - `changes`: multipliers, and bifurcations between two points of a branch.
 //! - `criticality`: whether the motions that come off there are stable.
 //! - `curves`: bifurcations in two parameters.
@@ -30,7 +30,6 @@ mod changes;
 mod criticality;
 mod curves;
 mod cycles;
-mod energy;
 mod equilibria;
 mod flow;
 mod guesses;

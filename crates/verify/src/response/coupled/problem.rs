@@ -18,10 +18,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::energy::Energy;
 use super::flow::{Flow, FlowImage};
 use super::surfaces::largest;
-use crate::coupled::CoupledEquations;
+use crate::coupled::{CoupledEquations, Energy};
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
 use crate::response::driven::{drive_frequency, in_phase};
@@ -192,7 +191,7 @@ impl<'a> CoupledProblem<'a> {
             return Err(ResponseError::NotShown { name, known });
         }
         let energy = match kind {
-            Kind::Free => Energy::new(equations, &values, &in_time),
+            Kind::Free => Energy::new(equations, &values),
             _ => None,
         };
         let mut problem = Self {

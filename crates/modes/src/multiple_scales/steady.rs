@@ -9,6 +9,8 @@
 //! that leaves a mode at rest is no special case. A motion is stable if the eigenvalues of the
 //! linearised slow equations have negative real parts, but for the zeros of the phases that are open.
 
+use std::collections::BTreeMap;
+
 use nalgebra::linalg::Schur;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex;
@@ -22,13 +24,18 @@ use crate::solution::defined_values;
 use crate::symbol::Symbol;
 
 /// A term of a rate: the number before it, and the powers of each `B_j` and of its conjugate.
-type RateTerm = (Complex<f64>, Vec<[i32; 2]>);
+type RateTerm = (Complex<f64>, Vec<[usize; 2]>);
+
+/// The powers of each `B_j` and of its conjugate, from the zeroth on.
+type PowerTable = Vec<[Vec<Complex<f64>>; 2]>;
 
 /// Slow equations with numbers for all parameters.
 #[derive(Clone, Debug)]
 pub struct SlowNumbers {
     /// The terms of each rate.
     rates: Vec<Vec<RateTerm>>,
+    /// The highest power of an amplitude in them.
+    highest: usize,
     /// A basis of the rates that the phases may have by themselves.
     open: DMatrix<f64>,
     /// The combinations of phases that occur.
@@ -80,9 +87,9 @@ impl SlowMotion {
         };
         let is_amplitude =
             |name: &Symbol| self.complex_amplitudes.iter().flatten().any(|own| own == name);
-        let mut rates = Vec::new();
+        let mut rates: Vec<Vec<RateTerm>> = Vec::new();
         for rate in &self.complex_rates {
-            let mut terms = Vec::new();
+            let mut terms: BTreeMap<Vec<[usize; 2]>, Complex<f64>> = BTreeMap::new();
             for (part, unit) in
                 [(&rate.real, Complex::new(1.0, 0.0)), (&rate.imaginary, Complex::new(0.0, 1.0))]
             {
@@ -94,12 +101,13 @@ impl SlowMotion {
                         }
                     }
                     let powers = self.complex_amplitudes.iter();
-                    let powers =
-                        powers.map(|pair| pair.map(|name| monomial.exponent(name))).collect();
-                    terms.push((unit * factor, powers));
+                    let powers: Vec<[usize; 2]> = powers
+                        .map(|pair| pair.map(|name| monomial.exponent(name).max(0) as usize))
+                        .collect();
+                    *terms.entry(powers).or_default() += unit * factor;
                 }
             }
-            rates.push(terms);
+            rates.push(terms.into_iter().map(|(powers, factor)| (factor, powers)).collect());
         }
         let count = rates.len();
         let lattice = DMatrix::from_fn(count, count, |row, column| {
@@ -113,7 +121,9 @@ impl SlowMotion {
             decomposed.eigenvectors[(column, kept[row])]
         });
         let slow_phases = self.slow_phases.iter().map(|(_, turns)| turns.clone()).collect();
-        Ok(SlowNumbers { rates, open, slow_phases })
+        let exponents = rates.iter().flatten().flat_map(|(_, powers)| powers);
+        let highest = exponents.flatten().copied().max().unwrap_or(0);
+        Ok(SlowNumbers { rates, highest, open, slow_phases })
     }
 
     /// The values of what the formulas name, detunings among it.
@@ -135,8 +145,9 @@ impl SlowMotion {
 impl SlowNumbers {
     /// `B_j'` at these complex amplitudes.
     pub fn rates(&self, amplitudes: &[Complex<f64>]) -> Vec<Complex<f64>> {
+        let table = self.powers(amplitudes);
         let one = |terms: &Vec<RateTerm>| {
-            terms.iter().map(|(factor, powers)| factor * product(amplitudes, powers)).sum()
+            terms.iter().map(|(factor, powers)| factor * product(&table, powers, None)).sum()
         };
         self.rates.iter().map(one).collect()
     }
@@ -144,6 +155,7 @@ impl SlowNumbers {
     /// The derivatives of the rates with respect to each amplitude and its conjugate.
     fn slopes(&self, amplitudes: &[Complex<f64>]) -> Vec<Vec<[Complex<f64>; 2]>> {
         let count = amplitudes.len();
+        let table = self.powers(amplitudes);
         let one = |terms: &Vec<RateTerm>| {
             let mut row = vec![[Complex::zero(); 2]; count];
             for (factor, powers) in terms {
@@ -151,9 +163,8 @@ impl SlowNumbers {
                     for (which, slope) in entry.iter_mut().enumerate() {
                         let exponent = powers[mode][which];
                         if exponent != 0 {
-                            let mut lower = powers.clone();
-                            lower[mode][which] -= 1;
-                            *slope += factor * f64::from(exponent) * product(amplitudes, &lower);
+                            let lower = product(&table, powers, Some((mode, which)));
+                            *slope += factor * exponent as f64 * lower;
                         }
                     }
                 }
@@ -161,6 +172,17 @@ impl SlowNumbers {
             row
         };
         self.rates.iter().map(one).collect()
+    }
+
+    /// The powers of each amplitude and of its conjugate, as far as they occur.
+    fn powers(&self, amplitudes: &[Complex<f64>]) -> PowerTable {
+        let powers = |base: Complex<f64>| {
+            let next = |power: &Complex<f64>| Some(power * base);
+            std::iter::successors(Some(Complex::new(1.0, 0.0)), next)
+                .take(self.highest + 1)
+                .collect()
+        };
+        amplitudes.iter().map(|b| [powers(*b), powers(b.conj())]).collect()
     }
 
     /// `rho_j` from the rates along the basis of what is open.
@@ -402,8 +424,20 @@ fn same_phase(turns: &[i32], one: &SlowSteadyState, other: &SlowSteadyState) -> 
     }
 }
 
-/// The product of powers of amplitudes and their conjugates.
-fn product(amplitudes: &[Complex<f64>], powers: &[[i32; 2]]) -> Complex<f64> {
-    let factors = amplitudes.iter().zip(powers);
-    factors.map(|(b, [own, conjugate])| b.powi(*own) * b.conj().powi(*conjugate)).product()
+/// The product of powers of amplitudes and their conjugates, that at a place with one power less.
+fn product(
+    table: &PowerTable,
+    powers: &[[usize; 2]],
+    lower: Option<(usize, usize)>,
+) -> Complex<f64> {
+    let mut found = Complex::new(1.0, 0.0);
+    for (mode, exponents) in powers.iter().enumerate() {
+        for (which, exponent) in exponents.iter().enumerate() {
+            let exponent = exponent - usize::from(lower == Some((mode, which)));
+            if exponent > 0 {
+                found *= table[mode][which][exponent];
+            }
+        }
+    }
+    found
 }

@@ -231,6 +231,22 @@ impl CoupledEquations {
             energy: None,
         })
     }
+
+    /// Whether an acceleration is another one where all velocities have the other sign, as damping
+    /// makes it.
+    ///
+    /// # Errors
+    /// A failed step of algebra.
+    pub fn has_damping(&self) -> Result<bool, ExprError> {
+        let velocities = &self.rates.states[self.coordinates.len()..];
+        let backward = velocities.iter().map(|name| (*name, -Expr::from(*name))).collect();
+        for rate in &self.rates.right[self.coordinates.len()..] {
+            if !(rate - &rate.substitute_all(&backward)?).expand()?.is_zero() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
 }
 
 /// The matrix of the highest derivatives, and these from linear equations.

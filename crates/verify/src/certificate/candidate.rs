@@ -37,6 +37,9 @@ pub(super) const BITS: usize = 112;
 /// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
+/// The displacements from which a limit cycle of several coordinates is looked for.
+const SMALL_START: &str = "1/10, 1/20, 1/30 and so on";
+
 /// The reason why there is no certificate. It is no evidence against a formula, unless verification
 /// does not find the motion either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -62,9 +65,9 @@ pub enum NotCertified {
         "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
     )]
     NotDriven(String),
-    /// Driven coordinates with a term of another form.
+    /// Driven or damped coordinates with a term of another form.
     #[error(
-        "the equation of {coordinate}'' has `{term}`: certificates of several driven coordinates are of q'' + G(q)*q' + h(q) = 0, h with sines and cosines of one drive"
+        "the equation of {coordinate}'' has `{term}`: certificates of limit cycles and of driven motions of several coordinates are of q'' + G(q)*q' + h(q) = 0, h with sines and cosines of one drive at most"
     )]
     NotCoupledDriven {
         /// The coordinate.
@@ -77,7 +80,7 @@ pub enum NotCertified {
     FirstOrder(String),
     /// A damping whose forces are not the rates of functions of the positions.
     #[error(
-        "the damping of an equation is not the rate of a function of the positions, as `x*y' + y*x'` is and `x*y'` is not: a proof of several driven coordinates needs that"
+        "the damping of an equation is not the rate of a function of the positions, as `x*y' + y*x'` is and `x*y'` is not: a proof of a limit cycle or of a driven motion of several coordinates needs that"
     )]
     DampingOfNoFunction,
     /// A coordinate with the name of a wave of the drive.
@@ -96,6 +99,21 @@ pub enum NotCertified {
         "the motion from rest does not come to one that repeats itself with the drive in 400 of its periods"
     )]
     NotSettled,
+    /// Coupled equations without a drive, a motion of which comes to rest.
+    #[error(
+        "the motion from rest at small displacements, {SMALL_START}, comes to rest: it leads to no limit cycle"
+    )]
+    ComesToRest,
+    /// Coupled equations without a drive, a motion of which grows without end.
+    #[error(
+        "the motion from rest at small displacements, {SMALL_START}, runs away, or to where the equations have no value"
+    )]
+    RunsAway,
+    /// Coupled equations without a drive, a motion of which is not periodic at the end.
+    #[error(
+        "the motion from rest at small displacements, {SMALL_START}, does not become periodic: it has two frequencies, is irregular, or settles too slowly"
+    )]
+    NoCycle,
     /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
@@ -203,6 +221,9 @@ impl NotCertified {
             Self::NoValueOf(name) => return Some(format!("add --at {name}=...")),
             Self::NotSettled => {
                 "more damping, or another frequency: `simulate` shows the motion, `response` finds those that repeat themselves"
+            }
+            Self::ComesToRest | Self::RunsAway | Self::NoCycle => {
+                "`response` finds the limit cycles of a range in numbers; --mode proves a mode of equations without damping"
             }
             Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
             Self::NoSteadyMotion => {

@@ -1,5 +1,6 @@
-//! The numbers of a certificate of driven coordinates: Newton's iteration from the motion that the
-//! motion from rest comes to, by Runge-Kutta. The theorem trusts nothing here.
+//! The numbers of a certificate of several coordinates: Newton's iteration from the motion that the
+//! motion from rest comes to, or without a drive that from a small start, by Runge-Kutta. The theorem
+//! trusts nothing here.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -10,28 +11,29 @@ use num_traits::Zero as _;
 
 use super::super::super::candidate::{
     BITS, INVERSE_BITS, NOISE, NotCertified, claimed, few_units, first_proof, inverted, iterate,
-    not_proved, odd_below, shorten, subtract, units, written_out,
+    not_proved, odd_below, shorten, units, weight, written_out,
 };
-use super::super::super::fourier_series::{BasisFunction, WORKING};
 use super::super::super::radii_polynomial::NotProved;
 use super::super::super::{Certified, HIGHEST_HARMONIC};
-use super::super::Drive;
-use super::super::candidate::is_linear_in;
+use super::super::candidate::{is_linear_in, phase_of, phase_shifted, subtract_step};
 use super::super::theorem::{correction, derivative_of_block, prove, waves_of_drive};
 use super::super::waves::{common_frequency, in_waves};
+use super::super::{ClaimedStability, Drive};
 use super::{CoupledCertificate, last_harmonic_of_largest_block};
 use crate::coupled::CoupledEquations;
-use crate::exact::ball::Balls;
 use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Rational};
 use crate::expr::{CompiledList, Expr};
 use crate::numeric::harmonics::{Harmonics, Transform};
-use crate::numeric::ode::{IntegrationOptions, Point, end_values};
+use crate::numeric::ode::{
+    Action, Event, IntegrationOptions, Point, StopReason, end_values, integrate_first_order,
+};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// A certificate of a steady motion of driven coordinates, that to which the motion from rest at the
-/// origin comes; no formula is judged.
+/// A certificate of a steady motion of several coordinates: with a drive that to which the motion
+/// from rest at the origin comes, without one the limit cycle to which the motion from rest at small
+/// displacements comes, a tenth, a twentieth and so on. No formula is judged.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -53,8 +55,12 @@ pub fn certify_coupled(
         .iter()
         .map(|rate| rate.substitute_all(&values))
         .collect::<Result<_, _>>()?;
-    let frequency = common_frequency(&rates, Symbol::new("t"))?;
-    let (damping, forces) = parts(equations, &rates, &frequency)?;
+    let time = Symbol::new("t");
+    let frequency = match rates.iter().any(|rate| rate.contains(time)) {
+        true => Some(common_frequency(&rates, time)?),
+        false => None,
+    };
+    let (damping, forces) = parts(equations, &rates, frequency.as_ref())?;
     let names = equations.coordinates.iter();
     let coordinates: Vec<Symbol> = names.map(|name| Symbol::new(name.written())).collect();
     let count = coordinates.len();
@@ -62,20 +68,38 @@ pub fn certify_coupled(
         coordinates,
         damping,
         forces,
-        drive: Drive { frequency: frequency.clone(), periods: 1, harmonic: 1 },
+        drive: frequency.map(|frequency| Drive { frequency, periods: 1, harmonic: 1 }),
+        phase: 0,
         odd: false,
         bits: BITS,
+        reciprocal: Integer::zero(),
         cosines: vec![],
         sines: vec![],
         highest: 1,
         inverse_bits: INVERSE_BITS,
         inverse: vec![],
+        sigma: 0,
         claim: Rational::zero(),
+        stability: None,
     };
     if !certificate.problem().has_potential_damping()? {
         return Err(NotCertified::DampingOfNoFunction);
     }
-    let truth = harmonics(&settled(equations, &rates, to_f64(&frequency))?);
+    let flow = Flow::new(equations, &rates)?;
+    let truth = match &certificate.drive {
+        Some(drive) => harmonics(&flow.settled(to_f64(&drive.frequency))?),
+        None => {
+            let OnePeriod { period, samples } = flow.cycle()?;
+            certificate.reciprocal = units(period / TAU, BITS);
+            let found = harmonics(&samples);
+            certificate.phase = with_largest_first_harmonic(&found);
+            let phase = phase_of(&found[certificate.phase]);
+            let mut found: Vec<Harmonics> =
+                found.iter().map(|own| phase_shifted(own, phase)).collect();
+            found[certificate.phase].sines[1] = 0.0;
+            found
+        }
+    };
     let lists = || truth.iter().flat_map(|own| [&own.cosines, &own.sines]);
     let seen = lists().map(Vec::len).max().unwrap_or(0);
     if seen >= HIGHEST_HARMONIC / 2 {
@@ -110,18 +134,19 @@ pub fn certify_coupled(
 }
 
 /// G and h of `q'' + G(q) q' + h(q, cos(Omega t), sin(Omega t)) = 0`, from the accelerations with
-/// numbers, for which the mass matrix was inverted exactly.
+/// numbers, for which the mass matrix was inverted exactly; without a frequency there is no drive.
 fn parts(
     equations: &CoupledEquations,
     rates: &[Expr],
-    frequency: &Rational,
+    frequency: Option<&Rational>,
 ) -> Result<(Vec<Vec<Expr>>, Vec<Expr>), NotCertified> {
     let (time, names) = (Symbol::new("t"), &equations.coordinates);
     let velocities: Vec<Symbol> = names.iter().map(|name| name.derivative()).collect();
     let at_rest: BTreeMap<Symbol, Expr> =
         velocities.iter().map(|velocity| (*velocity, Expr::zero())).collect();
     let written: Vec<Symbol> = names.iter().map(|name| Symbol::new(name.written())).collect();
-    if let Some(name) = written.iter().find(|name| waves_of_drive().contains(name)) {
+    let mut taken = written.iter().filter(|name| waves_of_drive().contains(name));
+    if let Some(name) = taken.next().filter(|_| frequency.is_some()) {
         return Err(NotCertified::WaveAsCoordinate(name.to_string()));
     }
     let renamed: BTreeMap<Symbol, Expr> =
@@ -153,7 +178,10 @@ fn parts(
         });
         damping.push(own.collect::<Result<Vec<Expr>, NotCertified>>()?);
         let rest = force.substitute_all(&at_rest)?.substitute_all(&renamed)?;
-        let rest = in_waves(&rest, time, frequency)?;
+        let rest = match frequency {
+            Some(frequency) => in_waves(&rest, time, frequency)?,
+            None => written_out(rest, &written)?,
+        };
         if rest.contains(time) {
             return Err(NotCertified::NotCoupledDriven {
                 coordinate: name.to_string(),
@@ -165,55 +193,187 @@ fn parts(
     Ok((damping, forces))
 }
 
-/// The places of all coordinates at equal steps of one period of the drive, from a multiple of the
-/// period on, of the motion that begins at rest at the origin.
-fn settled(
-    equations: &CoupledEquations,
-    rates: &[Expr],
-    frequency: f64,
-) -> Result<Vec<Vec<f64>>, NotCertified> {
-    /// The largest number of periods.
-    const PERIODS: usize = 400;
-    /// Change over a period, beside the largest state, below which a motion has settled, and below
-    /// which it is taken at the end for one that settles.
-    const SETTLED: [f64; 2] = [1e-9, 1e-4];
-    const SAMPLES: usize = 1024;
-    let names: Vec<Symbol> =
-        equations.rates.states.iter().copied().chain([Symbol::new("t")]).collect();
-    let compiled = CompiledList::new(rates, &names).map_err(|_| NotCertified::NotSettled)?;
-    let scratch = RefCell::new(vec![]);
-    let field = |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| {
+/// One period of a limit cycle.
+struct OnePeriod {
+    period: f64,
+    /// The places of all coordinates at equal steps.
+    samples: Vec<Vec<f64>>,
+}
+
+/// Number of samples of a period.
+const SAMPLES: usize = 1024;
+
+/// Change over a period, beside the size of the motion, below which a motion has settled, and below
+/// which it is taken at the end for one that settles.
+const SETTLED: [f64; 2] = [1e-9, 1e-4];
+
+/// The equations in doubles.
+struct Flow {
+    rates: CompiledList,
+    /// The number of states.
+    states: usize,
+    /// The places of the velocities among the states, of which the coordinates are the first.
+    velocities: Vec<usize>,
+    scratch: RefCell<Vec<f64>>,
+}
+
+impl Flow {
+    fn new(equations: &CoupledEquations, rates: &[Expr]) -> Result<Self, NotCertified> {
+        let states = &equations.rates.states;
+        let names: Vec<Symbol> = states.iter().copied().chain([Symbol::new("t")]).collect();
+        let place = |name: &Symbol| {
+            let velocity = name.derivative();
+            let place = states.iter().position(|state| *state == velocity);
+            place.ok_or_else(|| NotCertified::FirstOrder(name.to_string()))
+        };
+        Ok(Self {
+            rates: CompiledList::new(rates, &names).map_err(|_| NotCertified::NotSettled)?,
+            states: states.len(),
+            velocities: equations.coordinates.iter().map(place).collect::<Result<_, _>>()?,
+            scratch: RefCell::new(vec![]),
+        })
+    }
+
+    /// The rates of a state.
+    fn rates(&self, t: f64, state: &[f64], rates: &mut Vec<f64>) {
         let arguments: Vec<f64> = state.iter().copied().chain([t]).collect();
-        compiled.call(&arguments, &mut scratch.borrow_mut(), rates);
-    };
-    let options = IntegrationOptions { maximum_steps: 20_000, ..IntegrationOptions::default() };
-    let period = TAU / frequency;
-    let after = |state: Vec<f64>, part: [f64; 2]| {
-        let start = Point { t: period * part[0], y: state };
-        end_values(field, start, period * part[1], &options).ok_or(NotCertified::NotSettled)
-    };
-    let mut state = vec![0.0; equations.rates.states.len()];
-    let mut left = f64::INFINITY;
-    for _ in 0..PERIODS {
-        let next = after(state.clone(), [0.0, 1.0])?;
-        let apart = state.iter().zip(&next).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-        let size = next.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        (state, left) = (next, apart / size);
-        if left < SETTLED[0] {
-            break;
+        self.rates.call(&arguments, &mut self.scratch.borrow_mut(), rates);
+    }
+
+    /// The places of all coordinates at equal steps of one period of the drive, from a multiple of
+    /// the period on, of the motion that begins at rest at the origin.
+    fn settled(&self, frequency: f64) -> Result<Vec<Vec<f64>>, NotCertified> {
+        /// The largest number of periods.
+        const PERIODS: usize = 400;
+        let field = |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| self.rates(t, state, rates);
+        let options = IntegrationOptions { maximum_steps: 20_000, ..IntegrationOptions::default() };
+        let period = TAU / frequency;
+        let after = |state: Vec<f64>, part: [f64; 2]| {
+            let start = Point { t: period * part[0], y: state };
+            end_values(field, start, period * part[1], &options).ok_or(NotCertified::NotSettled)
+        };
+        let mut state = vec![0.0; self.states];
+        let mut left = f64::INFINITY;
+        for _ in 0..PERIODS {
+            let next = after(state.clone(), [0.0, 1.0])?;
+            let apart = distance(&state, &next);
+            let size = next.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            (state, left) = (next, apart / size);
+            if left < SETTLED[0] {
+                break;
+            }
+        }
+        // A quotient that is no number has not settled either.
+        if left.is_nan() || left > SETTLED[1] {
+            return Err(NotCertified::NotSettled);
+        }
+        let mut samples = vec![];
+        for index in 0..SAMPLES {
+            samples.push(state[..self.velocities.len()].to_vec());
+            let part = |index: usize| index as f64 / SAMPLES as f64;
+            state = after(state, [part(index), part(index + 1)])?;
+        }
+        Ok(samples)
+    }
+
+    /// One period of the limit cycle to which the motion from rest at small displacements comes. It
+    /// is seen where the coordinate that moves most is highest: the state there comes back.
+    fn cycle(&self) -> Result<OnePeriod, NotCertified> {
+        /// The largest number of pieces of the motion, each of so many steps.
+        const PIECES: usize = 100;
+        const STEPS: usize = 1000;
+        /// The largest number of turns of the coordinate in a period.
+        const TURNS: usize = 12;
+        /// A duration that no piece has.
+        const LONG: f64 = 1e9;
+        /// The part of the first displacement below which a motion has come to rest, and the
+        /// multiple of it beyond which it runs away.
+        const REST: f64 = 1e-6;
+        const AWAY: f64 = 1e7;
+        /// The first displacement.
+        const START: f64 = 0.1;
+        let count = self.velocities.len();
+        let mut state = vec![0.0; self.states];
+        for (place, displacement) in state.iter_mut().take(count).enumerate() {
+            *displacement = START / (place + 1) as f64;
+        }
+        let options = IntegrationOptions { maximum_steps: STEPS, ..IntegrationOptions::default() };
+        let mut travel = 0.0;
+        for piece in 1..=PIECES {
+            let field =
+                |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| self.rates(t, state, rates);
+            let turn = |velocity: &usize| {
+                let velocity = *velocity;
+                Event::new(move |point: &Point<Vec<f64>>| point.y[velocity], Action::Record)
+            };
+            let events: Vec<_> = self.velocities.iter().map(turn).collect();
+            let start = Point { t: 0.0, y: state };
+            let path = integrate_first_order(field, start, LONG, &events, &options)
+                .map_err(|_| NotCertified::RunsAway)?;
+            let is_followed = matches!(
+                path.stop_reason(),
+                StopReason::EndReached | StopReason::MaximumSteps { .. }
+            );
+            let largest = path.end().y.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            if !is_followed || largest.is_nan() || largest > AWAY * START {
+                return Err(NotCertified::RunsAway);
+            }
+            // The coordinate that moves most, and the states where it turns.
+            let turns = |coordinate: usize| {
+                let own = path.occurrences().iter();
+                own.filter(move |turn| turn.event == coordinate)
+            };
+            let extent = |coordinate: usize| {
+                let places = turns(coordinate).map(|turn| turn.state.y[coordinate]);
+                let none = [f64::INFINITY, f64::NEG_INFINITY];
+                let [low, high] = places.fold(none, |[low, high], x| [low.min(x), high.max(x)]);
+                (high - low).max(0.0)
+            };
+            let most = (0..count).max_by(|one, other| extent(*one).total_cmp(&extent(*other)));
+            let Some(most) = most else { break };
+            travel = extent(most);
+            let highest: Vec<_> =
+                turns(most).filter(|turn| !turn.rising).map(|turn| &turn.state).collect();
+            if travel > REST * START
+                && let Some((last, before)) = highest.split_last()
+            {
+                let speeds = self
+                    .velocities
+                    .iter()
+                    .flat_map(|velocity| path.knots().map(move |knot| knot.y[*velocity].abs()));
+                let size = speeds.fold(travel, f64::max);
+                let enough = SETTLED[usize::from(piece == PIECES)];
+                let mut back = before.iter().rev().take(TURNS);
+                if let Some(first) = back.find(|first| distance(&first.y, &last.y) < enough * size)
+                {
+                    let period = last.t - first.t;
+                    let part = |index: usize| index as f64 / SAMPLES as f64;
+                    let states =
+                        (0..SAMPLES).map(|index| path.state_at(first.t + period * part(index)));
+                    let places = states.map(|state| Some(state?.y[..count].to_vec()));
+                    let samples = places.collect::<Option<_>>().ok_or(NotCertified::NoCycle)?;
+                    return Ok(OnePeriod { period, samples });
+                }
+            }
+            state = path.end().y;
+        }
+        match travel > REST * START {
+            true => Err(NotCertified::NoCycle),
+            false => Err(NotCertified::ComesToRest),
         }
     }
-    // A quotient that is no number has not settled either.
-    if left.is_nan() || left > SETTLED[1] {
-        return Err(NotCertified::NotSettled);
-    }
-    let mut samples = vec![];
-    for index in 0..SAMPLES {
-        samples.push(state[..equations.coordinates.len()].to_vec());
-        let part = |index: usize| index as f64 / SAMPLES as f64;
-        state = after(state, [part(index), part(index + 1)])?;
-    }
-    Ok(samples)
+}
+
+/// The largest distance of two lists, entry by entry.
+fn distance(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+}
+
+/// The place of the coordinate with the largest first harmonic.
+fn with_largest_first_harmonic(harmonics: &[Harmonics]) -> usize {
+    let size = |place: &usize| harmonics[*place].cosines[1].hypot(harmonics[*place].sines[1]);
+    let largest = (0..harmonics.len()).max_by(|one, other| size(one).total_cmp(&size(other)));
+    largest.unwrap_or(0)
 }
 
 /// The harmonics of samples of one period, without trailing ones that have no significant digits
@@ -254,24 +414,23 @@ fn refine(certificate: &mut CoupledCertificate) -> Result<(), NotProved> {
     certificate.inverse = inverse(certificate)?;
     let step = |certificate: &CoupledCertificate| correction(certificate.problem());
     iterate(certificate, few_units(bits), step, |certificate, step| {
-        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
         let block = certificate.problem().block();
-        let corrections = block.iter().zip(&step.block);
-        for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
-            let (list, k) = match wave.function {
-                BasisFunction::Cosine(k) => (&mut certificate.cosines[wave.coordinate], k),
-                BasisFunction::Sine(k) => (&mut certificate.sines[wave.coordinate], k),
-            };
-            subtract(list, k, short(ball));
-        }
+        let reciprocal = certificate.drive.is_none().then_some(&mut certificate.reciprocal);
+        let lists = [&mut certificate.cosines[..], &mut certificate.sines[..]];
+        subtract_step(reciprocal, lists, &block, bits, step);
         certificate.cosines.iter_mut().chain(&mut certificate.sines).for_each(shorten);
     })
 }
 
-/// Checks a certificate with its block, and enters the proved radius as the claim.
+/// Checks a certificate with its block, and enters the proved values as claims.
 fn proved(certificate: &mut CoupledCertificate) -> Result<Certified, NotProved> {
     certificate.inverse = inverse(certificate)?;
+    if certificate.drive.is_none() {
+        certificate.sigma = weight(&certificate.inverse);
+    }
     let proof = prove(certificate.problem())?;
     [_, certificate.claim] = claimed(proof.radius.value());
-    certificate.certified(proof)
+    let certified = certificate.certified(proof)?;
+    certificate.stability = certified.stability.as_ref().map(ClaimedStability::of);
+    Ok(certified)
 }

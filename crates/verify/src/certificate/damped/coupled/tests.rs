@@ -2,6 +2,7 @@ use super::super::super::NotCertified;
 use super::*;
 use crate::coupled::CoupledEquations;
 use crate::exact::ball::Ball;
+use crate::exact::bound::Bound;
 use crate::exact::ratio;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, parse_expression};
@@ -85,7 +86,8 @@ fn followed(certificate: &CoupledCertificate, moved: f64) -> [Vec<f64>; 3] {
         };
         state[count..].iter().copied().chain((0..count).map(rate)).collect()
     };
-    let frequency = to_f64(&certificate.drive.frequency);
+    let frequency =
+        WORKING.nearest(&frequency(&certificate.problem(), Bound::ZERO).expect("a frequency"));
     let motions = certificate.motions();
     let places = motions.iter().map(|motion| WORKING.nearest(&motion.at_zero()));
     let speeds =
@@ -161,6 +163,10 @@ fn one_coordinate_of_several_is_that_of_one() {
     assert!(apart <= alone.radius.value() + both.amplitudes[0].radius.value(), "{apart}");
 }
 
+fn drive(certificate: &mut CoupledCertificate) -> &mut Drive {
+    certificate.drive.as_mut().expect("a drive")
+}
+
 #[test]
 fn numbers_that_do_not_fit_are_refused() {
     let (sound, _) = certified(POTENTIAL_DAMPING, "Omega = 4/5");
@@ -185,7 +191,7 @@ fn numbers_that_do_not_fit_are_refused() {
         &|certificate| certificate.damping[0][0] = expression("1/5"),
         &|certificate| certificate.highest = 399,
         &|certificate| certificate.inverse.truncate(3),
-        &|certificate| certificate.drive.frequency = ratio(-4, 5),
+        &|certificate| drive(certificate).frequency = ratio(-4, 5),
         &|certificate| certificate.sines[1][0] = Integer::from(1),
     ];
     for (place, change) in malformed.into_iter().enumerate() {
@@ -202,7 +208,9 @@ fn numbers_that_do_not_fit_are_refused() {
             certificate.forces[1] = with;
         },
         &|certificate| certificate.damping[1][0] = expression("1/40 + 1/1000000"),
-        &|certificate| certificate.drive.frequency = ratio(4, 5) + ratio(1, 1_000_000_000),
+        &|certificate| {
+            drive(certificate).frequency = ratio(4, 5) + ratio(1, 1_000_000_000);
+        },
         &|certificate| {
             certificate.odd = true;
             let rows = certificate.problem().block().len();

@@ -222,8 +222,10 @@ fn is_of_cycle(
     problem: &Problem,
 ) -> Result<bool, Failure> {
     let values = exact_values(&arguments.question.at, problem.values_of_motion())?;
-    let is_parameter = |name: &Symbol| equations.parameters.contains(name);
-    let has_others = values.iter().flat_map(Values::iter).any(|(name, _)| !is_parameter(&name));
+    let is_own = |name: Symbol| {
+        equations.parameters.contains(&name) || equations.coordinates.contains(&name)
+    };
+    let has_others = values.iter().flat_map(Values::iter).any(|(name, _)| !is_own(name));
     let refused = |error| Failure::because(format!("{error}"));
     Ok(arguments.mode.is_none()
         && !has_others

@@ -399,10 +399,14 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.push(("motion", certificate.motion(letter, &omega)));
-    if matches!(report.question, Some(CertifiedQuestion::FromRest(_))) {
-        let start = match certificate.harmonic() {
-            Some(_) => "rest",
-            None => "rest at small displacements, 1/10, 1/20 and so on,",
+    if let (Some(CertifiedQuestion::FromRest(values)), AnyCertificate::Coupled(coupled)) =
+        (report.question, certificate)
+    {
+        let is_given = coupled.coordinates.iter().any(|name| values.get(*name).is_some());
+        let start = match (is_given, &coupled.drive) {
+            (true, _) => "rest at these displacements",
+            (_, Some(_)) => "rest",
+            (_, None) => "rest at small displacements, 1/10, 1/20 and so on,",
         };
         facts.push((
             "chosen",

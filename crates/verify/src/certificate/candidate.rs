@@ -37,9 +37,6 @@ pub(super) const BITS: usize = 112;
 /// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
-/// The displacements from which a limit cycle of several coordinates is looked for.
-const SMALL_START: &str = "1/10, 1/20, 1/30 and so on";
-
 /// The reason why there is no certificate. It is no evidence against a formula, unless verification
 /// does not find the motion either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -91,6 +88,9 @@ pub enum NotCertified {
     /// A parameter without a value.
     #[error("no value of {0}")]
     NoValueOf(String),
+    /// A value of a coordinate that is no number.
+    #[error("{0} is no number, from which a motion may start")]
+    StartOfMotion(String),
     /// A value of something that is no parameter.
     #[error("there is no parameter {0}")]
     NoParameter(String),
@@ -101,19 +101,19 @@ pub enum NotCertified {
     NotSettled,
     /// Coupled equations without a drive, a motion of which comes to rest.
     #[error(
-        "the motion from rest at small displacements, {SMALL_START}, comes to rest: it leads to no limit cycle"
+        "the motion from rest at {0} comes to rest: it leads to no limit cycle"
     )]
-    ComesToRest,
+    ComesToRest(String),
     /// Coupled equations without a drive, a motion of which grows without end.
     #[error(
-        "the motion from rest at small displacements, {SMALL_START}, runs away, or to where the equations have no value"
+        "the motion from rest at {0} runs away, or to where the equations have no value"
     )]
-    RunsAway,
+    RunsAway(String),
     /// Coupled equations without a drive, a motion of which is not periodic at the end.
     #[error(
-        "the motion from rest at small displacements, {SMALL_START}, does not become periodic: it has two frequencies, is irregular, or settles too slowly"
+        "the motion from rest at {0} does not become periodic: it has two frequencies, is irregular, or settles too slowly"
     )]
-    NoCycle,
+    NoCycle(String),
     /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
@@ -222,8 +222,8 @@ impl NotCertified {
             Self::NotSettled => {
                 "more damping, or another frequency: `simulate` shows the motion, `response` finds those that repeat themselves"
             }
-            Self::ComesToRest | Self::RunsAway | Self::NoCycle => {
-                "`response` finds the limit cycles of a range in numbers; --mode proves a mode of equations without damping"
+            Self::ComesToRest(_) | Self::RunsAway(_) | Self::NoCycle(_) => {
+                "values of the coordinates are another start, --at x=2; `response` finds the limit cycles of a range in numbers"
             }
             Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
             Self::NoSteadyMotion => {

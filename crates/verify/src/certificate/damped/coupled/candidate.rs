@@ -33,7 +33,8 @@ use crate::values::Values;
 
 /// A certificate of a steady motion of several coordinates: with a drive that to which the motion
 /// from rest at the origin comes, without one the limit cycle to which the motion from rest at small
-/// displacements comes, a tenth, a twentieth and so on. No formula is judged.
+/// displacements comes, a tenth, a twentieth and so on. Values of coordinates are another start, at
+/// rest too and zero for those that have none. No formula is judged.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -42,9 +43,11 @@ pub fn certify_coupled(
     at: &Values,
 ) -> Result<(CoupledCertificate, Certified), NotCertified> {
     let (values, others) = at.split(&equations.parameters);
+    let (start, others) = others.split(&equations.coordinates);
     if let Some((name, _)) = others.iter().next() {
         return Err(NotCertified::NoParameter(name.to_string()));
     }
+    let start = Start::new(start)?;
     let missing = equations.parameters.iter().find(|name| !values.contains_key(name));
     if let Some(name) = missing {
         return Err(NotCertified::NoValueOf(name.to_string()));
@@ -87,12 +90,19 @@ pub fn certify_coupled(
     }
     let flow = Flow::new(equations, &rates)?;
     let truth = match &certificate.drive {
-        Some(drive) => harmonics(&flow.settled(to_f64(&drive.frequency))?),
+        Some(drive) => {
+            let state = flow.state(&start, &|_| 0.0);
+            harmonics(&flow.settled(state, to_f64(&drive.frequency))?)
+        }
         None => {
-            let OnePeriod { period, samples } = flow.cycle()?;
+            let state = flow.state(&start, &|place| 0.1 / (place + 1) as f64);
+            let OnePeriod { period, samples } =
+                flow.cycle(state).map_err(|reason| reason.of_motion_from(&start))?;
             certificate.reciprocal = units(period / TAU, BITS);
             let found = harmonics(&samples);
-            certificate.phase = with_largest_first_harmonic(&found);
+            certificate.phase = place_of_largest(found.len(), &|place| {
+                found[place].cosines[1].hypot(found[place].sines[1])
+            });
             let phase = phase_of(&found[certificate.phase]);
             let mut found: Vec<Harmonics> =
                 found.iter().map(|own| phase_shifted(own, phase)).collect();
@@ -193,6 +203,43 @@ fn parts(
     Ok((damping, forces))
 }
 
+/// The displacements from which a motion starts at rest, of the coordinates that have one.
+struct Start(BTreeMap<Symbol, f64>);
+
+impl Start {
+    fn new(values: BTreeMap<Symbol, Expr>) -> Result<Self, NotCertified> {
+        let number = |(name, value): (Symbol, Expr)| match value.evaluate(&BTreeMap::new()) {
+            Ok(number) if number.is_finite() => Ok((name, number)),
+            _ => Err(NotCertified::StartOfMotion(format!("{name} = {value}"))),
+        };
+        Ok(Self(values.into_iter().map(number).collect::<Result<_, _>>()?))
+    }
+}
+
+/// The reason why a motion without drive leads to no limit cycle.
+enum NoCycle {
+    Rest,
+    Away,
+    Irregular,
+}
+
+impl NoCycle {
+    /// The refusal of the motion from this start.
+    fn of_motion_from(self, Start(start): &Start) -> NotCertified {
+        let equations: Vec<String> =
+            start.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let from = match equations.is_empty() {
+            true => "small displacements, 1/10, 1/20, 1/30 and so on,".to_owned(),
+            false => equations.join(", "),
+        };
+        match self {
+            Self::Rest => NotCertified::ComesToRest(from),
+            Self::Away => NotCertified::RunsAway(from),
+            Self::Irregular => NotCertified::NoCycle(from),
+        }
+    }
+}
+
 /// One period of a limit cycle.
 struct OnePeriod {
     period: f64,
@@ -210,6 +257,7 @@ const SETTLED: [f64; 2] = [1e-9, 1e-4];
 /// The equations in doubles.
 struct Flow {
     rates: CompiledList,
+    coordinates: Vec<Symbol>,
     /// The number of states.
     states: usize,
     /// The places of the velocities among the states, of which the coordinates are the first.
@@ -228,6 +276,7 @@ impl Flow {
         };
         Ok(Self {
             rates: CompiledList::new(rates, &names).map_err(|_| NotCertified::NotSettled)?,
+            coordinates: equations.coordinates.clone(),
             states: states.len(),
             velocities: equations.coordinates.iter().map(place).collect::<Result<_, _>>()?,
             scratch: RefCell::new(vec![]),
@@ -240,9 +289,20 @@ impl Flow {
         self.rates.call(&arguments, &mut self.scratch.borrow_mut(), rates);
     }
 
+    /// The state at rest at a start; where it has no value, at another displacement by place.
+    fn state(&self, Start(start): &Start, otherwise: &dyn Fn(usize) -> f64) -> Vec<f64> {
+        let places = self.coordinates.iter().enumerate().map(|(place, name)| match start.get(name) {
+            None if start.is_empty() => otherwise(place),
+            value => value.copied().unwrap_or(0.0),
+        });
+        let mut state: Vec<f64> = places.collect();
+        state.resize(self.states, 0.0);
+        state
+    }
+
     /// The places of all coordinates at equal steps of one period of the drive, from a multiple of
-    /// the period on, of the motion that begins at rest at the origin.
-    fn settled(&self, frequency: f64) -> Result<Vec<Vec<f64>>, NotCertified> {
+    /// the period on, of the motion from a state.
+    fn settled(&self, mut state: Vec<f64>, frequency: f64) -> Result<Vec<Vec<f64>>, NotCertified> {
         /// The largest number of periods.
         const PERIODS: usize = 400;
         let field = |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| self.rates(t, state, rates);
@@ -252,12 +312,11 @@ impl Flow {
             let start = Point { t: period * part[0], y: state };
             end_values(field, start, period * part[1], &options).ok_or(NotCertified::NotSettled)
         };
-        let mut state = vec![0.0; self.states];
         let mut left = f64::INFINITY;
         for _ in 0..PERIODS {
             let next = after(state.clone(), [0.0, 1.0])?;
             let apart = distance(&state, &next);
-            let size = next.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let size = largest_of(&next);
             (state, left) = (next, apart / size);
             if left < SETTLED[0] {
                 break;
@@ -276,27 +335,21 @@ impl Flow {
         Ok(samples)
     }
 
-    /// One period of the limit cycle to which the motion from rest at small displacements comes. It
-    /// is seen where the coordinate that moves most is highest: the state there comes back.
-    fn cycle(&self) -> Result<OnePeriod, NotCertified> {
+    /// One period of the limit cycle to which the motion from a state comes. It is seen where the
+    /// coordinate that moves most is highest: the state there comes back.
+    fn cycle(&self, mut state: Vec<f64>) -> Result<OnePeriod, NoCycle> {
         /// The largest number of pieces of the motion, each of so many steps.
         const PIECES: usize = 100;
         const STEPS: usize = 1000;
-        /// The largest number of turns of the coordinate in a period.
-        const TURNS: usize = 12;
         /// A duration that no piece has.
         const LONG: f64 = 1e9;
-        /// The part of the first displacement below which a motion has come to rest, and the
-        /// multiple of it beyond which it runs away.
+        /// The largest number of turns of the coordinate in a period.
+        const TURNS: usize = 12;
+        /// Multiples of the first displacement, or of a tenth if that is larger, below which a motion
+        /// has come to rest, and beyond which it runs away.
         const REST: f64 = 1e-6;
         const AWAY: f64 = 1e7;
-        /// The first displacement.
-        const START: f64 = 0.1;
-        let count = self.velocities.len();
-        let mut state = vec![0.0; self.states];
-        for (place, displacement) in state.iter_mut().take(count).enumerate() {
-            *displacement = START / (place + 1) as f64;
-        }
+        let first = largest_of(&state).max(0.1);
         let options = IntegrationOptions { maximum_steps: STEPS, ..IntegrationOptions::default() };
         let mut travel = 0.0;
         for piece in 1..=PIECES {
@@ -309,19 +362,19 @@ impl Flow {
             let events: Vec<_> = self.velocities.iter().map(turn).collect();
             let start = Point { t: 0.0, y: state };
             let path = integrate_first_order(field, start, LONG, &events, &options)
-                .map_err(|_| NotCertified::RunsAway)?;
+                .map_err(|_| NoCycle::Away)?;
+            state = path.end().y;
             let is_followed = matches!(
                 path.stop_reason(),
                 StopReason::EndReached | StopReason::MaximumSteps { .. }
             );
-            let largest = path.end().y.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-            if !is_followed || largest.is_nan() || largest > AWAY * START {
-                return Err(NotCertified::RunsAway);
+            if !is_followed || !(largest_of(&state) < AWAY * first) {
+                return Err(NoCycle::Away);
             }
-            // The coordinate that moves most, and the states where it turns.
+            // The last states where each coordinate turns, and the coordinate that moves most.
             let turns = |coordinate: usize| {
-                let own = path.occurrences().iter();
-                own.filter(move |turn| turn.event == coordinate)
+                let own = path.occurrences().iter().rev();
+                own.filter(move |turn| turn.event == coordinate).take(2 * TURNS + 2)
             };
             let extent = |coordinate: usize| {
                 let places = turns(coordinate).map(|turn| turn.state.y[coordinate]);
@@ -329,51 +382,51 @@ impl Flow {
                 let [low, high] = places.fold(none, |[low, high], x| [low.min(x), high.max(x)]);
                 (high - low).max(0.0)
             };
-            let most = (0..count).max_by(|one, other| extent(*one).total_cmp(&extent(*other)));
-            let Some(most) = most else { break };
+            let most = place_of_largest(self.coordinates.len(), &extent);
             travel = extent(most);
-            let highest: Vec<_> =
-                turns(most).filter(|turn| !turn.rising).map(|turn| &turn.state).collect();
-            if travel > REST * START
-                && let Some((last, before)) = highest.split_last()
-            {
-                let speeds = self
-                    .velocities
-                    .iter()
-                    .flat_map(|velocity| path.knots().map(move |knot| knot.y[*velocity].abs()));
-                let size = speeds.fold(travel, f64::max);
-                let enough = SETTLED[usize::from(piece == PIECES)];
-                let mut back = before.iter().rev().take(TURNS);
-                if let Some(first) = back.find(|first| distance(&first.y, &last.y) < enough * size)
-                {
-                    let period = last.t - first.t;
-                    let part = |index: usize| index as f64 / SAMPLES as f64;
-                    let states =
-                        (0..SAMPLES).map(|index| path.state_at(first.t + period * part(index)));
-                    let places = states.map(|state| Some(state?.y[..count].to_vec()));
-                    let samples = places.collect::<Option<_>>().ok_or(NotCertified::NoCycle)?;
-                    return Ok(OnePeriod { period, samples });
-                }
+            let mut highest = turns(most).filter(|turn| !turn.rising).map(|turn| &turn.state);
+            let Some(last) = highest.next().filter(|_| travel > REST * first) else { continue };
+            let speeds = self.velocities.iter().flat_map(|velocity| {
+                turns(most).map(move |turn| turn.state.y[*velocity].abs())
+            });
+            let size = speeds.fold(travel, f64::max);
+            let enough = size * SETTLED[usize::from(piece == PIECES)];
+            if let Some(before) = highest.find(|before| distance(&before.y, &last.y) < enough) {
+                let period = last.t - before.t;
+                let sample = |index: usize| {
+                    let state = path.state_at(before.t + period * index as f64 / SAMPLES as f64)?;
+                    Some(state.y[..self.coordinates.len()].to_vec())
+                };
+                let samples: Option<_> = (0..SAMPLES).map(sample).collect();
+                return Ok(OnePeriod { period, samples: samples.ok_or(NoCycle::Irregular)? });
             }
-            state = path.end().y;
         }
-        match travel > REST * START {
-            true => Err(NotCertified::NoCycle),
-            false => Err(NotCertified::ComesToRest),
+        match travel > REST * first {
+            true => Err(NoCycle::Irregular),
+            false => Err(NoCycle::Rest),
         }
     }
+}
+
+/// The largest absolute value of a list; not a number if one of them is none.
+fn largest_of(values: &[f64]) -> f64 {
+    let larger = |most: f64, value: &f64| match value.is_nan() || value.abs() > most {
+        true => value.abs(),
+        false => most,
+    };
+    values.iter().fold(0.0, larger)
+}
+
+/// The first place of those with nearly the largest size.
+fn place_of_largest(count: usize, size: &dyn Fn(usize) -> f64) -> usize {
+    const NEARLY: f64 = 1.0 - 1e-6;
+    let most = (0..count).map(size).fold(0.0, f64::max);
+    (0..count).find(|place| size(*place) >= NEARLY * most).unwrap_or(0)
 }
 
 /// The largest distance of two lists, entry by entry.
 fn distance(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
-}
-
-/// The place of the coordinate with the largest first harmonic.
-fn with_largest_first_harmonic(harmonics: &[Harmonics]) -> usize {
-    let size = |place: &usize| harmonics[*place].cosines[1].hypot(harmonics[*place].sines[1]);
-    let largest = (0..harmonics.len()).max_by(|one, other| size(one).total_cmp(&size(other)));
-    largest.unwrap_or(0)
 }
 
 /// The harmonics of samples of one period, without trailing ones that have no significant digits

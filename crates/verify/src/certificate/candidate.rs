@@ -100,14 +100,10 @@ pub enum NotCertified {
     )]
     NotSettled,
     /// Coupled equations without a drive, a motion of which comes to rest.
-    #[error(
-        "the motion from rest at {0} comes to rest: it leads to no limit cycle"
-    )]
+    #[error("the motion from rest at {0} comes to rest: it leads to no limit cycle")]
     ComesToRest(String),
     /// Coupled equations without a drive, a motion of which grows without end.
-    #[error(
-        "the motion from rest at {0} runs away, or to where the equations have no value"
-    )]
+    #[error("the motion from rest at {0} runs away, or to where the equations have no value")]
     RunsAway(String),
     /// Coupled equations without a drive, a motion of which is not periodic at the end.
     #[error(

@@ -23,7 +23,9 @@
 //! ```
 //!
 //! The right side is Gelfand's formula; the trace is a sum of 2 N powers. The motion attracts if
-//! rho is below one, and is unstable if it is above.
+//! rho is below one, and is unstable if it is above. What is known of M is lost the sooner the
+//! larger its norm beside rho: mostly six digits of rho or more are left, of a matrix that is far
+//! from normal or without a basis of eigenvectors some three.
 //!
 //! A limit cycle has the multiplier one with the eigenvector `w = (X', z)`, and
 //! `z = X'' + p g(X) X' = -p^2 h(X)`, at theta = 0. With a unit vector e, `M - w e^T/(e^T w)` has
@@ -76,14 +78,10 @@ const STEPS_OF_HARMONIC: usize = 16;
 const MOST_STEPS: usize = 20_000;
 
 /// Largest number of steps of a period times the cube of the number of coordinates.
-const MOST_PRODUCTS: f64 = 200_000.0;
+const MOST_PRODUCTS: f64 = 400_000.0;
 
 /// Binary digits of the coefficients: only stability has to be decided.
 const DIGITS: i32 = 90;
-
-/// Binary digits of the coefficients of several coordinates, whose steps take longer: the fewer
-/// there are, the fewer harmonics and steps.
-const DIGITS_OF_SEVERAL: i32 = 60;
 
 /// Enclosed Floquet multipliers of a driven motion, over the period of the certificate.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,8 +185,8 @@ pub(super) fn stability(problem: &DampedProblem, radius: Bound) -> Stability {
 
 /// The largest modulus of the multipliers, of a limit cycle without the one along the motion.
 fn spectral_radius_of(problem: &DampedProblem, radius: Bound) -> Option<SizeBounds> {
-    let [damping, stiffness] = problem.variational(DIGITS_OF_SEVERAL, radius)?;
-    let mut monodromy = Monodromy::new([&damping, &stiffness], DIGITS_OF_SEVERAL)?;
+    let [damping, stiffness] = problem.variational(DIGITS, radius)?;
+    let mut monodromy = Monodromy::new([&damping, &stiffness])?;
     if problem.is_free() {
         let [velocities, forces] = problem.rates_at_zero(radius)?;
         monodromy.deflate(&velocities, &forces)?;
@@ -245,7 +243,7 @@ pub(super) fn multipliers(problem: &DampedProblem, radius: Bound) -> Option<Mult
     let mut exponent = WORKING.scaled(&WORKING.product(&WORKING.pi(), &mean.cosine(0)), -2);
     exponent.radius += mean.tail * Bound::exactly(TURN);
     let determinant = FourierSeries::constant(exponent).exponential()?.at_zero();
-    let trace = trace(&Monodromy::new([&damping, &stiffness], DIGITS)?.matrix);
+    let trace = trace(&Monodromy::new([&damping, &stiffness])?.matrix);
     let trace = WORKING.converted(&trace, BALLS);
     let edge = WORKING.sum(&WORKING.integer(1), &determinant);
     let [least, least_trace, least_edge] =
@@ -402,12 +400,11 @@ struct Monodromy {
 }
 
 impl Monodromy {
-    /// The fundamental matrix from so many binary digits of G and H; `None` if these turn too fast,
-    /// or are too many.
-    fn new([damping, stiffness]: [&SeriesMatrix; 2], digits: i32) -> Option<Self> {
+    /// The fundamental matrix; `None` if the coefficients turn too fast, or are too many.
+    fn new([damping, stiffness]: [&SeriesMatrix; 2]) -> Option<Self> {
         let count = damping.len();
         let [damping, stiffness] = [damping, stiffness].map(|matrix| -> SeriesMatrix {
-            let short = |series: &FourierSeries| series.clone().shortened(digits);
+            let short = |series: &FourierSeries| series.clone().shortened(DIGITS);
             matrix.iter().map(|row| row.iter().map(short).collect()).collect()
         });
         // z is counted in units of 2^unit, so that both halves have about the same norm.
@@ -554,7 +551,7 @@ mod tests {
     /// The trace of the fundamental matrix of one coordinate.
     fn trace_of(damping: FourierSeries, stiffness: FourierSeries) -> Ball {
         let [damping, stiffness] = [damping, stiffness].map(|series| vec![vec![series]]);
-        let found = Monodromy::new([&damping, &stiffness], DIGITS).expect("a matrix");
+        let found = Monodromy::new([&damping, &stiffness]).expect("a matrix");
         WORKING.converted(&trace(&found.matrix), BALLS)
     }
 
@@ -750,5 +747,140 @@ mod tests {
         undamped.damping = crate::expr::Expr::zero();
         let found = multipliers(&undamped.problem(), Bound::ZERO).expect("multipliers");
         assert_eq!(found.attracts, None, "{found:?}");
+    }
+
+    /// A matrix of fractions.
+    fn of_fractions(rows: &[&[(i64, i64)]]) -> Matrix {
+        let entry =
+            |(top, bottom): &(i64, i64)| BALLS.fraction(&crate::exact::ratio(*top, *bottom));
+        rows.iter().map(|row| row.iter().map(entry).collect()).collect()
+    }
+
+    /// Whether the ends hold a number, and are as near to it as this.
+    fn hold(ends: SizeBounds, number: f64, near: f64) -> bool {
+        let rounding = number * 4.0 * f64::EPSILON;
+        ends.lower <= number + rounding
+            && number <= ends.upper + rounding
+            && ends.upper - ends.lower <= near
+    }
+
+    #[test]
+    fn the_spectral_radius_is_that_of_eigenvalues_in_closed_form() {
+        // Distinct eigenvalues; a rotation by an angle of which no power is the identity; one of
+        // the modulus one; two of opposite sign, whose odd traces cancel; a defective matrix; and one
+        // far from normal.
+        let cases: [(&[&[(i64, i64)]], f64); 7] = [
+            (&[&[(1, 2), (7, 1)], &[(0, 1), (-3, 4)]], 0.75),
+            (&[&[(3, 5), (-1, 2)], &[(1, 2), (3, 5)]], (0.36_f64 + 0.25).sqrt()),
+            (&[&[(3, 5), (-4, 5)], &[(4, 5), (3, 5)]], 1.0),
+            (&[&[(0, 1), (2, 1)], &[(1, 8), (0, 1)]], 0.5),
+            (
+                &[
+                    &[(9, 10), (1, 1), (0, 1)],
+                    &[(0, 1), (9, 10), (1, 1)],
+                    &[(0, 1), (0, 1), (9, 10)],
+                ],
+                0.9,
+            ),
+            (&[&[(101, 100), (1, 1)], &[(0, 1), (101, 100)]], 1.01),
+            (&[&[(0, 1), (1000, 1)], &[(1, 1_000_000_000), (1, 1000)]], {
+                let [sum, product] = [1e-3_f64, -1e-6];
+                (sum + (sum * sum - 4.0 * product).sqrt()) / 2.0
+            }),
+        ];
+        for (rows, expected) in cases {
+            let found = spectral_radius(of_fractions(rows)).expect("two ends");
+            assert!(hold(found, expected, 1e-8 * expected), "{rows:?}: {found:?}, {expected}");
+        }
+        // Every power from the second on vanishes.
+        let nilpotent = spectral_radius(of_fractions(&[&[(0, 1), (5, 1)], &[(0, 1), (0, 1)]]));
+        assert!(nilpotent.is_some_and(|ends| ends.lower == 0.0 && ends.upper <= 5.0));
+        // A circle about the unit circle of which the entries are not known.
+        let mut wide = of_fractions(&[&[(99, 100), (0, 1)], &[(0, 1), (1, 2)]]);
+        wide[0][0].radius = Bound::exactly(0.02);
+        let found = spectral_radius(wide.clone()).expect("two ends");
+        assert!(found.lower < 0.98 && found.upper > 1.009, "{found:?}");
+        assert_eq!(Stability::from_largest(found).attracts, None);
+        wide[1][0].radius = Bound::UNKNOWN;
+        assert_eq!(spectral_radius(wide), None);
+    }
+
+    /// A limit cycle of van der Pol's equation at this mu.
+    fn cycle(mu: &str) -> super::super::DampedCertificate {
+        let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x + x^2/9 = 0");
+        let oscillator = oscillator.expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        let at = format!("mu = {mu}").parse().expect("values");
+        crate::certificate::certify_cycle_motion(&oscillator, &solution, &at)
+            .expect("a certificate")
+            .0
+    }
+
+    #[test]
+    fn without_the_multiplier_along_a_cycle_there_is_that_of_liouville() {
+        for mu in ["1/10", "1/2", "1"] {
+            let certificate = cycle(mu);
+            let proved = check_damped(&certificate).expect("a proof");
+            let liouville = proved.stability.expect("a stability");
+            assert_eq!(liouville.attracts, Some(true));
+            let by_powers = stability(&certificate.problem(), proved.proof.radius);
+            assert_eq!(by_powers.attracts, Some(true), "{mu}: {by_powers:?}");
+            let [own, other] = [&liouville, &by_powers].map(|own| own.largest.expect("two ends"));
+            assert!(own.lower <= other.upper && other.lower <= own.upper, "{own:?}, {other:?}");
+            // The matrix without the multiplier one is far from normal where the other is small.
+            assert!(other.upper - other.lower < 0.01 * own.upper, "{mu}: {own:?}, {other:?}");
+            assert!(own.upper - own.lower < 1e-15);
+        }
+    }
+
+    #[test]
+    fn velocities_of_a_cycle_are_within_their_bounds_of_all_motions_nearby() {
+        let certificate = cycle("1");
+        let exact = certificate.problem().rates_at_zero(Bound::ZERO).expect("values");
+        for harmonic in [1, 2, 5, 9, 16] {
+            for is_sine in [false, true] {
+                let mut moved = certificate.clone();
+                let list = if is_sine { &mut moved.sines } else { &mut moved.cosines };
+                list[harmonic] += crate::exact::Integer::from(1) << (moved.bits - 20);
+                // The motion is within this distance of the moved one.
+                let apart = Bound::power_of_two(-20);
+                let found = moved.problem().rates_at_zero(apart).expect("values");
+                let mut least = f64::INFINITY;
+                for (found, exact) in found.iter().flatten().zip(exact.iter().flatten()) {
+                    let apart = WORKING.difference(found, exact);
+                    let distance = WORKING.size_of_middle(&apart);
+                    assert!(distance <= found.radius, "{harmonic}: {distance:?}, {found:?}");
+                    least = least.min(found.radius.value());
+                }
+                assert!(least < 1e-3, "{least}");
+            }
+        }
+        let mut moved = certificate.clone();
+        moved.reciprocal += crate::exact::Integer::from(1) << (moved.bits - 20);
+        let apart = Bound::power_of_two(moved.sigma - 20);
+        let found = moved.problem().rates_at_zero(apart).expect("values");
+        for (found, exact) in found.iter().flatten().zip(exact.iter().flatten()) {
+            let apart = WORKING.difference(found, exact);
+            assert!(WORKING.size_of_middle(&apart) <= found.radius);
+        }
+    }
+
+    #[test]
+    fn of_one_driven_coordinate_both_ways_agree() {
+        let equation = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a solution");
+        for at in ["F = 1/2, Omega = 3/2", "F = 1/10, Omega = 1"] {
+            let at = at.parse().expect("values");
+            let (certificate, proved) =
+                certify_driven(&oscillator, &solution, &at).expect("a certificate");
+            let by_trace = proved.stability.expect("a stability").largest.expect("two ends");
+            let by_powers = stability(&certificate.problem(), proved.proof.radius);
+            let by_powers = by_powers.largest.expect("two ends");
+            assert!(
+                hold(by_powers, 0.5 * (by_trace.lower + by_trace.upper), 1e-9),
+                "{by_powers:?}"
+            );
+        }
     }
 }

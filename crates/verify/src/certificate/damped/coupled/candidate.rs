@@ -291,10 +291,11 @@ impl Flow {
 
     /// The state at rest at a start; where it has no value, at another displacement by place.
     fn state(&self, Start(start): &Start, otherwise: &dyn Fn(usize) -> f64) -> Vec<f64> {
-        let places = self.coordinates.iter().enumerate().map(|(place, name)| match start.get(name) {
-            None if start.is_empty() => otherwise(place),
-            value => value.copied().unwrap_or(0.0),
-        });
+        let places =
+            self.coordinates.iter().enumerate().map(|(place, name)| match start.get(name) {
+                None if start.is_empty() => otherwise(place),
+                value => value.copied().unwrap_or(0.0),
+            });
         let mut state: Vec<f64> = places.collect();
         state.resize(self.states, 0.0);
         state
@@ -386,9 +387,10 @@ impl Flow {
             travel = extent(most);
             let mut highest = turns(most).filter(|turn| !turn.rising).map(|turn| &turn.state);
             let Some(last) = highest.next().filter(|_| travel > REST * first) else { continue };
-            let speeds = self.velocities.iter().flat_map(|velocity| {
-                turns(most).map(move |turn| turn.state.y[*velocity].abs())
-            });
+            let speeds = self
+                .velocities
+                .iter()
+                .flat_map(|velocity| turns(most).map(move |turn| turn.state.y[*velocity].abs()));
             let size = speeds.fold(travel, f64::max);
             let enough = size * SETTLED[usize::from(piece == PIECES)];
             if let Some(before) = highest.find(|before| distance(&before.y, &last.y) < enough) {

@@ -843,7 +843,7 @@ impl<'a> DampedBoundData<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::candidate::{certify_cycle, certify_driven, proved_by_some_block};
-    use super::super::coupled::tests::{POTENTIAL_DAMPING, certified};
+    use super::super::coupled::tests::{CYCLE_OF_MASSES, POTENTIAL_DAMPING, certified};
     use super::super::{CoupledCertificate, DampedCertificate, check_damped};
     use super::*;
     use crate::exact::ratio;
@@ -906,6 +906,11 @@ mod tests {
     /// A driven motion of two coordinates, whose dampings depend on both.
     fn coupled() -> CoupledCertificate {
         certified(POTENTIAL_DAMPING, "Omega = 4/5").0
+    }
+
+    /// A limit cycle of two coordinates likewise.
+    fn coupled_cycle() -> CoupledCertificate {
+        certified(CYCLE_OF_MASSES, "").0
     }
 
     #[test]
@@ -1087,13 +1092,14 @@ mod tests {
                 columns_are_bounded(certificate.problem(), is_proved);
             }
         }
-        let sound = coupled();
-        let mut spoilt = sound.clone();
-        for row in &mut spoilt.inverse {
-            row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+        for sound in [coupled(), coupled_cycle()] {
+            let mut spoilt = sound.clone();
+            for row in &mut spoilt.inverse {
+                row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+            }
+            columns_are_bounded(sound.problem(), true);
+            columns_are_bounded(spoilt.problem(), false);
         }
-        columns_are_bounded(sound.problem(), true);
-        columns_are_bounded(spoilt.problem(), false);
     }
 
     fn columns_are_bounded(problem: DampedProblem, is_proved: bool) {
@@ -1158,6 +1164,7 @@ mod tests {
         second_derivative_is_bounded(skew().problem());
         second_derivative_is_bounded(driven().problem());
         second_derivative_is_bounded(coupled().problem());
+        second_derivative_is_bounded(coupled_cycle().problem());
     }
 
     fn second_derivative_is_bounded(problem: DampedProblem) {

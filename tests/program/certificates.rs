@@ -686,9 +686,15 @@ fn a_second_program_in_python_proves_the_same() {
                         2*y'' + y'/5 + x'/20 + y^2*y'/10 + 3*y - x + x*y/10 = x*sin(w*t)/20";
             let pendulums = "x'' + x'/5 + sin(x) + (x - y)/3 = cos(w*t)/2; \
                              y'' + y'/5 + 2*sin(y) + (y - x)/3 = 0";
+            let parametric = "x'' + x'/10 + (1 + cos(2*t)/2)*x + x^3/5 + (x - y)/9 = 0; \
+                              y'' + y'/20 + 2*y + (y - x)/9 = 0";
             proved(
                 "python-driven-of-several",
-                &[&[skew, "--at", "w=4/5"], &[pendulums, "--at", "w=7/10"]],
+                &[
+                    &[skew, "--at", "w=4/5"],
+                    &[pendulums, "--at", "w=7/10"],
+                    &[parametric, "--at", "x=1"],
+                ],
                 &of_several,
                 &of_several_driven,
             );

@@ -96,7 +96,7 @@ pub enum NotCertified {
     NoParameter(String),
     /// A motion from rest that does not come to one of the period of the drive.
     #[error(
-        "the motion from rest does not come to one that repeats itself with the drive in 400 of its periods"
+        "the motion from rest does not come in 1000 periods of the drive to one that repeats itself after one of them, or a few"
     )]
     NotSettled,
     /// Coupled equations without a drive, a motion of which comes to rest.
@@ -216,7 +216,7 @@ impl NotCertified {
             Self::WaveAsCoordinate(_) => "give the coordinate another name",
             Self::NoValueOf(name) => return Some(format!("add --at {name}=...")),
             Self::NotSettled => {
-                "more damping, or another frequency: `simulate` shows the motion, `response` finds those that repeat themselves"
+                "more damping, another frequency, or another start by values of the coordinates, --at x=2; `response` finds motions that repeat themselves"
             }
             Self::ComesToRest(_) | Self::RunsAway(_) | Self::NoCycle(_) => {
                 "values of the coordinates are another start, --at x=2; `response` finds the limit cycles of a range in numbers"

@@ -3,7 +3,7 @@
 //! trusts nothing here.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
@@ -89,17 +89,25 @@ pub fn certify_coupled(
         return Err(NotCertified::DampingOfNoFunction);
     }
     let flow = Flow::new(equations, &rates)?;
-    let truth = match &certificate.drive {
+    let truth = match &mut certificate.drive {
         Some(drive) => {
             let state = flow.state(&start, &|_| 0.0);
-            harmonics(&flow.settled(state, to_f64(&drive.frequency))?)
+            let SteadyMotion { periods, samples, change } =
+                flow.settled(state, to_f64(&drive.frequency))?;
+            let found = harmonics(&samples, change);
+            drive.periods = periods;
+            // Of a motion of the period of the drive it is the first, of another the largest one.
+            if periods > 1 {
+                drive.harmonic = largest_harmonic(&found);
+            }
+            found
         }
         None => {
             let state = flow.state(&start, &|place| 0.1 / (place + 1) as f64);
-            let OnePeriod { period, samples } =
+            let OnePeriod { period, samples, change } =
                 flow.cycle(state).map_err(|reason| reason.of_motion_from(&start))?;
             certificate.reciprocal = units(period / TAU, BITS);
-            let found = harmonics(&samples);
+            let found = harmonics(&samples, change);
             certificate.phase = place_of_largest(found.len(), &|place| {
                 found[place].cosines[1].hypot(found[place].sines[1])
             });
@@ -245,7 +253,22 @@ struct OnePeriod {
     period: f64,
     /// The places of all coordinates at equal steps.
     samples: Vec<Vec<f64>>,
+    /// By how much the states at both ends differ, beside the size of the motion.
+    change: f64,
 }
+
+/// One period of a driven motion.
+struct SteadyMotion {
+    /// The number of periods of the drive in it.
+    periods: usize,
+    /// The places of all coordinates at equal steps.
+    samples: Vec<Vec<f64>>,
+    /// By how much the states at both ends differ, beside the largest.
+    change: f64,
+}
+
+/// The largest number of periods of the drive in one of the motion that is looked for.
+const MOST_PERIODS: usize = 6;
 
 /// Number of samples of a period.
 const SAMPLES: usize = 1024;
@@ -301,11 +324,11 @@ impl Flow {
         state
     }
 
-    /// The places of all coordinates at equal steps of one period of the drive, from a multiple of
-    /// the period on, of the motion from a state.
-    fn settled(&self, mut state: Vec<f64>, frequency: f64) -> Result<Vec<Vec<f64>>, NotCertified> {
+    /// The motion to which that from a state at t = 0 comes, over its period of some periods of the
+    /// drive, from a multiple of that on.
+    fn settled(&self, mut state: Vec<f64>, frequency: f64) -> Result<SteadyMotion, NotCertified> {
         /// The largest number of periods.
-        const PERIODS: usize = 400;
+        const PERIODS: usize = 1000;
         let field = |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| self.rates(t, state, rates);
         let options = IntegrationOptions { maximum_steps: 20_000, ..IntegrationOptions::default() };
         let period = TAU / frequency;
@@ -313,27 +336,39 @@ impl Flow {
             let start = Point { t: period * part[0], y: state };
             end_values(field, start, period * part[1], &options).ok_or(NotCertified::NotSettled)
         };
-        let mut left = f64::INFINITY;
+        // The last states, the latest first, and the least number of periods after which the last of
+        // them is nearly there again.
+        let mut before = VecDeque::new();
+        let mut found = None;
         for _ in 0..PERIODS {
             let next = after(state.clone(), [0.0, 1.0])?;
-            let apart = distance(&state, &next);
+            before.push_front(state);
+            before.truncate(MOST_PERIODS);
             let size = largest_of(&next);
-            (state, left) = (next, apart / size);
-            if left < SETTLED[0] {
+            // Rest does not change, and has no size.
+            let change = |other: &Vec<f64>| match distance(other, &next) {
+                0.0 => 0.0,
+                apart => apart / size,
+            };
+            // A quotient that is no number has not settled either.
+            let changes = before.iter().map(change).enumerate();
+            found = { changes }.find(|(_, change)| *change <= SETTLED[1]);
+            state = next;
+            if found.is_some_and(|(_, change)| change < SETTLED[0]) {
                 break;
             }
         }
-        // A quotient that is no number has not settled either.
-        if left.is_nan() || left > SETTLED[1] {
+        let Some((less, change)) = found else {
             return Err(NotCertified::NotSettled);
-        }
+        };
+        let periods = less + 1;
         let mut samples = vec![];
         for index in 0..SAMPLES {
             samples.push(state[..self.velocities.len()].to_vec());
-            let part = |index: usize| index as f64 / SAMPLES as f64;
+            let part = |index: usize| (index * periods) as f64 / SAMPLES as f64;
             state = after(state, [part(index), part(index + 1)])?;
         }
-        Ok(samples)
+        Ok(SteadyMotion { periods, samples, change })
     }
 
     /// One period of the limit cycle to which the motion from a state comes. It is seen where the
@@ -395,12 +430,14 @@ impl Flow {
             let enough = size * SETTLED[usize::from(piece == PIECES)];
             if let Some(before) = highest.find(|before| distance(&before.y, &last.y) < enough) {
                 let period = last.t - before.t;
+                let change = distance(&before.y, &last.y) / size;
                 let sample = |index: usize| {
                     let state = path.state_at(before.t + period * index as f64 / SAMPLES as f64)?;
                     Some(state.y[..self.coordinates.len()].to_vec())
                 };
                 let samples: Option<_> = (0..SAMPLES).map(sample).collect();
-                return Ok(OnePeriod { period, samples: samples.ok_or(NoCycle::Irregular)? });
+                let samples = samples.ok_or(NoCycle::Irregular)?;
+                return Ok(OnePeriod { period, samples, change });
             }
         }
         match travel > REST * first {
@@ -419,6 +456,16 @@ fn largest_of(values: &[f64]) -> f64 {
     values.iter().fold(0.0, larger)
 }
 
+/// The harmonic that is largest, all coordinates together.
+fn largest_harmonic(harmonics: &[Harmonics]) -> usize {
+    let entry = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+    let size = |k: usize| -> f64 {
+        harmonics.iter().map(|own| entry(&own.cosines, k).hypot(entry(&own.sines, k))).sum()
+    };
+    let last = harmonics.iter().map(|own| own.cosines.len()).max().unwrap_or(0);
+    place_of_largest(last.max(2) - 1, &|place| size(place + 1)) + 1
+}
+
 /// The first place of those with nearly the largest size.
 fn place_of_largest(count: usize, size: &dyn Fn(usize) -> f64) -> usize {
     const NEARLY: f64 = 1.0 - 1e-6;
@@ -432,11 +479,10 @@ fn distance(one: &[f64], other: &[f64]) -> f64 {
 }
 
 /// The harmonics of samples of one period, without trailing ones that have no significant digits
-/// beside the largest of all coordinates.
-fn harmonics(samples: &[Vec<f64>]) -> Vec<Harmonics> {
-    /// The part of the largest harmonic below which those of a motion that is not quite settled have
-    /// no digits.
-    const ERROR: f64 = 1e-9;
+/// beside the largest of all coordinates: the ends of a motion that is not quite settled differ by a
+/// change, beside its size.
+fn harmonics(samples: &[Vec<f64>], change: f64) -> Vec<Harmonics> {
+    let error = change.max(SETTLED[0]);
     let transform = Transform::new(samples.len());
     let count = samples.first().map_or(0, Vec::len);
     let of_coordinate = |coordinate: usize| {
@@ -450,7 +496,7 @@ fn harmonics(samples: &[Vec<f64>]) -> Vec<Harmonics> {
     let sizes = all.iter().flat_map(|own| own.cosines.iter().chain(&own.sines));
     let largest = sizes.fold(0.0_f64, |most, value| most.max(value.abs()));
     for list in all.iter_mut().flat_map(|own| [&mut own.cosines, &mut own.sines]) {
-        while list.len() > 2 && list.last().is_some_and(|last| last.abs() <= ERROR * largest) {
+        while list.len() > 2 && list.last().is_some_and(|last| last.abs() <= error * largest) {
             list.pop();
         }
     }

@@ -69,12 +69,15 @@ fn a_linear_pair_has_the_amplitudes_of_its_complex_equations() {
 /// The states at some parts of a period of the drive, by Runge-Kutta of fourth order from the start
 /// of the certificate.
 fn followed(certificate: &CoupledCertificate, moved: f64) -> [Vec<f64>; 3] {
-    followed_from(certificate, (0, moved))
+    followed_from(certificate, (0, moved), 16_000)
 }
 
-/// The states likewise, one of the start moved.
-fn followed_from(certificate: &CoupledCertificate, (place, moved): (usize, f64)) -> [Vec<f64>; 3] {
-    const STEPS: usize = 16_000;
+/// The states likewise, one of the start moved, in so many steps.
+fn followed_from(
+    certificate: &CoupledCertificate,
+    (place, moved): (usize, f64),
+    steps: usize,
+) -> [Vec<f64>; 3] {
     let count = certificate.coordinates.len();
     let names: Vec<Symbol> =
         certificate.coordinates.iter().copied().chain([Symbol::new("t")]).collect();
@@ -101,9 +104,9 @@ fn followed_from(certificate: &CoupledCertificate, (place, moved): (usize, f64))
     state[place] += moved;
     let start = state.clone();
     let mut half = vec![];
-    let h = std::f64::consts::TAU / frequency / STEPS as f64;
-    for index in 0..STEPS {
-        if 2 * index == STEPS {
+    let h = std::f64::consts::TAU / frequency / steps as f64;
+    for index in 0..steps {
+        if 2 * index == steps {
             half = state.clone();
         }
         let t = h * index as f64;
@@ -147,6 +150,36 @@ fn a_motion_comes_back_after_the_period_of_the_drive() {
         let [start, _, end] = followed(&certificate, 1e-8);
         assert!(apart(&start, &end) > 1e-10, "{equations}");
     }
+}
+
+#[test]
+fn motions_of_several_periods_of_the_drive_come_back_after_all_of_them() {
+    let subharmonic =
+        "x'' + x'/20 + x + x^3/5 + (x - y)/9 = 8*cos(18*t/5); y'' + y'/20 + 2*y + (y - x)/9 = 0";
+    let parametric = "x'' + x'/10 + (1 + cos(2*t)/2)*x + x^3/5 + (x - y)/9 = 0; \
+                      y'' + y'/20 + 2*y + (y - x)/9 = 0";
+    for (equations, at, periods, harmonic) in
+        [(subharmonic, "x = 1", 3, 1), (subharmonic, "x = 4", 1, 1), (parametric, "x = 1", 2, 1)]
+    {
+        let (certificate, proved) = certified(equations, at);
+        let drive = certificate.drive.as_ref().expect("a drive");
+        assert_eq!((drive.periods, drive.harmonic), (periods, harmonic), "{equations}, {at}");
+        let [start, half, end] = followed(&certificate, 0.0);
+        assert!(apart(&start, &end) < 1e-10, "{equations}: {start:?}, {end:?}");
+        assert!(apart(&start, &half) > 0.1, "{equations}");
+        let expected = to_f64(&drive.frequency) / periods as f64;
+        assert!((to_f64(&proved.frequency.middle) - expected).abs() < 1e-14);
+        // The harmonics that repeat themselves with the drive are not all.
+        let motion = &certificate.motions()[0];
+        let own = WORKING.nearest(&motion.cosine(1)).hypot(WORKING.nearest(&motion.sine(1)));
+        assert!((to_f64(&proved.amplitudes[0].middle) - own).abs() < 1e-13 && own > 0.5);
+        let multipliers = multipliers(&certificate);
+        let largest = multipliers.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        holds_largest(&proved, largest, equations);
+    }
+    // From rest parametric excitation leads nowhere.
+    let (_, at_rest) = certified(parametric, "");
+    assert!(at_rest.stability.is_some_and(|stability| stability.attracts == Some(false)));
 }
 
 #[test]
@@ -327,10 +360,11 @@ fn holds_largest(proved: &Certified, largest: f64, equations: &str) {
 /// The Floquet multipliers by central differences of motions in doubles.
 fn multipliers(certificate: &CoupledCertificate) -> Vec<nalgebra::Complex<f64>> {
     const STEP: f64 = 1e-4;
+    const STEPS: usize = 1_000;
     let states = 2 * certificate.coordinates.len();
     let ends: Vec<[Vec<f64>; 2]> = (0..states)
         .map(|state| {
-            [STEP, -STEP].map(|moved| followed_from(certificate, (state, moved))[2].clone())
+            [STEP, -STEP].map(|moved| followed_from(certificate, (state, moved), STEPS)[2].clone())
         })
         .collect();
     let matrix = nalgebra::DMatrix::from_fn(states, states, |row, column| {

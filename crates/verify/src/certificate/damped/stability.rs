@@ -52,6 +52,8 @@
 //! R. A. Horn, C. R. Johnson: Matrix Analysis, Cambridge 2013, section 5.6 (Gelfand's formula) and
 //! 1.2 (deflation).
 
+use std::f64::consts::TAU;
+
 use num_traits::Signed as _;
 
 use super::super::CheckError;
@@ -71,7 +73,8 @@ const BALLS: Balls = Balls { bits: 120 };
 /// The degree of the Taylor polynomials.
 const DEGREE: usize = 20;
 
-/// Steps of a period, for each harmonic of the coefficients: `K h` is below 0.4.
+/// Steps of a period, for each harmonic of the coefficients: `K h` is below 0.4. Of several
+/// coordinates there are fewer where the last harmonics are small.
 const STEPS_OF_HARMONIC: usize = 16;
 
 /// The largest number of steps of a period.
@@ -288,6 +291,44 @@ fn largest(product: &Ball, sum: &Ball) -> Option<Ball> {
     }
 }
 
+/// The size of each harmonic in the coefficients, in doubles.
+fn sizes_of_harmonics(matrices: [&SeriesMatrix; 2], harmonics: usize, unit: i32) -> Vec<f64> {
+    let scales = [1.0, 2.0_f64.powi(-unit)];
+    let size = |k: usize| {
+        let own = |series: &FourierSeries| {
+            let [a, b] = [series.cosine(k), series.sine(k)];
+            WORKING.magnitude(&a) + WORKING.magnitude(&b)
+        };
+        let of_matrix =
+            |(matrix, scale): (&SeriesMatrix, f64)| largest_row(matrix, own).value() * scale;
+        matrices.into_iter().zip(scales).map(of_matrix).fold(0.0, f64::max)
+    };
+    (0..harmonics).map(size).collect()
+}
+
+/// The number of steps of a turn in which the Taylor polynomials of coefficients with harmonics of
+/// these sizes leave out next to nothing, and in which no solution grows too much. A harmonic that
+/// is small need not be followed closely.
+fn enough_steps(sizes: &[f64], rate: f64) -> f64 {
+    /// A bound of what is left out, beside errors of the steps that no number of them makes smaller.
+    const NEXT_TO_NOTHING: f64 = 1e-29;
+    let left_out = |steps: f64| -> f64 {
+        let step = TAU / steps;
+        let power = |size: f64, turned: f64| {
+            (1..=DEGREE).fold(step * size, |part, n| part * turned * step / n as f64)
+        };
+        let of_coefficients: f64 =
+            sizes.iter().enumerate().map(|(k, size)| power(*size, k as f64)).sum();
+        of_coefficients + power(rate, rate)
+    };
+    // The growth in a step is at most 1/2, with some room for rounding.
+    let mut steps = (2.01 * TAU * rate).max(STEPS_OF_HARMONIC as f64);
+    while left_out(steps) > NEXT_TO_NOTHING && steps < MOST_STEPS as f64 {
+        steps *= 1.1;
+    }
+    steps
+}
+
 /// A coefficient of the variational equation, in short balls.
 struct Coefficient {
     cosines: Vec<Ball>,
@@ -417,11 +458,16 @@ impl Monodromy {
         let lengths = damping.iter().chain(&stiffness).flatten().map(FourierSeries::length);
         let harmonics = lengths.max().unwrap_or(0).max(1);
         let fastest = (harmonics as f64).max(rate.value()).ceil();
-        let steps = fastest * STEPS_OF_HARMONIC as f64;
-        if steps > MOST_STEPS as f64 || steps * (count as f64).powi(3) > MOST_PRODUCTS {
+        let mut steps = fastest * STEPS_OF_HARMONIC as f64;
+        if count > 1 {
+            // Each of them costs the cube of the number of coordinates.
+            let sizes = sizes_of_harmonics([&damping, &stiffness], harmonics, unit);
+            steps = steps.min(enough_steps(&sizes, rate.value()));
+        }
+        if !(steps <= MOST_STEPS as f64 && steps * (count as f64).powi(3) <= MOST_PRODUCTS) {
             return None;
         }
-        let half = (fastest as usize * STEPS_OF_HARMONIC).div_ceil(2);
+        let half = (steps.ceil() as usize).div_ceil(2);
         let table = waves(half, BALLS);
         let step = BALLS.divided(&BALLS.pi(), u32::try_from(half).ok()?);
         let width = BALLS.magnitude(&step);

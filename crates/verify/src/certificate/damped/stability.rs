@@ -464,7 +464,8 @@ impl Monodromy {
             let sizes = sizes_of_harmonics([&damping, &stiffness], harmonics, unit);
             steps = steps.min(enough_steps(&sizes, rate.value()));
         }
-        if !(steps <= MOST_STEPS as f64 && steps * (count as f64).powi(3) <= MOST_PRODUCTS) {
+        let fits = steps <= MOST_STEPS as f64 && steps * (count as f64).powi(3) <= MOST_PRODUCTS;
+        if !fits {
             return None;
         }
         let half = (steps.ceil() as usize).div_ceil(2);
@@ -795,8 +796,11 @@ mod tests {
         assert_eq!(found.attracts, None, "{found:?}");
     }
 
+    /// Fractions row by row, each as its numerator and its denominator.
+    type Fractions = &'static [&'static [(i64, i64)]];
+
     /// A matrix of fractions.
-    fn of_fractions(rows: &[&[(i64, i64)]]) -> Matrix {
+    fn of_fractions(rows: Fractions) -> Matrix {
         let entry =
             |(top, bottom): &(i64, i64)| BALLS.fraction(&crate::exact::ratio(*top, *bottom));
         rows.iter().map(|row| row.iter().map(entry).collect()).collect()
@@ -815,7 +819,7 @@ mod tests {
         // Distinct eigenvalues; a rotation by an angle of which no power is the identity; one of
         // the modulus one; two of opposite sign, whose odd traces cancel; a defective matrix; and one
         // far from normal.
-        let cases: [(&[&[(i64, i64)]], f64); 7] = [
+        let cases: [(Fractions, f64); 7] = [
             (&[&[(1, 2), (7, 1)], &[(0, 1), (-3, 4)]], 0.75),
             (&[&[(3, 5), (-1, 2)], &[(1, 2), (3, 5)]], (0.36_f64 + 0.25).sqrt()),
             (&[&[(3, 5), (-4, 5)], &[(4, 5), (3, 5)]], 1.0),

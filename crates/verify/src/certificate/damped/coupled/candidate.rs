@@ -307,7 +307,7 @@ impl Flow {
     }
 
     /// The rates of a state.
-    fn rates(&self, t: f64, state: &[f64], rates: &mut Vec<f64>) {
+    fn rates(&self, t: f64, state: &[f64], rates: &mut [f64]) {
         let arguments: Vec<f64> = state.iter().copied().chain([t]).collect();
         self.rates.call(&arguments, &mut self.scratch.borrow_mut(), rates);
     }
@@ -404,7 +404,8 @@ impl Flow {
                 path.stop_reason(),
                 StopReason::EndReached | StopReason::MaximumSteps { .. }
             );
-            if !is_followed || !(largest_of(&state) < AWAY * first) {
+            let size = largest_of(&state);
+            if !is_followed || size.is_nan() || size > AWAY * first {
                 return Err(NoCycle::Away);
             }
             // The last states where each coordinate turns, and the coordinate that moves most.

@@ -283,6 +283,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn damping_changes_with_the_sign_of_velocities() {
+        for (equations, expected) in [
+            ("x'' + x = y; y'' + y'^2*x + 2*y = x", false),
+            ("(1 + x^2)*x'' + x*x'^2 + 2*x - y = 0; y'' + 4*y - x = 0", false),
+            ("x'' + x'/5 + x = y; y'' + 2*y = x", true),
+            ("x'' + x = y; y'' = x'", true),
+            ("x'' + x + abs(x')*x'/9 = y; y'' + 2*y = x", true),
+        ] {
+            let parsed = CoupledEquations::parse(equations).expect("equations");
+            assert_eq!(parsed.has_damping(), Ok(expected), "{equations}");
+        }
+    }
+
+    #[test]
     fn orders_may_be_mixed_and_masses_coupled() {
         for (text, states, right) in [
             ("X' = -X + Y; Y' = X - X^3", "X Y", "-X + Y | X - X^3"),

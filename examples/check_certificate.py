@@ -1,9 +1,10 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
-A second program for the same theorems (docs/certificates.md), of motions that conserve energy, of one coordinate or several, limit cycles and
-driven motions, whose equations have polynomials, sin and cos. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
+A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, of one
+coordinate or several, whose equations have polynomials, sin and cos. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
 series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below
 and from above, after every claim of the file has been held against it, or says which inequality or claim does not hold."""
+import functools
 import heapq
 import json
 import re
@@ -19,6 +20,7 @@ SIZES = {"file": 16 << 20, "number": 200, "force": 2000, "list": 800, "block": 4
 LONGEST = 1600                              # no series has more harmonics: what is beyond is a part of its tail
 SECONDS = 120                               # a file may come from anybody
 MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
+CYCLES, ALL_DRIVEN = "q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"
 begun = time.monotonic()
 
 
@@ -156,10 +158,6 @@ def root(a):                                # of a positive number
 
 def at(u, k):
     return u[k] if k < len(u) else ZERO
-
-
-def coefficient(u, wave):
-    return at(u[wave[0]], wave[1])
 
 
 def trimmed(c, s, tail):
@@ -354,12 +352,6 @@ def read_force(value, letters, what):
     return parse("sin(x)" if value == "sin" else value, letters)
 
 
-def jet(tree, waves):
-    """f, f' and f'' by x, of series of the letters."""
-    f, (df,), ((ddf,),) = jets(tree, waves, ("x",))
-    return f, df, ddf
-
-
 def jets(tree, waves, names):
     """f, its first derivatives by these letters, and its second ones, of series of the letters."""
     kind, zero, places = tree[0], ([], [], 0), range(len(names))
@@ -442,16 +434,16 @@ def parity_by_parts(tree, turned):
     return (-1 if kind == "sin" else 1) if inner == -1 else 0
 
 
-def expanded(tree):
-    """The polynomial as a table of monomials; None where it is none, or too long."""
+def expanded(tree, atoms=False):
+    """The polynomial as a table of monomials; None where it is none, or too long. With atoms a sine and a cosine are letters."""
     kind = tree[0]
     if kind == "number":
         return {(): tree[1]} if tree[1] else {}
     if kind == "letter":
         return {((tree[1], 1),): Fraction(1)}
     if kind in ("sin", "cos"):
-        return None
-    parts = [expanded(part) for part in tree[1]] if kind in "+*" else [expanded(tree[1])] * tree[2]
+        return {((repr(tree), 1),): Fraction(1)} if atoms else None
+    parts = [expanded(part, atoms) for part in tree[1]] if kind in "+*" else [expanded(tree[1], atoms)] * tree[2]
     if any(part is None for part in parts):
         return None
     if kind == "+":
@@ -476,8 +468,33 @@ def expanded(tree):
     return total
 
 
-def is_mirror_image(g, h, turned):          # g even and h odd
-    return parity(g, turned) in (1, None) and parity(h, turned) in (-1, None)
+def is_mirror_image(g, h, turned):          # every g even and every h odd
+    return all(parity(tree, turned) in (1, None) for row in g for tree in row) and all(parity(tree, turned) in (-1, None) for tree in h)
+
+
+def slope(tree, name):
+    """The derivative by a letter."""
+    kind = tree[0]
+    if kind in ("number", "letter"):
+        return ("number", Fraction(1 if tree == ("letter", name) else 0))
+    if kind == "+":
+        return ("+", [slope(part, name) for part in tree[1]])
+    if kind == "*":
+        others = lambda place: tree[1][:place] + tree[1][place + 1:]
+        return ("+", [("*", [slope(part, name)] + others(place)) for place, part in enumerate(tree[1])])
+    inner = slope(tree[1], name)
+    if kind == "^":
+        return ("*", [("number", Fraction(tree[2])), ("^", tree[1], tree[2] - 1), inner]) if tree[2] else ("number", Fraction(0))
+    return ("*", [("cos", tree[1]), inner] if kind == "sin" else [("number", Fraction(-1)), ("sin", tree[1]), inner])
+
+
+def is_potential(row, names):               # the derivatives of one function: dg_j/dq_l = dg_l/dq_j
+    for j, one in enumerate(names):
+        for l in range(j):
+            apart = ("+", [slope(row[j], names[l]), ("*", [("number", Fraction(-1)), slope(row[l], one)])])
+            if expanded(apart, True) != {}:
+                return False
+    return True
 
 
 # What both theorems share.
@@ -607,55 +624,69 @@ def prove_motion(forces, names, condition, A, B, harmonics, odd, mu, X):
     return radius(Y0, Z1, curvature, lambda r: B.per_sigma(r) < mu[0] and r < largest_first)
 
 
-def prove_damped(g, h, waves, B, block, N, step, p, free):
-    """x'' + g(x) x' + h = 0, X(theta), p = 1/omega: -k^2 X_k + p D_k + p^2 h_k = 0, D = g(X) X'. Where p is free it has the place of
-    the sine of the first harmonic among the unknowns."""
-    X = waves["x"]
-    G, H = jet(g, waves), jet(h, waves)
-    D = times(G[0], derivative(X))
+def wave_of(X, wave):                       # the coefficient of a cosine or sine, kind 0 or 1, of a coordinate
+    i, kind, k = wave
+    return at(X[i][kind], k)
+
+
+def prove_damped(g, h, names, waves, B, block, N, step, p, phase):
+    """q'' + g(q) q' + h = 0, X(theta), p = 1/omega: -k^2 X_k + p D_k + p^2 h_k = 0, D = g(X) X'. One coordinate is one of several; phase
+    is the coordinate whose sine of the first harmonic p replaces among the unknowns, None where p is known."""
+    free, count = phase is not None, range(len(names))
+    X = [waves[name] for name in names]
+    jets_of = lambda trees, waves: [jets(tree, waves, names) for tree in trees]
+    G, H = [jets_of(row, waves) for row in g], jets_of(h, waves)
+    D = [functools.reduce(plus, (times(G[i][j][0], derivative(X[j])) for j in count)) for i in count]
+    F = [part[0] for part in H]
     p2 = mul(p, p)
     offset = 1 if free else 0               # unknowns that are no harmonics
     columns = [B.column(k) for k in range(B.size)]
     alpha = max(columns + [up(ONE, (N + 1) ** 2)])
-    beta = max([wave[1] * t for wave, t in zip(block, columns)] + [up(ONE, N + 1)])
+    beta = max([wave[2] * t for wave, t in zip(block, columns)] + [up(ONE, N + 1)])
     bounded = lambda t, e: up(t * e, ONE)
-    beyond = lambda end: [(kind, k) for k in range(N + step, end + 1, step) for kind in (0, 1)]
-    end = max(last(X), last(D), last(H[0]))
-    bent = lambda w: add(mul(p, coefficient(D, w)), mul(p2, coefficient(H[0], w)))
-    rows = [add(bent(w), scale(coefficient(X, w), -w[1] ** 2)) for w in block]
-    rest = [over(add(bent(w), scale(coefficient(X, w), -w[1] ** 2)), w[1] ** 2) for w in beyond(end)]
-    unseen = bounded(size(p), D[2]) + bounded(size(p2), H[0][2])
-    Y0 = B.norm(B.image(rows)) + sum(map(size, rest)) + bounded(alpha, unseen)
+    beyond = lambda end: [(i, kind, k) for i in count for k in range(N + step, end + 1, step) for kind in (0, 1)]
+    end = max(map(last, X + D + F))
+    bent = lambda w: add(mul(p, wave_of(D, w)), mul(p2, wave_of(F, w)))
+    own = lambda w: add(bent(w), scale(wave_of(X, w), -w[2] ** 2))
+    rest = [over(own(w), w[2] ** 2) for w in beyond(end)]
+    tails = lambda series: sum(u[2] for u in series)
+    unseen = bounded(size(p), tails(D)) + bounded(size(p2), tails(F))
+    Y0 = B.norm(B.image([own(w) for w in block])) + sum(map(size, rest)) + bounded(alpha, unseen)
     # Z1
     worst = 0
     if free:
-        by_p = lambda w: add(coefficient(D, w), scale(mul(p, coefficient(H[0], w)), 2))
-        tail = sum(size(over(by_p(w), w[1] ** 2)) for w in beyond(end))
-        unseen = bounded(alpha, D[2] + 2 * bounded(size(p), H[0][2]))
+        by_p = lambda w: add(wave_of(D, w), scale(mul(p, wave_of(F, w)), 2))
+        tail = sum(size(over(by_p(w), w[2] ** 2)) for w in beyond(end))
+        unseen = bounded(alpha, tails(D) + 2 * bounded(size(p), tails(F)))
         worst = B.per_sigma(B.norm(unit(B.image([by_p(w) for w in block]), 0)) + tail + unseen)
-    g0, h1 = (G[0][0], G[0][1], 0), (H[1][0], H[1][1], 0)
-    unseen = bounded(beta, bounded(size(p), G[0][2])) + bounded(alpha, bounded(size(p2), H[1][2]))
-    W = max(last(g0), last(h1))
+    bare = lambda u: (u[0], u[1], 0)
+    G0, H1 = [[bare(G[i][j][0]) for j in count] for i in count], [[bare(H[i][1][j]) for j in count] for i in count]
+    # Of a matrix of series the largest sum of a column.
+    column_norm = lambda entry, measure: max(sum(measure(entry(i, j)) for i in count) for j in count)
+    unseen = bounded(beta, bounded(size(p), column_norm(lambda i, j: G[i][j][0], lambda u: u[2])))
+    unseen += bounded(alpha, bounded(size(p2), column_norm(lambda i, j: H[i][1][j], lambda u: u[2])))
+    W = max(last(u) for matrix in (G0, H1) for row in matrix for u in row)
     places = {w: k for k, w in enumerate(block) if k >= offset}
-    j = min(k for _, k in block)
+    j = min(k for _, _, k in block)
+    far_g, far_h = column_norm(lambda i, j: G0[i][j], norm), column_norm(lambda i, j: H1[i][j], norm)
     while True:
-        for kind in (0, 1):
-            wave = (kind, j)
-            if wave == (1, 0) or (free and wave == (1, 1)):
+        for wave in ((i, kind, j) for i in count for kind in (0, 1)):
+            if wave[1:] == (1, 0) or (free and wave == (phase, 1, 1)):
                 continue
-            e = ([ZERO] * j + [(ONE, 0)], [], 0) if kind == 0 else ([], [ZERO] * j + [(ONE, 0)], 0)
-            drag, slope = derivative(times(g0, e, True)), times(h1, e, True)
-            moved = lambda w: add(mul(p, coefficient(drag, w)), mul(p2, coefficient(slope, w)))
-            tail = sum(size(over(moved(w), w[1] ** 2)) for w in beyond(j + W) if w[1] >= j - W)
+            e = ([ZERO] * j + [(ONE, 0)], [], 0) if wave[1] == 0 else ([], [ZERO] * j + [(ONE, 0)], 0)
+            drag = [derivative(times(G0[i][wave[0]], e, True)) for i in count]
+            bend = [times(H1[i][wave[0]], e, True) for i in count]
+            moved = lambda w: add(mul(p, wave_of(drag, w)), mul(p2, wave_of(bend, w)))
+            tail = sum(size(over(moved(w), w[2] ** 2)) for w in beyond(j + W) if w[2] >= j - W)
             if j > N + W:
                 worst = max(worst, tail)
                 continue
-            v = B.image([add(moved(w), (-w[1] ** 2 * ONE if w == wave else 0, 0)) for w in block])
+            v = B.image([add(moved(w), (-w[2] ** 2 * ONE if w == wave else 0, 0)) for w in block])
             worst = max(worst, B.norm(unit(v, places[wave]) if wave in places else v) + tail)
             demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
         if j > N + W:
             far = j + step - W
-            more = up(bounded(size(p), norm(g0)), far) + up(bounded(size(p2), norm(h1)), far * far)
+            more = up(bounded(size(p), far_g), far) + up(bounded(size(p2), far_h), far * far)
             if 5 * more < ONE or more < worst:
                 worst = max(worst, more)
                 break
@@ -664,17 +695,21 @@ def prove_damped(g, h, waves, B, block, N, step, p, free):
     Z1 = worst + unseen
 
     def curvature(R):
-        ball = dict(waves, x=widened(X, R))
-        (g_R, dg_R, _), (h_R, dh_R, ddh_R) = jet(g, ball), jet(h, ball)
+        ball = dict(waves, **{name: widened(u, R) for name, u in zip(names, X)})
+        G_R, H_R = [jets_of(row, ball) for row in g], jets_of(h, ball)
         most = size(p) + (B.per_sigma(R) if free else 0)
-        of_motion = bounded(beta, bounded(most, norm(dg_R))) + bounded(alpha, bounded(bounded(most, most), norm(ddh_R)))
+        sums = lambda part: sum(map(norm, part))
+        dg = max(sums(G_R[i][j][1][l] for i in count) for j in count for l in count)
+        ddh = max(sums(H_R[i][2][j][l] for i in count) for j in count for l in count)
+        of_motion = bounded(beta, bounded(most, dg)) + bounded(alpha, bounded(bounded(most, most), ddh))
         if not free:
             return of_motion
-        both = B.per_sigma(B.per_sigma(2 * bounded(alpha, norm(h_R))))
-        each = B.per_sigma(bounded(beta, norm(g_R)) + 2 * bounded(most, bounded(alpha, norm(dh_R))))
+        both = B.per_sigma(B.per_sigma(2 * bounded(alpha, sums(part[0] for part in H_R))))
+        g_R, dh_R = column_norm(lambda i, j: G_R[i][j][0], norm), column_norm(lambda i, j: H_R[i][1][j], norm)
+        each = B.per_sigma(bounded(beta, g_R) + 2 * bounded(most, bounded(alpha, dh_R)))
         return max(both, each, of_motion)
 
-    a1 = at(X[0], 1)
+    a1 = at(X[phase][0], 1) if free else None
     return radius(Y0, Z1, curvature, lambda r: not free or (B.per_sigma(r) < p[0] and r < a1[0]))
 
 
@@ -872,18 +907,23 @@ def check(text):
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1" and z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")
-    demand(kind in (MOTION, MODE, CYCLE, DRIVEN), "another equation")
-    own = {MOTION: {"f", "initial_displacement", "mu"}, MODE: {"f", "coordinates", "amplitude", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
-    keys(z, {"schema", "ode", "odd", "bits", "c", "highest_harmonic", "inverse_bits", "inverse", "sigma_log2", "nu", "claim_r"} | own, {"formula"}, "the file")
+    demand(kind in (MOTION, MODE, CYCLE, DRIVEN, CYCLES, ALL_DRIVEN), "another equation")
+    own = {MOTION: {"f", "initial_displacement", "mu"}, MODE: {"f", "coordinates", "amplitude", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"},
+           CYCLES: {"g", "h", "coordinates", "phase_of", "p", "s"}, ALL_DRIVEN: {"g", "h", "coordinates", "drive", "s"}}[kind]
+    own |= set() if kind == ALL_DRIVEN else {"sigma_log2"}
+    others = {"stability"} if kind not in (MOTION, MODE) else set()
+    others |= set() if kind in (CYCLES, ALL_DRIVEN) else {"formula"}
+    keys(z, {"schema", "ode", "odd", "bits", "c", "highest_harmonic", "inverse_bits", "inverse", "nu", "claim_r"} | own, others, "the file")
     N, odd = whole(z["highest_harmonic"], 1, 400, "highest_harmonic"), z["odd"]
     bits, inverse_bits = whole(z["bits"], 0, 224, "bits"), whole(z["inverse_bits"], 0, 224, "inverse_bits")
-    exponent = whole(z["sigma_log2"], -64, 64, "sigma_log2")
+    exponent = whole(z.get("sigma_log2", 0), -64, 64, "sigma_log2")
     demand(type(odd) is bool and (not odd or N % 2 == 1), "odd harmonics, and a block that ends with an even one")
     rows = z["inverse"]
     demand(isinstance(rows, list) and len(rows) <= SIZES["block"], "the size of the inverse")
     rows = [integers(row, "inverse") for row in rows]
     step, sigma = 2 if odd else 1, Fraction(2) ** exponent
-    lists = z["c"] if kind == MODE else [z["c"]]
+    several = kind in (MODE, CYCLES, ALL_DRIVEN)
+    lists = z["c"] if several else [z["c"]]
     demand(isinstance(lists, list) and len(lists) <= SIZES["coordinates"], "the number of coordinates")
     lists = [[dyadic(a, bits) for a in integers(c, "c")] for c in lists]
     demand(not odd or all(a == ZERO for c in lists for a in c[::2]), "even harmonics")
@@ -904,20 +944,26 @@ def check(text):
         r = prove_motion(forces, names, condition, A, B, harmonics, odd, mu, X)
         omega, copies = root(quotient((ONE, 0), (mu[0], B.per_sigma(r)))), X
     else:
-        free = kind == CYCLE
-        s = [dyadic(b, bits) for b in integers(z["s"], "s")]
-        demand(all(b == ZERO for b in s[:2 if free else 1]), "a sine of the first harmonic, or one of the constant")
-        demand(not odd or all(b == ZERO for b in s[::2]), "even harmonics")
-        g, h = read_force(z["g"], {"x"}, "g"), read_force(z["h"], {"x"} if free else {"x", "c", "s"}, "h")
-        block = [(part, k) for k in harmonics for part in (0, 1) if (part, k) != (1, 0)]
+        free = kind in (CYCLE, CYCLES)
+        names, g, h = read_damped(z, len(lists), several, free)
+        count, phase = range(len(names)), 0 if free else None
+        if kind == CYCLES:
+            demand(z["phase_of"] in names, "the name of a coordinate in phase_of")
+            phase = names.index(z["phase_of"])
+        sines = z["s"] if several else [z["s"]]
+        demand(isinstance(sines, list) and len(sines) == len(names), "the number of coordinates")
+        sines = [[dyadic(b, bits) for b in integers(s, "s")] for s in sines]
+        demand(all(b == ZERO for i, s in enumerate(sines) for b in s[:2 if i == phase else 1]), "a sine of the first harmonic, or one of the constant")
+        demand(not odd or all(b == ZERO for s in sines for b in s[::2]), "even harmonics")
+        block = [(i, kind, k) for i in count for k in harmonics for kind in (0, 1) if (kind, k) != (1, 0)]
         if free:
-            block = [(1, 1)] + [wave for wave in block if wave != (1, 1)]
+            block = [(phase, 1, 1)] + [wave for wave in block if wave != (phase, 1, 1)]
         demand(len(block) <= 401, "a block of more than 401 unknowns")
         demand(len(rows) == len(block) and all(len(row) == len(rows) for row in rows), "the size of the inverse")
-        X = (c, s, 0)
-        waves, periods = {"x": X}, 1
+        X = [(c, s, 0) for c, s in zip(lists, sines)]
+        waves, periods, harmonic = dict(zip(names, X)), 1, 1
         if free:
-            demand(at(c, 1)[0] > 0, "a first harmonic that is no positive cosine")
+            demand(at(X[phase][0], 1)[0] > 0, "a first harmonic that is no positive cosine")
             p, B = dyadic(integer(z["p"], "p"), bits), Block(rows, inverse_bits, sigma)
             demand(p[0] > 0, "1/omega is not positive")
         else:
@@ -929,32 +975,61 @@ def check(text):
             demand(frequency > 0 and exponent == 0, "a drive whose frequency is positive, and no weight")
             p, B = number(periods / frequency), Block(rows, inverse_bits, None)
             waves.update(c=([ZERO] * periods + [(ONE, 0)], [], 0), s=([], [ZERO] * periods + [(ONE, 0)], 0))
-        half = {"x", "c", "s"} if not free and periods % 2 == 1 else {"x"}
+        half = set(names) | ({"c", "s"} if not free and periods % 2 == 1 else set())
         demand(not odd or is_mirror_image(g, h, half), "the equation is not odd")
-        r = prove_damped(g, h, waves, B, block, N, step, p, free)
+        r = prove_damped(g, h, names, waves, B, block, N, step, p, phase)
         if free:
             omega = quotient((ONE, 0), (p[0], B.per_sigma(r)))
-        else:
-            amplitude = formula_amplitude(X, harmonic)
-            amplitude = amplitude[0], amplitude[1] + r
-        copies = [X]
+        if not free or several:
+            amplitudes = [(a[0], a[1] + r) for a in (formula_amplitude(u, harmonic) for u in X)]
+            amplitude = amplitudes[0]
+        copies = X
         if z.get("formula") is not None:
-            copies = symmetric_copies(X, g, h, free, periods, odd)
+            copies = symmetric_copies(X[0], g, h, free, periods, odd)
     # Rounding is another here than where the radius was claimed.
     demand(Fraction(r, ONE) <= claim(z["claim_r"], "claim_r") * (1 + Fraction(1, 1000)) + Fraction(1, 2**120), "a smaller radius is claimed")
     if z.get("formula") is not None:
         check_formula(z, kind, bits, copies, r, omega, amplitude, start)
-    return kind, r, omega or amplitude
+    proved = {"r": f"{up(r * 10 ** 40, ONE)}e-40"}
+    ends = lambda ball: [decimal(max(0, ball[0] - ball[1])), decimal(ball[0] + ball[1], 1)]
+    if omega:
+        proved["omega"] = ends(omega)
+    elif not several:
+        proved["amplitude"] = ends(amplitude)
+    if kind in (CYCLES, ALL_DRIVEN):
+        proved["amplitudes"] = list(map(ends, amplitudes))
+    return proved
+
+
+def read_damped(z, count, several, free):
+    """The names of the coordinates, the matrix g and the forces h."""
+    waves = set() if free else {"c", "s"}
+    if not several:
+        return ["x"], [[read_force(z["g"], {"x"}, "g")]], [read_force(z["h"], {"x"} | waves, "h")]
+    names, g, h = z["coordinates"], z["g"], z["h"]
+    read_names(names, count)
+    demand(not waves & set(names), "a coordinate with the name of a wave of the drive")
+    demand(all(isinstance(rows, list) and len(rows) == count for rows in (g, h)), "the number of coordinates")
+    demand(all(isinstance(row, list) and len(row) == count for row in g), "the number of coordinates")
+    demand(all(isinstance(text, str) for row in g + [h] for text in row), "a force in g or h")
+    g = [[parse(text, set(names)) for text in row] for row in g]
+    demand(all(is_potential(row, names) for row in g), "a row of g that is seen to be no derivative of one function")
+    return names, g, [parse(text, set(names) | waves) for text in h]
+
+
+def read_names(names, count):
+    demand(isinstance(names, list) and 0 < len(names) == count, "the number of coordinates")
+    for name in names:
+        known = isinstance(name, str) and len(name) <= SIZES["number"] and re.fullmatch("[A-Za-z]+", name, re.ASCII)
+        demand(known and name not in ("sin", "cos", "t", "pi"), "a coordinate that this program does not know")
+    demand(len(set(names)) == len(names), "two coordinates of one name")
 
 
 def read_mode(z, count):
     """The names of the coordinates, their forces, the condition and the amplitude."""
     names, texts, amplitude = z["coordinates"], z["f"], z["amplitude"]
-    demand(isinstance(names, list) and isinstance(texts, list) and 0 < len(names) == len(texts) == count, "the number of coordinates")
-    for name in names:
-        known = isinstance(name, str) and len(name) <= SIZES["number"] and re.fullmatch("[A-Za-z]+", name, re.ASCII)
-        demand(known and name not in ("sin", "cos", "t", "pi"), "a coordinate that this program does not know")
-    demand(len(set(names)) == len(names), "two coordinates of one name")
+    read_names(names, count)
+    demand(isinstance(texts, list) and len(texts) == count, "the number of coordinates")
     demand(all(isinstance(text, str) for text in texts), "a force in f")
     keys(amplitude, {"value", "start_of", "first_harmonic_of"}, set(), "amplitude")
     place, factors = amplitude["start_of"], amplitude["first_harmonic_of"]
@@ -998,10 +1073,8 @@ def decimal(x, up_to=0):                    # thirty-six decimals, rounded down 
 if __name__ == "__main__":
     try:
         with open(sys.argv[1], encoding="utf-8") as file:
-            kind, r, (middle, around) = check(file.read(SIZES["file"] + 1))
+            proved = check(file.read(SIZES["file"] + 1))
     except (NotProved, json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
         words = str(error) if isinstance(error, NotProved) else "no JSON"
         sys.exit(f"not proved: {words}")
-    name = "amplitude" if kind == DRIVEN else "omega"
-    ends = [decimal(max(0, middle - around)), decimal(middle + around, 1)]
-    print(json.dumps({"r": f"{up(r * 10 ** 40, ONE)}e-40", name: ends}))
+    print(json.dumps(proved))

@@ -10,7 +10,7 @@ use crate::export::json::{
     ModeCertificateDocument,
 };
 use crate::export::printable_in_line;
-use crate::expr::parse_expression;
+use crate::expr::{ExprError, parse_expression};
 use crate::method::with_resonance_at;
 use crate::problem::{Problem, ReadingCommand};
 use crate::report::{self, AnyCertificate, CertificateReport, CertifiedQuestion};
@@ -95,7 +95,8 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.question.problem)?;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Derive)? {
         let driven = equations.rates.right.iter().any(|rate| rate.contains(Symbol::new("t")));
-        return match driven {
+        let is_one = driven || is_of_cycle(arguments, &equations, &problem)?;
+        return match is_one {
             true => certified_coupled(arguments, &equations, &problem),
             false => certified_mode(arguments, equations, &problem),
         };
@@ -213,7 +214,26 @@ fn certified_mode(
     printed(&report, &arguments.common)
 }
 
-/// The proof of a steady motion of driven coordinates, that to which the motion from rest comes.
+/// Whether a limit cycle of coupled equations without a drive is asked for: they have damping, and
+/// neither a mode nor an amplitude is given.
+fn is_of_cycle(
+    arguments: &CertifyArguments,
+    equations: &CoupledEquations,
+    problem: &Problem,
+) -> Result<bool, Failure> {
+    let values = exact_values(&arguments.question.at, problem.values_of_motion())?;
+    let is_own = |name: Symbol| {
+        equations.parameters.contains(&name) || equations.coordinates.contains(&name)
+    };
+    let has_others = values.iter().flat_map(Values::iter).any(|(name, _)| !is_own(name));
+    let refused = |error| Failure::because(format!("{error}"));
+    Ok(arguments.mode.is_none()
+        && !has_others
+        && equations.has_damping().map_err(|error: ExprError| refused(error))?)
+}
+
+/// The proof of a steady motion of driven coordinates, that to which the motion from rest comes, or
+/// of a limit cycle of several coordinates.
 fn certified_coupled(
     arguments: &CertifyArguments,
     equations: &CoupledEquations,
@@ -232,7 +252,7 @@ fn certified_coupled(
     let given = given.into_iter().find(|(_, given)| *given).map(|(option, _)| option);
     if let Some(option) = given.or(question.of_one_coordinate()) {
         return Err(Failure::Usage(format!(
-            "{option}: of several driven coordinates the motion alone is proved, without a formula; values are given by --at"
+            "{option}: of several driven or self-excited coordinates the motion alone is proved, without a formula; values are given by --at"
         )));
     }
     let values = exact_values(&question.at, problem.values_of_motion())?.unwrap_or_default();
@@ -308,6 +328,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let tolerance = tolerance(&arguments.common);
     let (motion, damped, mode, coupled);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
+    let of_coupled = [json::EQUATIONS_OF_CYCLES, json::EQUATIONS_WITH_DRIVE];
     let (certificate, certified): (AnyCertificate, _) = if of_damped.contains(&ode.as_str()) {
         let document: DampedCertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
@@ -318,7 +339,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
         mode = document.read().map_err(|error| unread(&error))?;
         ((&mode).into(), certificate::check_mode(&mode))
-    } else if ode == json::EQUATIONS_WITH_DRIVE {
+    } else if of_coupled.contains(&ode.as_str()) {
         let document: CoupledCertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
         coupled = document.read().map_err(|error| unread(&error))?;

@@ -10,8 +10,8 @@ use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
     Certificate, Certified, CoupledCertificate, DampedCertificate, Enclosure, Errors,
-    JudgedFormula, ModeAmplitude, ModeCertificate, Multipliers, RangeEnd, SizeBounds, Validity,
-    coordinate,
+    JudgedFormula, ModeAmplitude, ModeCertificate, Multipliers, RangeEnd, SizeBounds, Stability,
+    Validity, coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
@@ -38,7 +38,7 @@ pub enum AnyCertificate<'a> {
     Damped(&'a DampedCertificate),
     /// The certificate of a free motion of several coordinates.
     Mode(&'a ModeCertificate),
-    /// The certificate of a driven motion of several coordinates.
+    /// The certificate of a limit cycle, or of a driven motion, of several coordinates.
     Coupled(&'a CoupledCertificate),
 }
 
@@ -73,8 +73,8 @@ pub enum CertifiedQuestion<'a> {
     Formula(&'a Solution, &'a Values),
     /// The normal modes of coupled equations, of which there is one.
     Mode(&'a NormalModes, &'a Values),
-    /// The steady motion of driven coordinates to which the motion from rest comes, without a
-    /// formula.
+    /// The steady motion of several coordinates to which the motion from rest comes, or the limit
+    /// cycle to which that from small displacements comes, without a formula.
     FromRest(&'a Values),
 }
 
@@ -166,14 +166,17 @@ impl AnyCertificate<'_> {
                 listed(&certificate.coordinates)
             ),
             Self::Coupled(certificate) => {
-                let (periods, part) = match certificate.drive.periods {
+                let names = listed(&certificate.coordinates);
+                let Some(drive) = &certificate.drive else {
+                    return format!("a limit cycle: ({names})(t) = X({omega}*t)");
+                };
+                let (periods, part) = match drive.periods {
                     1 => ("the drive".to_owned(), String::new()),
                     count => (format!("{count} periods of the drive"), format!("/{count}")),
                 };
                 format!(
-                    "periodic with {periods}, of the frequency {}: ({})(t) = X({omega}*t{part})",
-                    certificate.drive.frequency,
-                    listed(&certificate.coordinates),
+                    "periodic with {periods}, of the frequency {}: ({names})(t) = X({omega}*t{part})",
+                    drive.frequency,
                 )
             }
             Self::Damped(certificate) => match &certificate.drive {
@@ -201,8 +204,15 @@ impl AnyCertificate<'_> {
                 format!("pair (1/{omega}^2, X), X of odd cosines,")
             }
             Self::Mode(_) => format!("pair (1/{omega}^2, X), X of cosines,"),
-            Self::Coupled(certificate) if certificate.odd => "motion X of odd harmonics".to_owned(),
-            Self::Coupled(_) => "motion X".to_owned(),
+            Self::Coupled(certificate) => match (&certificate.drive, certificate.odd) {
+                (Some(_), false) => "motion X".to_owned(),
+                (Some(_), true) => "motion X of odd harmonics".to_owned(),
+                (None, odd) => format!(
+                    "pair (1/{omega}, X), {}the first of {} a cosine,",
+                    if odd { "X of odd harmonics and " } else { "" },
+                    certificate.coordinates[certificate.phase]
+                ),
+            },
             Self::Damped(certificate) => match (certificate.drive.is_some(), certificate.odd) {
                 (true, false) => "motion X".to_owned(),
                 (true, true) => "motion X of odd harmonics".to_owned(),
@@ -236,7 +246,7 @@ impl AnyCertificate<'_> {
         match self {
             Self::Motion(_) | Self::Mode(_) => None,
             Self::Damped(certificate) => certificate.drive.as_ref().map(|drive| drive.harmonic),
-            Self::Coupled(certificate) => Some(certificate.drive.harmonic),
+            Self::Coupled(certificate) => certificate.drive.as_ref().map(|drive| drive.harmonic),
         }
     }
 
@@ -389,10 +399,21 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.push(("motion", certificate.motion(letter, &omega)));
-    if matches!(report.question, Some(CertifiedQuestion::FromRest(_))) {
-        let chosen =
-            "the one that the motion from rest comes to, in numbers; others are not looked for";
-        facts.push(("chosen", chosen.to_owned()));
+    if let (Some(CertifiedQuestion::FromRest(values)), AnyCertificate::Coupled(coupled)) =
+        (report.question, certificate)
+    {
+        let is_given = coupled.coordinates.iter().any(|name| values.get(*name).is_some());
+        let start = match (is_given, &coupled.drive) {
+            (true, _) => "rest at these displacements",
+            (_, Some(_)) => "rest",
+            (_, None) => "rest at small displacements, 1/10, 1/20 and so on,",
+        };
+        facts.push((
+            "chosen",
+            format!(
+                "the one that the motion from {start} comes to, in numbers; others are not looked for"
+            ),
+        ));
     }
     match (&report.certified.amplitude, certificate.harmonic()) {
         (Some(amplitude), Some(harmonic)) => {
@@ -401,16 +422,19 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             facts.push(("amplitude", of + &enclosed(amplitude)));
             facts.push(("stability", stability_of_driven(report.certified.multipliers.as_ref())));
         }
-        (None, Some(harmonic)) => {
-            let names = certificate.coordinates().unwrap_or_default();
-            let of = if harmonic == 1 { String::new() } else { format!("harmonic {harmonic} of ") };
-            let all = names.split(", ").zip(&report.certified.amplitudes);
-            facts.extend(all.map(|(name, amplitude)| {
-                ("amplitude", format!("of {of}{name}: {}", enclosed(amplitude)))
-            }));
-            facts.push(("stability", "not proved".to_owned()));
-        }
+        (None, Some(_)) => {}
         _ => facts.push((letters.frequency.name(), enclosed(&report.certified.frequency))),
+    }
+    if let AnyCertificate::Coupled(coupled) = certificate {
+        let harmonic = coupled.harmonic();
+        let of = if harmonic == 1 { String::new() } else { format!("harmonic {harmonic} of ") };
+        let all = coupled.coordinates.iter().zip(&report.certified.amplitudes);
+        facts.extend(all.map(|(name, amplitude)| {
+            ("amplitude", format!("of {of}{name}: {}", enclosed(amplitude)))
+        }));
+        let along =
+            if coupled.drive.is_some() { "" } else { ", but for the one along the motion," };
+        facts.push(("stability", stability_of_several(report.certified.stability.as_ref(), along)));
     }
     if let Some(exponent) = &report.certified.exponent {
         let of = match report.certified.formula {
@@ -696,6 +720,22 @@ fn stability_of_driven(multipliers: Option<&Multipliers>) -> String {
         Some(false) => format!("unstable, proved: {larger}"),
         None => format!("not proved: |sum| < 1 + product < 2 is not decided, {both}"),
     }
+}
+
+/// The proved stability of a motion of several coordinates, in words; `along` excepts a multiplier.
+fn stability_of_several(stability: Option<&Stability>, along: &str) -> String {
+    let Some((stability, largest)) = stability.and_then(|own| Some((own, own.largest?))) else {
+        return "not proved: the variational equation has no series, or is too large".to_owned();
+    };
+    let verdict = match stability.attracts {
+        Some(true) => "attracts, proved",
+        Some(false) => "unstable, proved",
+        None => "not proved",
+    };
+    format!(
+        "{verdict}: the modulus of the largest Floquet multiplier{along} is {}",
+        between(largest, "")
+    )
 }
 
 /// The number with its known digits, and a bound of its distance from the printed one.

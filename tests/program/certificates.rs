@@ -111,6 +111,128 @@ fn driven_coordinates_are_proved_and_proved_again() {
     }
 }
 
+/// Two oscillators that excite themselves, with two frequencies.
+const COUPLED_CYCLE: &str = "x'' - (1 - x^2)*x'/10 + x + (x - y)/2 = 0; \
+                             y'' - (1 - y^2)*y'/10 + 6*y/5 + (y - x)/2 = 0";
+
+#[test]
+fn limit_cycles_of_coordinates_are_proved_and_proved_again() {
+    let folder = folder("coupled-cycles");
+    let example = format!("{}/examples/certify/coupled-cycle.toml", env!("CARGO_MANIFEST_DIR"));
+    let masses = "2*x'' + y'' - (1 - x^2)*x'/5 + (x*y' + y*x')/20 + 2*sin(x) = 0; \
+                  x'' + 3*y'' + y'/10 + 4*y + y^3/4 - x/2 = 0";
+    let mut frequencies = vec![];
+    for question in [&[example.as_str()][..], &[COUPLED_CYCLE, "--at", "x=1,y=-1"], &[masses]] {
+        let (file, document) = certified(&folder, question);
+        let said = run(&[&["certify"], question].concat());
+        let said = String::from_utf8_lossy(&said.stdout).into_owned();
+        let path = file.to_str().expect("a path in text");
+        let checked = run(&["check", path]);
+        assert!(checked.status.success(), "{question:?}: {checked:?}");
+        let again = String::from_utf8_lossy(&checked.stdout).into_owned();
+        for name in ["motion", "omega", "amplitude", "stability", "r ", "block"] {
+            assert_eq!(fact(&said, name), fact(&again, name), "{question:?}");
+        }
+        assert!(fact(&said, "motion").starts_with("a limit cycle: (x, y)(t)"), "{said}");
+        assert!(fact(&said, "stability").starts_with("attracts, proved"), "{said}");
+        let read: CoupledCertificateDocument =
+            serde_json::from_value(document.clone()).expect("a document");
+        let certificate = read.read().expect("a certificate");
+        assert_eq!(json::coupled_certificate(&certificate), read, "{question:?}");
+        let proved = check_coupled(&certificate).expect("a proof");
+        frequencies.push(lindstedt::exact::rational::to_f64(&proved.frequency.middle));
+        assert_eq!(document["ode"], json!("q''+g(q)*q'+h(q)=0"));
+        assert_eq!(document["stability"]["attracts"], json!(true));
+        let tampers: [Tamper; 13] = [
+            |document| document["claim_r"] = json!("1e-60"),
+            |document| document["c"][1][1] = json!("1"),
+            |document| document["p"] = json!("1"),
+            |document| document["p"] = Value::Null,
+            |document| document["odd"] = json!("yes"),
+            |document| document["ode"] = json!("q''+g(q)*q'+h(q,c,s)=0"),
+            |document| document["h"][1] = json!("y"),
+            |document| document["phase_of"] = json!("z"),
+            |document| document["drive"] = json!({"driving_frequency": "1", "n": 1, "harmonic": 1}),
+            |document| document["stability"]["attracts"] = json!(false),
+            |document| document["stability"]["largest_multiplier"][1] = json!("0.5"),
+            |document| document["stability"]["largest_multiplier"][0] = json!("0.95"),
+            |document| document["stability"]["more"] = json!("1"),
+        ];
+        for (place, tamper) in tampers.into_iter().enumerate() {
+            let mut changed = document.clone();
+            tamper(&mut changed);
+            std::fs::write(&file, changed.to_string()).expect("a file");
+            let checked = run(&["check", path]);
+            assert_eq!(checked.status.code(), Some(1), "{question:?}: {place}");
+        }
+        // A file that claims nothing of the stability is one too, and it is proved all the same.
+        let mut silent = document.clone();
+        silent.as_object_mut().expect("an object").remove("stability");
+        std::fs::write(&file, silent.to_string()).expect("a file");
+        let checked = run(&["check", path]);
+        let said = String::from_utf8_lossy(&checked.stdout).into_owned();
+        assert!(fact(&said, "stability").starts_with("attracts, proved"), "{said}");
+    }
+    // In phase and in opposition.
+    assert!(frequencies[0] < 1.05 && frequencies[1] > 1.4, "{frequencies:?}");
+    for (arguments, code, expected) in [
+        ([COUPLED_CYCLE, "--range", "1:2"].as_slice(), 2, "--range: of several"),
+        (&[COUPLED_CYCLE, "--order", "2"], 2, "--order: of several"),
+        (&["x'' + x'/10 + x = y; y'' + y'/10 + 2*y = x"], 1, "comes to rest"),
+        (&["x'' - x'/10 + x = y; y'' + y'/20 + 2*y = x"], 1, "runs away"),
+        (
+            &["x'' - (1 - x^2 - y^2)*x'/10 + x = 0; y'' + y'/10 + 2*y = x"],
+            1,
+            "is not the rate of a function",
+        ),
+        (&["x'' + x'^3 - x'/9 + x = y; y'' + y'/10 + 2*y = x"], 1, "`x'^3`"),
+    ] {
+        let refused = run(&[&["certify"], arguments].concat());
+        assert_eq!(refused.status.code(), Some(code), "{arguments:?}: {refused:?}");
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
+#[test]
+fn the_stability_is_a_key_of_the_document() {
+    let folder = folder("stability-key");
+    let driven = "x'' + x'/5 + x + x^3/4 - F*cos(Omega*t) = 0";
+    let unstable = "x'' + x'/10 + 2*x + x^3 = cos(t); y'' - y'/10 + y + x*y = 0";
+    let open = "x'' + x'/10 + 2*x = cos(t); y'' + 3*y + x^2*y/9 = 0";
+    let number =
+        |value: &Value| -> f64 { value.as_str().expect("text").parse().expect("a number") };
+    // exp(-pi/5/Omega), of the cycle exp of 2 pi p times minus the mean of the damping.
+    let modulus = (-std::f64::consts::PI / 5.0 / 1.25).exp();
+    let questions: [(&[&str], Value, Option<f64>); 4] = [
+        (&[driven, "--at", "F=1/2", "--at", "Omega=1.25"], json!(true), Some(modulus)),
+        (&["van-der-pol", "--at", "mu=1/2"], json!(true), Some(0.039_176_920)),
+        (&[unstable], json!(false), None),
+        (&[open], Value::Null, None),
+    ];
+    for (question, attracts, modulus) in questions {
+        let (file, document) = certified(&folder, question);
+        assert_eq!(document["stability"]["attracts"], attracts, "{question:?}");
+        let ends = &document["stability"]["largest_multiplier"];
+        let [lower, upper] = [0, 1].map(|end| number(&ends[end]));
+        assert!(lower <= upper && upper < 2.0 * lower, "{question:?}");
+        if let Some(modulus) = modulus {
+            assert!(lower - 1e-9 < modulus && modulus < upper + 1e-9, "{question:?}: {ends}");
+        }
+        // What is not proved is not claimed.
+        for other in [json!(true), json!(false)] {
+            let mut changed = document.clone();
+            changed["stability"]["attracts"] = other.clone();
+            std::fs::write(&file, changed.to_string()).expect("a file");
+            let checked = run(&["check", file.to_str().expect("a path in text")]);
+            let code = if other == attracts { 0 } else { 1 };
+            assert_eq!(checked.status.code(), Some(code), "{question:?}: {other}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
 #[test]
 fn driven_motions_are_proved_and_proved_again() {
     let folder = folder("driven");
@@ -340,7 +462,8 @@ fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
         return None;
     }
     let proved: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let ends = proved.get("omega").or(proved.get("amplitude")).expect("two ends");
+    let of_first = proved.get("amplitudes").and_then(|all| all.get(0));
+    let ends = proved.get("omega").or(proved.get("amplitude")).or(of_first).expect("two ends");
     let fraction = |place: usize| {
         let text = ends[place].as_str().expect("text");
         let digits: Rational = text.replace('.', "").parse().expect("digits");
@@ -362,6 +485,17 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
             let document: ModeCertificateDocument =
                 serde_json::from_value(document.clone()).map_err(unread)?;
             check_mode(&document.read().map_err(|error| error.to_string())?)
+        }
+        Some(json::EQUATIONS_OF_CYCLES | json::EQUATIONS_WITH_DRIVE) => {
+            let document: CoupledCertificateDocument =
+                serde_json::from_value(document.clone()).map_err(unread)?;
+            let certificate = document.read().map_err(|error| error.to_string())?;
+            check_coupled(&certificate).map(|mut proved| {
+                // With a drive what the second program encloses is the amplitude of the first
+                // coordinate.
+                proved.amplitude = certificate.drive.map(|_| proved.amplitudes.swap_remove(0));
+                proved
+            })
         }
         _ => {
             let document: DampedCertificateDocument =
@@ -394,6 +528,32 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["phase_error"][0] = json!("1"),
         |document| document["formula"]["phase_error"][1] = json!("1e-12"),
         |document| document["more"] = json!("1"),
+    ];
+    let of_several: [Tamper; 10] = [
+        |document| document["claim_r"] = json!("1e-60"),
+        |document| document["c"][1][1] = json!("1"),
+        |document| document["s"][1][1] = json!("1"),
+        |document| document["odd"] = json!(true),
+        |document| document["more"] = json!("1"),
+        |document| document["h"][1] = json!("6*y/5"),
+        |document| document["g"][0][1] = json!("x"),
+        |document| document["g"][1][1] = json!("-1/10 + y^2/10 + x^2/1000"),
+        |document| document["coordinates"][1] = json!("x"),
+        |document| document["formula"] = json!({}),
+    ];
+    let of_several_cycles: [Tamper; 6] = [
+        |document| document["phase_of"] = json!("y"),
+        |document| document["phase_of"] = json!("z"),
+        |document| document["p"] = json!("1"),
+        |document| document["drive"] = json!({"driving_frequency": "1", "n": 1, "harmonic": 1}),
+        |document| document["s"][0][1] = json!("1"),
+        |document| document["sigma_log2"] = json!(-60),
+    ];
+    let of_several_driven: [Tamper; 4] = [
+        |document| document["drive"]["driving_frequency"] = json!("801/1000"),
+        |document| document["drive"]["n"] = json!(2),
+        |document| document["coordinates"][1] = json!("c"),
+        |document| document["p"] = json!("1"),
     ];
     let of_modes: [Tamper; 8] = [
         |document| document["amplitude"]["value"] = json!("799999999/1000000000"),
@@ -431,7 +591,7 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["amplitude_error"][1] = json!("1e-12"),
     ];
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
-    let proved = |name: &str, questions: &[&[&str]], tampers: &[Tamper]| {
+    let proved = |name: &str, questions: &[&[&str]], common: &[Tamper], tampers: &[Tamper]| {
         let Some(python) = python() else {
             eprintln!("python3 is not here: the second program was not run");
             return;
@@ -451,7 +611,7 @@ fn a_second_program_in_python_proves_the_same() {
             );
             assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
             // Tampered with, it is no proof for either.
-            let all = of_all.iter().chain(tampers).enumerate();
+            let all = common.iter().chain(tampers).enumerate();
             for (which, tamper) in all.filter(|_| index == 0) {
                 let mut changed = document.clone();
                 tamper(&mut changed);
@@ -474,13 +634,14 @@ fn a_second_program_in_python_proves_the_same() {
                 &["x'' + x + x^2/5 = 0", "--at", "A=1/2"],
                 &["duffing", "--at", "A=1", "--at", "eps=10", "--method", "harmonic-balance"],
             ];
-            proved("python", &questions, &of_motions);
+            proved("python", &questions, &of_all, &of_motions);
         });
         scope.spawn(|| {
             let asymmetric = "x'' - (1 - x^2)*x'/5 + x + x^2/10 = 0";
             proved(
                 "python-cycles",
                 &[&["van-der-pol", "--at", "mu=1/5"], &[asymmetric]],
+                &of_all,
                 &of_cycles,
             );
         });
@@ -502,14 +663,41 @@ fn a_second_program_in_python_proves_the_same() {
                     "initial",
                 ],
             ];
-            proved("python-modes", &questions, &of_modes);
+            proved("python-modes", &questions, &of_all, &of_modes);
         });
         scope.spawn(|| {
             let files = ["forced-duffing", "parametric", "driven-well"]
                 .map(|name| format!("{examples}/{name}.toml"));
             let questions = files.each_ref().map(|file| vec![file.as_str()]);
             let questions = questions.each_ref().map(Vec::as_slice);
-            proved("python-driven", &questions, &of_driven);
+            proved("python-driven", &questions, &of_all, &of_driven);
+        });
+        scope.spawn(|| {
+            let doubled = "x'' + x'/10 + x = y^2/5; y'' - (1 - y^2)*y'/5 + y = 0";
+            proved(
+                "python-cycles-of-several",
+                &[&[COUPLED_CYCLE], &[COUPLED_CYCLE, "--at", "x=1,y=-1"], &[doubled]],
+                &of_several,
+                &of_several_cycles,
+            );
+        });
+        scope.spawn(|| {
+            let skew = "x'' + x'/5 + (x*y' + y*x')/20 + 2*x - y + x^3/5 = cos(w*t)/4 + sin(2*w*t)/20; \
+                        2*y'' + y'/5 + x'/20 + y^2*y'/10 + 3*y - x + x*y/10 = x*sin(w*t)/20";
+            let pendulums = "x'' + x'/5 + sin(x) + (x - y)/3 = cos(w*t)/2; \
+                             y'' + y'/5 + 2*sin(y) + (y - x)/3 = 0";
+            let parametric = "x'' + x'/10 + (1 + cos(2*t)/2)*x + x^3/5 + (x - y)/9 = 0; \
+                              y'' + y'/20 + 2*y + (y - x)/9 = 0";
+            proved(
+                "python-driven-of-several",
+                &[
+                    &[skew, "--at", "w=4/5"],
+                    &[pendulums, "--at", "w=7/10"],
+                    &[parametric, "--at", "x=1"],
+                ],
+                &of_several,
+                &of_several_driven,
+            );
         });
     });
 }
@@ -710,7 +898,13 @@ fn hostile_certificates_are_refused() {
         outcome.is_some_and(|certificate| check_damped(&certificate).is_ok())
     };
     are_refused(&["pendulum", "--at", "A=1"], of_motion);
+    let of_several: IsProof = |changed| {
+        let document = serde_json::from_value::<CoupledCertificateDocument>(changed.clone()).ok();
+        let outcome = document.and_then(|document| document.read().ok());
+        outcome.is_some_and(|certificate| check_coupled(&certificate).is_ok())
+    };
     are_refused(&["van-der-pol", "--at", "mu=1/2"], of_cycle);
+    are_refused(&[COUPLED_CYCLE], of_several);
 }
 
 fn are_refused(arguments: &[&str], is_proof: IsProof) {
@@ -748,10 +942,15 @@ fn are_refused(arguments: &[&str], is_proof: IsProof) {
         ] {
             let mut changed = document.clone();
             changed[key.as_str()] = value.clone();
-            // Without a formula it proves the motion alone, with another weight it may prove the
-            // same.
-            let harmless = [("formula", json!(null)), ("sigma_log2", json!(-1))]
-                .contains(&(key.as_str(), value.clone()));
+            // Without a formula it proves the motion alone, without a claim the stability all the
+            // same; with another weight it may prove the same.
+            let harmless = [
+                ("formula", json!(null)),
+                ("stability", json!(null)),
+                ("stability", json!({})),
+                ("sigma_log2", json!(-1)),
+            ]
+            .contains(&(key.as_str(), value.clone()));
             assert!(!refuse(&changed) || harmless, "{key}: {value:.60}");
         }
     }

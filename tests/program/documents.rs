@@ -122,7 +122,11 @@ fn reads_back(document: &Value) {
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
         }
-        DocumentKind::Certificate if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
+        DocumentKind::Certificate
+            if [json::EQUATIONS_OF_CYCLES, json::EQUATIONS_WITH_DRIVE]
+                .iter()
+                .any(|ode| document["ode"] == **ode) =>
+        {
             again::<CoupledCertificateDocument>(document)
         }
         DocumentKind::Certificate => again::<CertificateDocument>(document),
@@ -280,6 +284,9 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/stability/1") => "/curves/0",
         Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_WITH_DRIVE => {
             "/drive"
+        }
+        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_OF_CYCLES => {
+            "/stability"
         }
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",

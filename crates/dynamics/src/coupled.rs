@@ -244,6 +244,22 @@ impl CoupledEquations {
             energy: None,
         })
     }
+
+    /// Whether an acceleration is another one where all velocities have the other sign, as damping
+    /// makes it.
+    ///
+    /// # Errors
+    /// A failed step of algebra.
+    pub fn has_damping(&self) -> Result<bool, ExprError> {
+        let velocities = &self.rates.states[self.coordinates.len()..];
+        let backward = velocities.iter().map(|name| (*name, -Expr::from(*name))).collect();
+        for rate in &self.rates.right[self.coordinates.len()..] {
+            if !(rate - &rate.substitute_all(&backward)?).expand()?.is_zero() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
 }
 
 /// The matrix of the highest derivatives, and these from linear equations.
@@ -278,6 +294,20 @@ fn solved(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn damping_changes_with_the_sign_of_velocities() {
+        for (equations, expected) in [
+            ("x'' + x = y; y'' + y'^2*x + 2*y = x", false),
+            ("(1 + x^2)*x'' + x*x'^2 + 2*x - y = 0; y'' + 4*y - x = 0", false),
+            ("x'' + x'/5 + x = y; y'' + 2*y = x", true),
+            ("x'' + x = y; y'' = x'", true),
+            ("x'' + x + abs(x')*x'/9 = y; y'' + 2*y = x", true),
+        ] {
+            let parsed = CoupledEquations::parse(equations).expect("equations");
+            assert_eq!(parsed.has_damping(), Ok(expected), "{equations}");
+        }
+    }
 
     #[test]
     fn orders_may_be_mixed_and_masses_coupled() {

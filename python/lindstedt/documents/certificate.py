@@ -216,6 +216,28 @@ CertificateFormulaOfCycle.OPTIONAL = frozenset(['amplitude_error', 'drift', 'fre
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class CertificateStability(Document):
+    """The stability of a limit cycle or of a driven motion, as it is proved.
+
+    Attributes:
+        attracts: Whether neighbouring motions approach it; false where it is unstable, null where
+            neither is proved.
+        largest_multiplier: The largest modulus of its Floquet multipliers over the period 2 pi of
+            X, from below and from above; of a limit cycle without the multiplier 1 along the
+            motion. Null where nothing is known of it.
+    """
+
+    attracts: bool | None
+    largest_multiplier: tuple[str, str] | None
+
+
+CertificateStability.FIELDS = (
+    ("attracts", "attracts", None),
+    ("largest_multiplier", "largest_multiplier", tuple),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class DampedCertificateDocument(Answer):
     """Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady
     motion with a drive in h, and how far a formula for it is off. All numbers are text:
@@ -252,6 +274,7 @@ class DampedCertificateDocument(Answer):
         nu: The weight of a harmonic from one to the next; 1.
         claim_r: The radius that is claimed: there is exactly one motion whose p, c and s are so
             near in the norm, where `odd` exactly one of odd harmonics.
+        stability: The stability that is claimed; not there in certificates that claim none.
         formula: The formula that is judged, of a limit cycle turned until its first harmonic is a
             positive cosine; null where none is.
     """
@@ -272,6 +295,7 @@ class DampedCertificateDocument(Answer):
     sigma_log2: int
     nu: Literal["1"]
     claim_r: str
+    stability: CertificateStability | None
     formula: CertificateFormulaOfCycle | None
 
 
@@ -292,9 +316,10 @@ DampedCertificateDocument.FIELDS = (
     ("sigma_log2", "sigma_log2", None),
     ("nu", "nu", None),
     ("claim_r", "claim_r", None),
+    ("stability", "stability", CertificateStability.from_json),
     ("formula", "formula", CertificateFormulaOfCycle.from_json),
 )
-DampedCertificateDocument.OPTIONAL = frozenset(['drive', 'p'])
+DampedCertificateDocument.OPTIONAL = frozenset(['drive', 'p', 'stability'])
 DampedCertificateDocument.CONSTANTS = {'nu': '1'}
 
 
@@ -438,50 +463,63 @@ ModeCertificateDocument.CONSTANTS = {'ode': "q''+f(q)=0", 'nu': '1'}
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CoupledCertificateDocument(Answer):
-    """Numbers from which a steady motion of several coordinates with a drive, `q'' + g(q) q' + h(q,
-    cos(Omega t), sin(Omega t)) = 0`, can be proved. All numbers are text: integers, fractions
+    """Numbers from which a limit cycle of several coordinates, `q'' + g(q) q' + h(q) = 0`, can be
+    proved, or a steady motion with a drive in h. All numbers are text: integers, fractions
     such as `-1/6`, decimals such as `2.5e-33`.
 
     Attributes:
         schema: The kind of document.
         ode: The equations that g and h belong to.
-        coordinates: The names of the coordinates, none of them c or s.
+        coordinates: The names of the coordinates, with a drive none of them c or s.
         g: The damping by velocities, expressions in the coordinates: a row for each equation,
             which is the derivative of a function of the coordinates, dg_ij/dq_l = dg_il/dq_j.
-        h: The force of each equation, an expression in the coordinates, c = cos(Omega t) and s =
-            sin(Omega t): the mass matrix is inverted already.
-        drive: What drives the motion; `harmonic` is the one whose amplitudes are proved.
+        h: The force of each equation, an expression in the coordinates, with a drive also in c =
+            cos(Omega t) and s = sin(Omega t): the mass matrix is inverted already.
+        drive: What drives the motion; `harmonic` is the one whose amplitudes are proved. Not
+            there for a limit cycle, of which those of the first are.
+        phase_of: The name of the coordinate whose first harmonic is a positive cosine; not there
+            with a drive.
         odd: Whether every g is even, every h odd and the motion of odd harmonics alone, and so
             the block, and the only one within claim_r among those; h is odd in the coordinates
             and in what of c and s changes its sign after half a period of the motion.
-        bits: `c` and `s` are integers times 2^-bits; at most 224.
+        bits: `p`, `c` and `s` are integers times 2^-bits; at most 224.
+        p: The approximate 1/omega; not there with a drive, n/Omega exactly.
         c: The approximate cosine coefficients of each coordinate, that of the constant first.
         s: The approximate sine coefficients of each coordinate by harmonic; that of the constant
-            is 0.
+            is 0, and so is that of the first harmonic of `phase_of`.
         highest_harmonic: The last harmonic of the block; at most 400, and the block has at most
             401 unknowns.
         inverse_bits: The entries of `inverse` are integers times 2^-inverse_bits; at most 224.
         nu: The weight of a harmonic from one to the next; 1.
-        claim_r: The radius that is claimed: there is exactly one motion whose c and s are so near
-            in the norm sum (|c_ik| + |s_ik|), where `odd` exactly one of odd harmonics.
+        sigma_log2: The norm is sigma |p| + sum (|c_ik| + |s_ik|), sigma = 2^sigma_log2; not there
+            with a drive, where there is no p.
+        claim_r: The radius that is claimed: there is exactly one motion whose p, c and s are so
+            near in the norm, where `odd` exactly one of odd harmonics.
+        stability: The stability that is claimed; not there in certificates that claim none.
         inverse: The approximate inverse of the derivative on the block, row by row: cosine and
-            sine of each harmonic, those of one coordinate after those of the other.
+            sine of each harmonic, those of one coordinate after those of the other. Of a limit
+            cycle the columns begin with the sine of the first harmonic of `phase_of`, and the
+            rows with p, then the others follow.
     """
 
     schema: Literal["lindstedt/certificate/1"]
-    ode: Literal["q''+g(q)*q'+h(q,c,s)=0"]
+    ode: Literal["q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"]
     coordinates: tuple[str, ...]
     g: tuple[tuple[str, ...], ...]
     h: tuple[str, ...]
-    drive: CertificateDrive
+    drive: CertificateDrive | None
+    phase_of: str | None
     odd: bool
     bits: int
+    p: str | None
     c: tuple[tuple[str, ...], ...]
     s: tuple[tuple[str, ...], ...]
     highest_harmonic: int
     inverse_bits: int
     nu: Literal["1"]
+    sigma_log2: int | None
     claim_r: str
+    stability: CertificateStability | None
     inverse: tuple[tuple[str, ...], ...]
 
 
@@ -492,17 +530,22 @@ CoupledCertificateDocument.FIELDS = (
     ("g", "g", several(tuple)),
     ("h", "h", tuple),
     ("drive", "drive", CertificateDrive.from_json),
+    ("phase_of", "phase_of", None),
     ("odd", "odd", None),
     ("bits", "bits", None),
+    ("p", "p", None),
     ("c", "c", several(tuple)),
     ("s", "s", several(tuple)),
     ("highest_harmonic", "highest_harmonic", None),
     ("inverse_bits", "inverse_bits", None),
     ("nu", "nu", None),
+    ("sigma_log2", "sigma_log2", None),
     ("claim_r", "claim_r", None),
+    ("stability", "stability", CertificateStability.from_json),
     ("inverse", "inverse", several(tuple)),
 )
-CoupledCertificateDocument.CONSTANTS = {'ode': "q''+g(q)*q'+h(q,c,s)=0", 'nu': '1'}
+CoupledCertificateDocument.OPTIONAL = frozenset(['drive', 'p', 'phase_of', 'sigma_log2', 'stability'])
+CoupledCertificateDocument.CONSTANTS = {'nu': '1'}
 
 
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative

@@ -16,7 +16,8 @@ use super::number::{expression, texts};
 use super::schema::check_kind;
 use super::{DocumentKind, JsonError, unexpected};
 use crate::certificate::{
-    Certificate, HIGHEST_HARMONIC, JudgedFormula, LettersOfLaw, MOST_BITS, coordinate,
+    Certificate, ClaimedStability, HIGHEST_HARMONIC, JudgedFormula, LettersOfLaw, MOST_BITS,
+    coordinate,
 };
 use crate::decimal::{exact_decimal, neighbours, significant_fraction};
 use crate::exact::{Integer, Rational};
@@ -169,16 +170,54 @@ pub fn certificate(certificate: &Certificate) -> CertificateDocument {
 
 /// An upper claim as text: as it is, or rounded up to three digits.
 pub(super) fn claim(value: &Rational) -> String {
-    short(value, 1)
+    short(value, 1, 3)
 }
 
 /// A lower and an upper claim as text, rounded outwards likewise.
 pub(super) fn claims([lower, upper]: &[Rational; 2]) -> [String; 2] {
-    [short(lower, 0), short(upper, 1)]
+    [short(lower, 0, 3), short(upper, 1, 3)]
 }
 
-fn short(value: &Rational, side: usize) -> String {
-    exact_decimal(value).unwrap_or_else(|| significant_fraction(&neighbours(value, 3)[side], 3))
+fn short(value: &Rational, side: usize, digits: usize) -> String {
+    let rounded = || significant_fraction(&neighbours(value, digits)[side], digits);
+    exact_decimal(value).unwrap_or_else(rounded)
+}
+
+/// The stability of a limit cycle or of a driven motion, as it is proved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct CertificateStability {
+    /// Whether neighbouring motions approach it; false where it is unstable, null where neither is
+    /// proved.
+    pub attracts: Option<bool>,
+    /// The largest modulus of its Floquet multipliers over the period 2 pi of X, from below and from
+    /// above; of a limit cycle without the multiplier 1 along the motion. Null where nothing is
+    /// known of it.
+    pub largest_multiplier: Option<[String; 2]>,
+}
+
+/// The claims on the stability as text; `None` if there are none.
+pub(super) fn stability(claimed: Option<&ClaimedStability>) -> Option<CertificateStability> {
+    /// Decimal digits where the number has no end.
+    const DIGITS: usize = 9;
+    let ends = |[lower, upper]: &[Rational; 2]| [short(lower, 0, DIGITS), short(upper, 1, DIGITS)];
+    claimed.map(|claimed| CertificateStability {
+        attracts: claimed.attracts,
+        largest_multiplier: claimed.largest.as_ref().map(ends),
+    })
+}
+
+/// Reads the claims on the stability.
+pub(super) fn read_stability(
+    document: Option<&CertificateStability>,
+) -> Result<Option<ClaimedStability>, JsonError> {
+    let Some(document) = document else {
+        return Ok(None);
+    };
+    let ends = document.largest_multiplier.as_ref();
+    let largest = ends.map(|ends| range(ends, "largest_multiplier")).transpose()?;
+    Ok(Some(ClaimedStability { attracts: document.attracts, largest }))
 }
 
 /// The values of letters as text, under the names that they have in the law: the letters in force

@@ -9,8 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{
-    CertificateForce, CertificateLetters, check_sizes, claim, claims, decimal, force, fraction,
-    integer, integers, letters, matrix, range, read_letters, read_values, values,
+    CertificateForce, CertificateLetters, CertificateStability, check_sizes, claim, claims,
+    decimal, force, fraction, integer, integers, letters, matrix, range, read_letters,
+    read_stability, read_values, stability, values,
 };
 use super::number::texts;
 use super::schema::check_kind;
@@ -83,6 +84,9 @@ pub struct DampedCertificateDocument {
     /// The radius that is claimed: there is exactly one motion whose p, c and s are so near in the
     /// norm, where `odd` exactly one of odd harmonics.
     pub claim_r: String,
+    /// The stability that is claimed; not there in certificates that claim none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<CertificateStability>,
     /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive
     /// cosine; null where none is.
     pub formula: Option<CertificateFormulaOfCycle>,
@@ -168,11 +172,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         },
         g: force(&certificate.damping),
         h: force(&certificate.force),
-        drive: certificate.drive.as_ref().map(|drive| CertificateDrive {
-            driving_frequency: drive.frequency.to_string(),
-            periods: drive.periods,
-            harmonic: drive.harmonic,
-        }),
+        drive: certificate.drive.as_ref().map(CertificateDrive::of),
         odd: certificate.odd,
         bits: certificate.bits,
         p: certificate.drive.is_none().then(|| certificate.reciprocal.to_string()),
@@ -184,6 +184,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),
+        stability: stability(certificate.stability.as_ref()),
         formula: certificate
             .formula
             .as_ref()
@@ -236,7 +237,15 @@ impl CertificateFormulaOfCycle {
 }
 
 impl CertificateDrive {
-    fn read(&self) -> Result<Drive, JsonError> {
+    pub(super) fn of(drive: &Drive) -> Self {
+        Self {
+            driving_frequency: drive.frequency.to_string(),
+            periods: drive.periods,
+            harmonic: drive.harmonic,
+        }
+    }
+
+    pub(super) fn read(&self) -> Result<Drive, JsonError> {
         Ok(Drive {
             frequency: fraction(&self.driving_frequency, "drive.driving_frequency")?,
             periods: self.periods,
@@ -280,6 +289,7 @@ impl DampedCertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
+            stability: read_stability(self.stability.as_ref())?,
             formula: self.formula.as_ref().map(|formula| formula.read(is_driven)).transpose()?,
         })
     }

@@ -62,7 +62,7 @@ pub use certificate::{CertificateDocument, certificate};
 pub use certificate_range::{CertificateRangeDocument, certificate_range};
 pub use comparison::{ComparisonDocument, comparison};
 pub use coupled_certificate::{
-    CoupledCertificateDocument, EQUATIONS_WITH_DRIVE, coupled_certificate,
+    CoupledCertificateDocument, EQUATIONS_OF_CYCLES, EQUATIONS_WITH_DRIVE, coupled_certificate,
 };
 pub use damped_certificate::{
     DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate,

@@ -62,9 +62,9 @@ pub enum NotCertified {
         "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
     )]
     NotDriven(String),
-    /// Driven coordinates with a term of another form.
+    /// Driven or damped coordinates with a term of another form.
     #[error(
-        "the equation of {coordinate}'' has `{term}`: certificates of several driven coordinates are of q'' + G(q)*q' + h(q) = 0, h with sines and cosines of one drive"
+        "the equation of {coordinate}'' has `{term}`: certificates of limit cycles and of driven motions of several coordinates are of q'' + G(q)*q' + h(q) = 0, h with sines and cosines of one drive at most"
     )]
     NotCoupledDriven {
         /// The coordinate.
@@ -77,7 +77,7 @@ pub enum NotCertified {
     FirstOrder(String),
     /// A damping whose forces are not the rates of functions of the positions.
     #[error(
-        "the damping of an equation is not the rate of a function of the positions, as `x*y' + y*x'` is and `x*y'` is not: a proof of several driven coordinates needs that"
+        "the damping of an equation is not the rate of a function of the positions, as `x*y' + y*x'` is and `x*y'` is not: a proof of a limit cycle or of a driven motion of several coordinates needs that"
     )]
     DampingOfNoFunction,
     /// A coordinate with the name of a wave of the drive.
@@ -88,14 +88,28 @@ pub enum NotCertified {
     /// A parameter without a value.
     #[error("no value of {0}")]
     NoValueOf(String),
+    /// A value of a coordinate that is no number.
+    #[error("{0} is no number, from which a motion may start")]
+    StartOfMotion(String),
     /// A value of something that is no parameter.
     #[error("there is no parameter {0}")]
     NoParameter(String),
     /// A motion from rest that does not come to one of the period of the drive.
     #[error(
-        "the motion from rest does not come to one that repeats itself with the drive in 400 of its periods"
+        "the motion from rest does not come in 1000 periods of the drive to one that repeats itself after one of them, or a few"
     )]
     NotSettled,
+    /// Coupled equations without a drive, a motion of which comes to rest.
+    #[error("the motion from rest at {0} comes to rest: it leads to no limit cycle")]
+    ComesToRest(String),
+    /// Coupled equations without a drive, a motion of which grows without end.
+    #[error("the motion from rest at {0} runs away, or to where the equations have no value")]
+    RunsAway(String),
+    /// Coupled equations without a drive, a motion of which is not periodic at the end.
+    #[error(
+        "the motion from rest at {0} does not become periodic: it has two frequencies, is irregular, or settles too slowly"
+    )]
+    NoCycle(String),
     /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
@@ -202,7 +216,10 @@ impl NotCertified {
             Self::WaveAsCoordinate(_) => "give the coordinate another name",
             Self::NoValueOf(name) => return Some(format!("add --at {name}=...")),
             Self::NotSettled => {
-                "more damping, or another frequency: `simulate` shows the motion, `response` finds those that repeat themselves"
+                "more damping, another frequency, or another start by values of the coordinates, --at x=2; `response` finds motions that repeat themselves"
+            }
+            Self::ComesToRest(_) | Self::RunsAway(_) | Self::NoCycle(_) => {
+                "values of the coordinates are another start, --at x=2; `response` finds the limit cycles of a range in numbers"
             }
             Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
             Self::NoSteadyMotion => {

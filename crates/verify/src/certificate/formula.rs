@@ -43,6 +43,15 @@ impl Enclosure {
         Self { middle: WORKING.middle(ball), radius: ball.radius }
     }
 
+    /// Bounds of the absolute value of the enclosed number.
+    pub(super) fn size(&self) -> SizeBounds {
+        let middle = Bound::of_fraction(&self.middle);
+        SizeBounds {
+            lower: (below(middle) - self.radius.value()).next_down().max(0.0),
+            upper: (middle + self.radius).value(),
+        }
+    }
+
     /// Bounds of the relative error `|number/truth - 1|` of an approximation to the enclosed
     /// number; from zero to infinity if it is not finite.
     pub fn relative_error(&self, number: f64) -> SizeBounds {
@@ -247,6 +256,7 @@ pub(super) fn certified(
         frequency: Enclosure::from_ball(&frequency),
         exponent: None,
         multipliers: None,
+        stability: None,
         amplitude: None,
         amplitudes: vec![],
         copies: 1,
@@ -447,19 +457,7 @@ pub(super) fn hold_claims(
     formula: Option<&JudgedFormula>,
     certified: &Certified,
 ) -> Result<(), CheckError> {
-    let above = |what, proved, claim: &Rational| match from_f64(proved)
-        .is_some_and(|proved| proved <= *claim)
-    {
-        true => Ok(()),
-        false => Err(CheckError::ClaimedLess { what, proved }),
-    };
-    let below = |what, proved, claim: &Rational| match from_f64(proved)
-        .is_some_and(|proved| *claim <= proved)
-    {
-        true => Ok(()),
-        false => Err(CheckError::ClaimedMore { what, proved }),
-    };
-    above("the radius", certified.proof.radius.value(), radius)?;
+    hold_upper("the radius", certified.proof.radius.value(), radius)?;
     if let (Some(claimed), Some(errors)) = (formula, &certified.formula) {
         let amplitude = errors.amplitude.unwrap_or_default();
         let both = [
@@ -469,9 +467,31 @@ pub(super) fn hold_claims(
             ("the drift", errors.drift, &claimed.drift),
         ];
         for (what, proved, claim) in both {
-            below(what, proved.lower, &claim[0])?;
-            above(what, proved.upper, &claim[1])?;
+            hold_both(what, proved, claim)?;
         }
     }
     Ok(())
+}
+
+/// Holds a claimed upper bound against the proved one.
+fn hold_upper(what: &'static str, proved: f64, claim: &Rational) -> Result<(), CheckError> {
+    match from_f64(proved).is_some_and(|proved| proved <= *claim) {
+        true => Ok(()),
+        false => Err(CheckError::ClaimedLess { what, proved }),
+    }
+}
+
+/// Holds a claimed lower and a claimed upper bound against the proved ones.
+///
+/// # Errors
+/// A claim that is not proved.
+pub(super) fn hold_both(
+    what: &'static str,
+    proved: SizeBounds,
+    claim: &[Rational; 2],
+) -> Result<(), CheckError> {
+    match from_f64(proved.lower).is_some_and(|proved| claim[0] <= proved) {
+        true => hold_upper(what, proved.upper, &claim[1]),
+        false => Err(CheckError::ClaimedMore { what, proved: proved.lower }),
+    }
 }

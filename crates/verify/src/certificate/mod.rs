@@ -14,8 +14,8 @@
 //!
 //! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own,
 //! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
-//! in `damped/`; driven motions of several coordinates have a [`CoupledCertificate`], and the same
-//! theorem.
+//! in `damped/`; limit cycles and driven motions of several coordinates have a
+//! [`CoupledCertificate`], and the same theorem.
 //!
 //! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
 //! iteration): the proof rests on `theorem.rs` and on the arithmetic of `force.rs`,
@@ -38,8 +38,9 @@ use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
-    CoupledCertificate, DampedCertificate, Drive, Multipliers, certify_coupled, certify_cycle,
-    certify_cycle_motion, certify_driven, check_coupled, check_damped,
+    ClaimedStability, CoupledCertificate, DampedCertificate, Drive, Multipliers, Stability,
+    certify_coupled, certify_cycle, certify_cycle_motion, certify_driven, check_coupled,
+    check_damped,
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
@@ -109,13 +110,16 @@ pub struct Certified {
     /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
     /// energy is conserved.
     pub exponent: Option<Enclosure>,
-    /// Floquet multipliers of a driven motion; `None` for others, and where its variational equation
+    /// Floquet multipliers of a driven motion of one coordinate; `None` for others, and where its variational equation
     /// has no series.
     pub multipliers: Option<Multipliers>,
+    /// Stability of a limit cycle or of a driven motion, of one coordinate or several; `None` for a
+    /// motion whose energy is conserved, of which it is not proved.
+    pub stability: Option<Stability>,
     /// Amplitude of the harmonic of a driven motion that the formula is about.
     pub amplitude: Option<Enclosure>,
-    /// Amplitude of the same harmonic of each coordinate, of a driven motion of several; empty for
-    /// others.
+    /// Amplitude of the same harmonic of each coordinate, of a driven motion of several, and of the
+    /// first harmonic on a limit cycle of several; empty for others.
     pub amplitudes: Vec<Enclosure>,
     /// The number of images of the proved motion under the symmetries of the equation, itself
     /// included: with a drive the motion any number of drive periods later, and for a symmetric
@@ -154,6 +158,9 @@ pub enum CheckError {
         /// The proved lower bound.
         proved: f64,
     },
+    /// The motion is proved, but its stability is another one than is claimed, or not proved.
+    #[error("not as claimed: the stability that is claimed is not proved")]
+    Stability,
 }
 
 /// Checks every inequality of the theorem, and every claim.

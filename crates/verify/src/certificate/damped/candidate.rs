@@ -15,11 +15,11 @@ use super::super::force::{is_even, is_odd};
 use super::super::formula::JudgedFormula;
 use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::law;
-use super::super::radii_polynomial::NotProved;
+use super::super::radii_polynomial::{Correction, NotProved};
 use super::super::{Certified, HIGHEST_HARMONIC, coordinate};
-use super::theorem::{correction, derivative_of_block, prove};
+use super::theorem::{CoordinateWave, correction, derivative_of_block, prove};
 use super::waves::{displacement, in_waves};
-use super::{DampedCertificate, Drive};
+use super::{ClaimedStability, DampedCertificate, Drive};
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
@@ -100,6 +100,7 @@ fn certified_cycle(
         inverse: vec![],
         sigma: 0,
         claim: Rational::zero(),
+        stability: None,
         formula,
     };
     certificate.well_formed_formula().map_err(NotCertified::Formula)?;
@@ -179,6 +180,7 @@ pub fn certify_driven(
         inverse: vec![],
         sigma: 0,
         claim: Rational::zero(),
+        stability: None,
         formula: Some(judged),
     };
     // A motion of an odd equation need not be odd: after its symmetry is broken it is not.
@@ -394,14 +396,10 @@ fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
 fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Harmonics) {
     let count = samples.len() - 1;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
-    let found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
-    let phase = found.sines[1].atan2(found.cosines[1]);
-    let mut turned = Harmonics { cosines: vec![found.cosines[0] / 2.0], sines: vec![0.0] };
-    for (k, (a, b)) in found.cosines.iter().zip(&found.sines).enumerate().skip(1) {
-        let (sine, cosine) = (k as f64 * phase).sin_cos();
-        turned.cosines.push(a * cosine + b * sine);
-        turned.sines.push(b * cosine - a * sine);
-    }
+    let mut found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
+    // The coefficient of the constant was twice the mean.
+    found.cosines[0] /= 2.0;
+    let mut turned = phase_shifted(&found, phase_of(&found));
     turned.sines[1] = 0.0;
     let largest = turned.cosines.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     for list in [&mut turned.cosines, &mut turned.sines] {
@@ -413,6 +411,25 @@ fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Harmonics) {
         }
     }
     (samples[count].0 / TAU, turned)
+}
+
+/// The angle at which the first harmonic is largest.
+pub(super) fn phase_of(harmonics: &Harmonics) -> f64 {
+    harmonics.sines[1].atan2(harmonics.cosines[1])
+}
+
+/// The harmonics of the same function, of the angle from this phase on.
+pub(super) fn phase_shifted(harmonics: &Harmonics, phase: f64) -> Harmonics {
+    let mut shifted = Harmonics { cosines: vec![harmonics.cosines[0]], sines: vec![0.0] };
+    let length = harmonics.cosines.len().max(harmonics.sines.len());
+    let entry = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+    for k in 1..length {
+        let (a, b) = (entry(&harmonics.cosines, k), entry(&harmonics.sines, k));
+        let (sine, cosine) = (k as f64 * phase).sin_cos();
+        shifted.cosines.push(a * cosine + b * sine);
+        shifted.sines.push(b * cosine - a * sine);
+    }
+    shifted
 }
 
 /// The inverse of the derivative on the block, in doubles.
@@ -427,23 +444,37 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
     certificate.inverse = inverse(certificate)?;
     let step = |certificate: &DampedCertificate| correction(certificate.problem());
     iterate(certificate, few_units(bits), step, |certificate, step| {
-        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
         let block = certificate.problem().block();
-        // If the drive does not give the frequency, 1/omega is the first unknown of the block.
-        let first = usize::from(certificate.drive.is_none());
-        if certificate.drive.is_none() {
-            certificate.reciprocal -= short(&step.block[0]);
-        }
-        let corrections = block[first..].iter().zip(&step.block[first..]);
-        for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
-            match wave.function {
-                BasisFunction::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
-                BasisFunction::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
-            }
-        }
+        let reciprocal = certificate.drive.is_none().then_some(&mut certificate.reciprocal);
+        let lists = [&mut certificate.cosines, &mut certificate.sines].map(std::slice::from_mut);
+        subtract_step(reciprocal, lists, &block, bits, step);
         shorten(&mut certificate.cosines);
         shorten(&mut certificate.sines);
     })
+}
+
+/// Subtracts a step of Newton's iteration from `1/omega`, which is the first unknown of the block
+/// if the drive does not give it, and from the cosines and the sines of each coordinate.
+pub(super) fn subtract_step(
+    reciprocal: Option<&mut Integer>,
+    [cosines, sines]: [&mut [Vec<Integer>]; 2],
+    block: &[CoordinateWave],
+    bits: usize,
+    step: &Correction<CoordinateWave>,
+) {
+    let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
+    let first = usize::from(reciprocal.is_some());
+    if let Some(reciprocal) = reciprocal {
+        *reciprocal -= short(&step.block[0]);
+    }
+    let corrections = block[first..].iter().zip(&step.block[first..]);
+    for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
+        let (list, k) = match wave.function {
+            BasisFunction::Cosine(k) => (&mut cosines[wave.coordinate], k),
+            BasisFunction::Sine(k) => (&mut sines[wave.coordinate], k),
+        };
+        subtract(list, k, short(ball));
+    }
 }
 
 /// Checks a certificate with its block, and enters the proved values as claims.
@@ -456,5 +487,6 @@ fn proved(certificate: &mut DampedCertificate) -> Result<Certified, NotProved> {
     [_, certificate.claim] = claimed(proof.radius.value());
     let certified = certificate.certified(proof)?;
     claim_errors(certificate.formula.as_mut(), &certified);
+    certificate.stability = certified.stability.as_ref().map(ClaimedStability::of);
     Ok(certified)
 }

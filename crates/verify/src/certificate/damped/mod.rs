@@ -27,7 +27,7 @@ use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
 pub use coupled::{CoupledCertificate, certify_coupled, check_coupled};
-pub use stability::Multipliers;
+pub use stability::{ClaimedStability, Multipliers, Stability};
 use theorem::DampedProblem;
 
 /// The drive of a motion, whose period is a whole number of drive periods.
@@ -77,6 +77,8 @@ pub struct DampedCertificate {
     pub sigma: i32,
     /// The radius that is claimed.
     pub claim: Rational,
+    /// The stability that is claimed; `None` if none is.
+    pub stability: Option<ClaimedStability>,
     /// The formula that is judged, and what is claimed of it.
     pub formula: Option<JudgedFormula>,
 }
@@ -105,6 +107,9 @@ pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckE
     let proof = theorem::prove(certificate.problem()).map_err(CheckError::NotProved)?;
     let certified = certificate.certified(proof).map_err(CheckError::NotProved)?;
     formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
+    if let Some(claimed) = &certificate.stability {
+        claimed.hold(certified.stability.as_ref())?;
+    }
     Ok(certified)
 }
 
@@ -117,9 +122,10 @@ impl DampedCertificate {
             forces: vec![&self.force],
             coordinates: vec![coordinate()],
             drive: self.drive.as_ref().map(|drive| drive.periods),
+            phase: 0,
             odd: self.odd,
             motions: vec![self.motion()],
-            reciprocal: self.reciprocal_ball(),
+            reciprocal: reciprocal(self.drive.as_ref(), &self.reciprocal, self.bits),
             highest: self.highest,
             inverse: &self.inverse,
             inverse_bits: self.inverse_bits,
@@ -140,17 +146,6 @@ impl DampedCertificate {
         let mut problem = self.problem();
         problem.motions = vec![FourierSeries::exactly(vec![], vec![])];
         problem.is_odd()
-    }
-
-    /// `1/omega`, with a drive exactly.
-    fn reciprocal_ball(&self) -> Ball {
-        match &self.drive {
-            None => WORKING.dyadic(&self.reciprocal, self.bits),
-            Some(drive) => {
-                let periods = Rational::from_integer(Integer::from(drive.periods));
-                WORKING.fraction(&(periods / &drive.frequency))
-            }
-        }
     }
 
     /// The approximate motion.
@@ -278,12 +273,7 @@ impl DampedCertificate {
     /// # Errors
     /// A frequency without a value, or a damping without one.
     fn certified(&self, proof: Proof) -> Result<Certified, NotProved> {
-        let mut reciprocal = self.reciprocal_ball();
-        if self.drive.is_none() {
-            reciprocal.radius += proof.radius.over(Bound::power_of_two(self.sigma).value());
-        }
-        let frequency = WORKING.quotient(&WORKING.integer(1), &reciprocal);
-        let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
+        let frequency = frequency(&self.problem(), proof.radius)?;
         let motion = self.motion();
         let formula = self.formula.as_ref();
         // Only the comparison with a formula needs the copies.
@@ -292,7 +282,7 @@ impl DampedCertificate {
             None => vec![],
         };
         let truth = Truth { copies: &copies, frequency: &frequency, radius: proof.radius };
-        let (exponent, amplitude, errors) = match &self.drive {
+        let (exponent, multipliers, amplitude, errors) = match &self.drive {
             None => {
                 let errors = |formula: &JudgedFormula| {
                     truth.errors(
@@ -300,8 +290,8 @@ impl DampedCertificate {
                         &with_cosine_phase(formula.motion(self.bits)),
                     )
                 };
-                let exponent = Enclosure::from_ball(&self.exponent(&motion, proof.radius)?);
-                (Some(exponent), None, formula.map(errors))
+                let exponent = self.exponent(&motion, proof.radius)?;
+                (Some(exponent), None, None, formula.map(errors))
             }
             Some(drive) => {
                 let mut amplitude = amplitude_of(&motion, drive.harmonic);
@@ -311,17 +301,23 @@ impl DampedCertificate {
                     truth.errors_of_driven(&own, [&amplitude_of(&own, drive.harmonic), &amplitude])
                 };
                 let errors = formula.map(errors);
-                (None, Some(Enclosure::from_ball(&amplitude)), errors)
+                let multipliers = stability::multipliers(&self.problem(), proof.radius);
+                (None, multipliers, Some(Enclosure::from_ball(&amplitude)), errors)
             }
+        };
+        let stability = match &exponent {
+            Some(exponent) => {
+                let reciprocal = self.problem().reciprocal_within(proof.radius);
+                Stability::of_exponent(exponent, &reciprocal)
+            }
+            None => multipliers.as_ref().map_or(Stability::UNKNOWN, Multipliers::stability),
         };
         Ok(Certified {
             proof,
             frequency: Enclosure::from_ball(&frequency),
-            exponent,
-            multipliers: match self.drive {
-                None => None,
-                Some(_) => stability::multipliers(&self.problem(), proof.radius),
-            },
+            exponent: exponent.as_ref().map(Enclosure::from_ball),
+            multipliers,
+            stability: Some(stability),
             amplitude,
             amplitudes: vec![],
             copies: copies.len().max(1),
@@ -373,6 +369,27 @@ impl Drive {
             None => Ok(()),
         }
     }
+}
+
+/// `1/omega`, with a drive exactly.
+fn reciprocal(drive: Option<&Drive>, approximate: &Integer, bits: usize) -> Ball {
+    match drive {
+        None => WORKING.dyadic(approximate, bits),
+        Some(drive) => {
+            let periods = Rational::from_integer(Integer::from(drive.periods));
+            WORKING.fraction(&(periods / &drive.frequency))
+        }
+    }
+}
+
+/// omega of every motion within a radius of that of a problem, of which `1/omega` counts as its
+/// weight says.
+///
+/// # Errors
+/// A frequency without a value.
+fn frequency(problem: &DampedProblem, radius: Bound) -> Result<Ball, NotProved> {
+    let frequency = WORKING.quotient(&WORKING.integer(1), &problem.reciprocal_within(radius));
+    frequency.ok_or(NotProved::TooLarge(radius))
 }
 
 /// `sqrt(a_k^2 + b_k^2)`.

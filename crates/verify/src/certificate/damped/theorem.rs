@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! F = X'' + p g(X) X' + p^2 h(X),    F_k = -k^2 X_k + p [phi(X)']_k + p^2 [h(X)]_k,   phi' = g      one for each cosine and sine
-//! b_1 = 0                            the phase, of the first coordinate: p takes the place of b_1 among the unknowns
+//! b_1 = 0                            the phase, of one coordinate: p takes the place of b_1 among the unknowns
 //! norm: sigma |p| + sum_k (|a_k| + |b_k|)
 //! ```
 //!
@@ -38,7 +38,7 @@
 //! v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by term.
 //!
 //! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and
-//! `r < a_1`, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
+//! `r < a_1` of that coordinate, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
 //! is invertible, hence it is injective. `k X_k` is summable, for `phi(X)` is, and so is `k^2 X_k`:
 //! `X(t/p)` is a motion, at rest or of a part of the period only if a_1 were zero. DF is injective
 //! there. Were the second of Floquet's multipliers one too, a periodic solution of the variational
@@ -51,7 +51,9 @@
 //! is exactly one zero of odd harmonics in the ball, and one with even harmonics may be as near. A
 //! limit cycle is isolated all the same: half a period and a turn of x are a map whose second
 //! multiplier is positive, and the root of that of the period; were that one, so were this, and the
-//! solution above would have odd harmonics.
+//! solution above would have odd harmonics. Of several coordinates there are other multipliers,
+//! roots of one among them perhaps: there the statement is that no other motion of odd harmonics,
+//! or of all where it is proved of all, has nearly this period and is near.
 //!
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
 //! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is not an
@@ -85,6 +87,9 @@ const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 /// Binary digits of a series that is used only to bound the size of a product.
 const ROUGH: i32 = 40;
 
+/// Binary digits of a series of which a value is to be known to all digits of the stability.
+const WORKING_DIGITS: i32 = 120;
+
 /// The symbols of `cos(Omega t)` and `sin(Omega t)` in a driven force.
 pub(super) fn waves_of_drive() -> [Symbol; 2] {
     ["c", "s"].map(Symbol::new)
@@ -101,6 +106,9 @@ pub(super) struct DampedProblem<'a> {
     /// Number of drive periods in one period of the motion; `None` for a limit cycle, of which p is
     /// an unknown.
     pub(super) drive: Option<usize>,
+    /// The place of the coordinate whose first harmonic has no sine in a limit cycle, which says
+    /// where the cycle begins.
+    pub(super) phase: usize,
     /// Whether the motion has odd harmonics alone.
     pub(super) odd: bool,
     /// X, approximately, one series for each coordinate.
@@ -140,12 +148,9 @@ impl CoordinateWave {
     }
 }
 
-/// The wave whose coefficient is zero in a limit cycle, which says where it begins.
-const PHASE: CoordinateWave = CoordinateWave { coordinate: 0, function: BasisFunction::Sine(1) };
-
 impl DampedProblem<'_> {
     /// Whether p is an unknown.
-    const fn is_free(&self) -> bool {
+    pub(super) const fn is_free(&self) -> bool {
         self.drive.is_none()
     }
 
@@ -172,9 +177,17 @@ impl DampedProblem<'_> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
         let waves = self.waves(harmonics);
         match self.is_free() {
-            true => [PHASE].into_iter().chain(waves.filter(|wave| *wave != PHASE)).collect(),
+            true => {
+                let phase = self.phase_wave();
+                [phase].into_iter().chain(waves.filter(|wave| *wave != phase)).collect()
+            }
             false => waves.collect(),
         }
+    }
+
+    /// The wave whose coefficient is zero in a limit cycle.
+    const fn phase_wave(&self) -> CoordinateWave {
+        CoordinateWave { coordinate: self.phase, function: BasisFunction::Sine(1) }
     }
 
     /// The values of an expression along motions of all coordinates.
@@ -241,24 +254,68 @@ impl DampedProblem<'_> {
         motions.map(|motion| motion.shortened(digits).widened(radius)).collect()
     }
 
+    /// p of every motion within this radius: with a drive exactly the one that it gives.
+    pub(super) fn reciprocal_within(&self, radius: Bound) -> Ball {
+        let mut reciprocal = self.reciprocal.clone();
+        if self.is_free() {
+            reciprocal.radius += radius.over(Bound::power_of_two(self.sigma).value());
+        }
+        reciprocal
+    }
+
     /// The coefficients `p G(X)` and `p^2 h'(X)` of the variational equation along every motion
     /// within this radius, from so many binary digits of X; `None` if they have no value.
-    pub(super) fn variational(
-        &self,
-        digits: i32,
-        radius: Bound,
-    ) -> Option<[Vec<Vec<FourierSeries>>; 2]> {
+    pub(super) fn variational(&self, digits: i32, radius: Bound) -> Option<[SeriesMatrix; 2]> {
         let ball = self.ball(digits, radius);
         let slopes = self.slopes(&self.forces).ok()?;
         let damping = self.matrix_along(&self.damping, &ball).ok()?;
         let slopes = self.matrix_along(&slopes, &ball).ok()?;
-        let p = FourierSeries::constant(self.reciprocal.clone());
+        let p = FourierSeries::constant(self.reciprocal_within(radius));
         let squared = p.product(&p);
         let times = |factor: &FourierSeries, matrix: Vec<Vec<FourierSeries>>| {
             let row = |row: Vec<FourierSeries>| row.iter().map(|own| factor.product(own)).collect();
             matrix.into_iter().map(row).collect()
         };
         Some([times(&p, damping), times(&squared, slopes)])
+    }
+
+    /// `X'` and `p^2 h(X)` at theta = 0 of every motion within this radius of a limit cycle
+    /// (`stability.rs`); `None` if they have no value.
+    pub(super) fn rates_at_zero(&self, radius: Bound) -> Option<[Vec<Ball>; 2]> {
+        let all = |matrix: &SeriesMatrix| largest_column(matrix, FourierSeries::norm);
+        let forces_along = |motions: &[FourierSeries]| -> Option<Vec<FourierSeries>> {
+            self.forces.iter().map(|force| self.values_along(force, motions).ok()).collect()
+        };
+        let ball = self.ball(ROUGH, radius);
+        let damping = self.matrix_along(&self.damping, &ball).ok()?;
+        let slopes = self.matrix_along(&self.slopes(&self.forces).ok()?, &ball).ok()?;
+        let own_damping = self.matrix_along(&self.damping, &self.motions).ok()?;
+        let own_forces = forces_along(&self.motions)?;
+        let velocities: Vec<FourierSeries> =
+            self.motions.iter().map(FourierSeries::derivative).collect();
+        let [p, within] = [self.reciprocal.clone(), self.reciprocal_within(radius)];
+        let squared = FourierSeries::constant(WORKING.product(&p, &p));
+        let p_series = FourierSeries::constant(p.clone());
+        let (mut defect, mut drags, mut sizes) = (Bound::ZERO, Bound::ZERO, Bound::ZERO);
+        for ((row, force), velocity) in own_damping.iter().zip(&own_forces).zip(&velocities) {
+            let drag = image_of(row, &velocities);
+            let bent = p_series.product(&drag).sum(&squared.product(force));
+            defect += velocity.derivative().sum(&bent).norm();
+            drags += drag.norm();
+            sizes += force.norm();
+        }
+        let [known, most] = [&p, &within].map(|ball| WORKING.magnitude(ball));
+        let change = radius.over(Bound::power_of_two(self.sigma).value());
+        let apart = defect
+            + most * all(&damping) * radius
+            + change * drags
+            + most * most * all(&slopes) * radius
+            + (most + known) * change * sizes;
+        let speeds = velocities.iter().map(|velocity| velocity.clone().widened(apart).at_zero());
+        let within = WORKING.product(&within, &within);
+        let forces = forces_along(&self.ball(WORKING_DIGITS, radius))?;
+        let forces = forces.iter().map(|force| WORKING.product(&within, &force.at_zero()));
+        Some([speeds.collect(), forces.collect()])
     }
 
     /// Whether half a period later the equation is its mirror image, and the motion has odd
@@ -293,7 +350,7 @@ impl DampedProblem<'_> {
     /// Whether no state of rest and no motion of a shorter period lies within this radius. Always
     /// `true` where p is known, since no such claim is made then.
     fn is_distinct(&self, radius: Bound, sigma: Bound) -> bool {
-        let first = self.motions[0].cosine(1);
+        let first = self.motions[self.phase].cosine(1);
         !self.is_free()
             || self.reciprocal.middle.is_positive()
                 && radius.over(sigma.value()).value() < WORKING.distance_from_zero(&self.reciprocal)
@@ -349,7 +406,7 @@ pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>
 }
 
 /// A matrix of series: a row for each equation, a column for each coordinate.
-type SeriesMatrix = Vec<Vec<FourierSeries>>;
+pub(super) type SeriesMatrix = Vec<Vec<FourierSeries>>;
 
 /// The largest sum of a bound over a column of a matrix.
 fn largest_column<Entry>(matrix: &[Vec<Entry>], bound: impl Fn(&Entry) -> Bound) -> Bound {
@@ -358,6 +415,13 @@ fn largest_column<Entry>(matrix: &[Vec<Entry>], bound: impl Fn(&Entry) -> Bound)
         matrix.iter().filter_map(|row| row.get(column)).map(&bound).sum()
     };
     (0..columns).map(column).fold(Bound::ZERO, Bound::max)
+}
+
+/// The sum of the products of two lists.
+fn image_of(row: &[FourierSeries], vector: &[FourierSeries]) -> FourierSeries {
+    let parts = row.iter().zip(vector).map(|(entry, own)| entry.product(own));
+    let nothing = || FourierSeries::exactly(vec![], vec![]);
+    parts.reduce(|sum, part| sum.sum(&part)).unwrap_or_else(nothing)
 }
 
 /// The expressions whose norms over a ball are in Z2.
@@ -527,11 +591,7 @@ impl<'a> DampedEquations<'a> {
         let motions = &problem.motions;
         let velocities: Vec<FourierSeries> =
             motions.iter().map(FourierSeries::derivative).collect();
-        let drag = |row: &Vec<FourierSeries>| {
-            let parts = row.iter().zip(&velocities).map(|(entry, rate)| entry.product(rate));
-            let nothing = || FourierSeries::exactly(vec![], vec![]);
-            parts.reduce(|sum, part| sum.sum(&part)).unwrap_or_else(nothing)
-        };
+        let drag = |row: &Vec<FourierSeries>| image_of(row, &velocities);
         let damping = problem.matrix_along(&problem.damping, motions)?;
         let force = |force: &&Expr| problem.values_along(force, motions);
         Ok(Self {
@@ -783,7 +843,7 @@ impl<'a> DampedBoundData<'a> {
 #[cfg(test)]
 mod tests {
     use super::super::candidate::{certify_cycle, certify_driven, proved_by_some_block};
-    use super::super::coupled::tests::{POTENTIAL_DAMPING, certified};
+    use super::super::coupled::tests::{CYCLE_OF_MASSES, POTENTIAL_DAMPING, certified};
     use super::super::{CoupledCertificate, DampedCertificate, check_damped};
     use super::*;
     use crate::exact::ratio;
@@ -846,6 +906,11 @@ mod tests {
     /// A driven motion of two coordinates, whose dampings depend on both.
     fn coupled() -> CoupledCertificate {
         certified(POTENTIAL_DAMPING, "Omega = 4/5").0
+    }
+
+    /// A limit cycle of two coordinates likewise.
+    fn coupled_cycle() -> CoupledCertificate {
+        certified(CYCLE_OF_MASSES, "").0
     }
 
     #[test]
@@ -954,12 +1019,6 @@ mod tests {
         }
     }
 
-    /// The sum of the products of two lists.
-    fn image_of(row: &[FourierSeries], vector: &[FourierSeries]) -> FourierSeries {
-        let parts = row.iter().zip(vector).map(|(entry, own)| entry.product(own));
-        parts.reduce(|sum, part| sum.sum(&part)).expect("a coordinate")
-    }
-
     /// The place of a wave among the unknowns of the block.
     fn place_of(system: &DampedBoundData, wave: CoordinateWave) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
@@ -1033,13 +1092,14 @@ mod tests {
                 columns_are_bounded(certificate.problem(), is_proved);
             }
         }
-        let sound = coupled();
-        let mut spoilt = sound.clone();
-        for row in &mut spoilt.inverse {
-            row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+        for sound in [coupled(), coupled_cycle()] {
+            let mut spoilt = sound.clone();
+            for row in &mut spoilt.inverse {
+                row[3] = &row[3] * Integer::from(3) / Integer::from(2);
+            }
+            columns_are_bounded(sound.problem(), true);
+            columns_are_bounded(spoilt.problem(), false);
         }
-        columns_are_bounded(sound.problem(), true);
-        columns_are_bounded(spoilt.problem(), false);
     }
 
     fn columns_are_bounded(problem: DampedProblem, is_proved: bool) {
@@ -1104,6 +1164,7 @@ mod tests {
         second_derivative_is_bounded(skew().problem());
         second_derivative_is_bounded(driven().problem());
         second_derivative_is_bounded(coupled().problem());
+        second_derivative_is_bounded(coupled_cycle().problem());
     }
 
     fn second_derivative_is_bounded(problem: DampedProblem) {

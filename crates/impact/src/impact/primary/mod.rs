@@ -29,6 +29,7 @@ mod flight;
 mod follow;
 mod linear;
 mod modes;
+mod nearby;
 mod parameter;
 mod path;
 mod pendulum;
@@ -46,6 +47,7 @@ use crate::system::SystemError;
 
 pub use follow::simulate_primary;
 pub use linear::{Alone, UndampedAndLocked};
+pub use nearby::{NEARBY, nearby_rest_times};
 pub use parameter::PrimaryParameter;
 pub use path::PrimaryState;
 pub use si::MainMass;

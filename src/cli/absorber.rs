@@ -79,7 +79,8 @@ fn run(arguments: &AbsorberArguments) -> Result<Outcome, Failure> {
         },
     };
     Ok(Outcome {
-        verdict: judged.as_ref().map(|judged: &JudgedAbsorber| judged.verdict),
+        verdict: judged.as_ref().and_then(|judged: &JudgedAbsorber| judged.verdict),
+        partial: judged.as_ref().is_some_and(|judged| judged.verdict.is_none()),
         ..answer.outcome(common)?
     })
 }

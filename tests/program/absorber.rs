@@ -62,8 +62,12 @@ fn every_kind_of_absorber_has_every_format() {
 fn a_verdict_is_an_exit_code() {
     let [kind, at] = KINDS[3];
     assert_eq!(run(&[kind, "--at", at]).status.code(), Some(0));
-    assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.01"]).status.code(), Some(3));
+    assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.001"]).status.code(), Some(3));
     assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.05"]).status.code(), Some(0));
+    // What is not found is neither a pass nor a fail.
+    let sought = run(&["tuned", "--at", "mu=1/100000000"]);
+    assert_eq!(sought.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&sought.stdout).contains("not judged"));
 }
 
 #[test]

@@ -161,7 +161,7 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
             end: motion.end,
             largest_distance: motion.largest_distance,
         }),
-        verdict: judged.map(|judged| judged.verdict.name().to_owned()),
+        verdict: judged.and_then(|judged| Some(judged.verdict?.name().to_owned())),
         tolerance: judged.map(|judged| judged.tolerance),
     }
 }

@@ -122,6 +122,9 @@ pub struct AbsorberDesign {
     pub words: &'static str,
     /// Its formulas.
     pub formulas: Vec<AbsorberFormula>,
+    /// The name of the design that has these formulas to the next order; `None` if they are the most
+    /// exact ones.
+    pub refined_by: Option<&'static str>,
 }
 
 /// A formula of a design.

@@ -414,6 +414,7 @@ fn equal_peaks(
                 formula("lower_frequency", "g1", point.conjugate().sqrt_expr(names.mu)?),
                 formula("upper_frequency", "g2", point.sqrt_expr(names.mu)?),
             ],
+            refined_by: None,
         },
     ))
 }
@@ -445,6 +446,7 @@ fn lowest_peak(
             formula("damping", "zeta", written(&lowest.damping)?),
             formula("height", "h", written(&lowest.height)?),
         ],
+        refined_by: None,
     }))
 }
 
@@ -670,6 +672,7 @@ fn lowest_variance(
             formula("damping", "zeta", written(&z)?),
             formula("variance", "V", written(&square)?),
         ],
+        refined_by: None,
     })
 }
 

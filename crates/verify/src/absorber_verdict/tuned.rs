@@ -16,6 +16,9 @@ use crate::values::Values;
 /// The least mass ratio at which doubles resolve the peaks.
 const LEAST_MASS_RATIO: f64 = 1e-6;
 
+/// The largest damping ratio that is searched.
+const MOST_DAMPING: f64 = 1e3;
+
 /// A main mass with its absorber.
 #[derive(Clone, Copy)]
 struct TwoMasses {
@@ -62,7 +65,13 @@ impl TwoMasses {
     /// Frequencies at which peaks are looked for: all, and those near the absorber alone closely.
     fn frequencies(self) -> Vec<f64> {
         const STEPS: u32 = 200;
-        let lowest = 0.1 / (1.0 + self.mass_ratio);
+        let lowest = match self.excitation {
+            Excitation::Force => 0.1 / (1.0 + self.mass_ratio),
+            // The lower fixed point tends to 0 as the mass ratio tends to 2.
+            Excitation::Ground => {
+                0.1 / (1.0 + self.mass_ratio) * (1.0 - 0.5 * self.mass_ratio).max(1e-3)
+            }
+        };
         let between = |from: f64, to: f64| {
             let decades = (to / from).ln();
             (0..=STEPS).map(move |step| from * (decades * f64::from(step) / f64::from(STEPS)).exp())
@@ -157,14 +166,25 @@ impl TwoMasses {
             let at = |k: f64| self.magnification(absorber, frequency + k * step);
             (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step)
         };
-        find_root(slope, 1e-2 * self.scale(), 5.0 * self.scale()).ok()
+        // On shaken ground the damping grows without bound as the mass ratio tends to 2.
+        let mut most = 5.0 * self.scale();
+        while most < MOST_DAMPING && slope(1e-2 * self.scale()) * slope(most) > 0.0 {
+            most *= 2.0;
+        }
+        find_root(slope, 1e-2 * self.scale(), most).ok()
     }
 
     /// The absorber with the least cost, and the cost.
     fn best(self, cost: &dyn Fn(Absorber) -> f64) -> (Absorber, f64) {
         let scale = self.scale();
         let damped = |tuning: f64| {
-            find_minimum(|damping| cost(Absorber { tuning, damping }), 0.05 * scale, 3.0 * scale)
+            let cost = |damping: f64| cost(Absorber { tuning, damping });
+            // On shaken ground the damping grows without bound as the mass ratio tends to 2.
+            let mut most = 3.0 * scale;
+            while most < MOST_DAMPING && cost(2.0 * most) < cost(most) {
+                most *= 2.0;
+            }
+            find_minimum(cost, 0.05 * scale, 2.0 * most)
         };
         let [from, to] = self.tunings();
         let (tuning, least) = find_minimum(|tuning| damped(tuning).1, from, to);
@@ -234,7 +254,9 @@ fn curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCu
     let points =
         value("equal-peaks", "lower_frequency").zip(value("equal-peaks", "upper_frequency"));
     let Some((low, high)) = points else { return vec![] };
-    let (from, to) = ((2.0 * low - high).max(0.4 * low), 2.0 * high - low);
+    // With a heavy absorber the main mass alone has its frequency far above both fixed points.
+    let alone = if system.mass_ratio > 1.0 { 1.5 } else { 0.0 };
+    let (from, to) = ((2.0 * low - high).max(0.4 * low), (2.0 * high - low).max(alone));
     let response = |absorber: Absorber| -> Vec<(f64, f64)> {
         (0..=POINTS)
             .map(|step| from + (to - from) * f64::from(step) / f64::from(POINTS))

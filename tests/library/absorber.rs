@@ -101,6 +101,43 @@ fn what_is_not_found_is_not_judged() {
     assert_eq!(judged.verdict, None);
 }
 
+/// On a damped main mass the design of the lowest variance is found again by a search, with an error in
+/// proportion to the square of the damping.
+#[test]
+fn a_damped_main_mass_moves_the_lowest_variance() {
+    for excitation in [Excitation::Force, Excitation::Ground] {
+        for mu in ["1/50", "1/5"] {
+            let errors = |damping: &str| {
+                let at = format!("mu = {mu}, zeta_1 = {damping}");
+                let judged = judged(AbsorberKind::Damped(excitation), &at);
+                assert_eq!(judged.formulas.len(), 3);
+                ["tuning", "variance"].map(|name| {
+                    let own = judged.formulas.iter().find(|own| own.name == name);
+                    own.and_then(|own| own.relative_error).expect("an error").abs()
+                })
+            };
+            let [tuning, variance] = errors("1/100");
+            let [of_half, variance_of_half] = errors("1/200");
+            // The search knows the tuning to a millionth.
+            let quarter = |one: f64, other: f64| one < 0.35 * other + 2e-6;
+            assert!(quarter(of_half, tuning), "{excitation:?} {mu}: {tuning} {of_half}");
+            assert!(quarter(variance_of_half, variance), "{variance} {variance_of_half}");
+            assert!(tuning < 1e-3 && variance < 1e-2, "{excitation:?} {mu}: {tuning} {variance}");
+            // The damping of the main mass matters: the design without it is farther off.
+            let plain = value(
+                AbsorberKind::Tuned(excitation),
+                &format!("mu = {mu}"),
+                "lowest-variance",
+                "tuning",
+            );
+            let at = format!("mu = {mu}, zeta_1 = 1/100");
+            let judged = judged(AbsorberKind::Damped(excitation), &at);
+            let found = truth(&judged, "lowest-variance", "tuning");
+            assert!((plain / found - 1.0).abs() > 3.0 * tuning);
+        }
+    }
+}
+
 /// What one harmonic leaves out of a cubic sink is the third one: with its first effect the formulas
 /// are at least three times as near the motions with all harmonics, and most of them ten times.
 #[test]

@@ -155,7 +155,9 @@ pub fn judge_absorber(
 ) -> Result<JudgedAbsorber, AbsorberError> {
     laws.check(at)?;
     let truth = match laws.kind {
-        AbsorberKind::Tuned(excitation) => tuned::truth(laws, excitation, at),
+        AbsorberKind::Tuned(excitation) | AbsorberKind::Damped(excitation) => {
+            tuned::truth(laws, excitation, at)
+        }
         AbsorberKind::Nonlinear => nonlinear::truth(laws, at),
         AbsorberKind::ImpactSink => impact_sink::truth(laws, at),
         AbsorberKind::CubicSink => cubic_sink::truth(laws, at),

@@ -18,9 +18,9 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 /// spring
 #[derive(Args)]
 pub struct AbsorberArguments {
-    /// The kind of absorber: a tuned mass damper; a nonlinear one, with a cubic spring beside that of
+    /// The kind of absorber: a tuned mass damper; the same on a damped main mass; a nonlinear one, with a cubic spring beside that of
     /// the main mass; a vibro-impact sink, a ball in a cavity; a light mass on a cubic spring
-    #[arg(value_parser = ["tuned", "nonlinear", "impact-sink", "cubic-sink"])]
+    #[arg(value_parser = ["tuned", "damped", "nonlinear", "impact-sink", "cubic-sink"])]
     kind: String,
     /// What shakes the main mass of a tuned mass damper: a force on it, or the ground; force without
     /// it
@@ -79,7 +79,8 @@ fn run(arguments: &AbsorberArguments) -> Result<Outcome, Failure> {
         },
     };
     Ok(Outcome {
-        verdict: judged.as_ref().map(|judged: &JudgedAbsorber| judged.verdict),
+        verdict: judged.as_ref().and_then(|judged: &JudgedAbsorber| judged.verdict),
+        partial: judged.as_ref().is_some_and(|judged| judged.verdict.is_none()),
         ..answer.outcome(common)?
     })
 }
@@ -89,6 +90,8 @@ fn kind(arguments: &AbsorberArguments) -> Result<AbsorberKind, Failure> {
     match (arguments.kind.as_str(), arguments.excitation.as_deref()) {
         ("tuned", Some("ground")) => Ok(AbsorberKind::Tuned(Excitation::Ground)),
         ("tuned", _) => Ok(AbsorberKind::Tuned(Excitation::Force)),
+        ("damped", Some("ground")) => Ok(AbsorberKind::Damped(Excitation::Ground)),
+        ("damped", _) => Ok(AbsorberKind::Damped(Excitation::Force)),
         (kind, Some(_)) => Err(Failure::Usage(format!(
             "--excitation says nothing to {kind}: it is what shakes the main mass of a tuned mass damper"
         ))),

@@ -24,7 +24,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text};
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct MaterialsArguments {
     /// A TOML file, or - for standard input; without it the paper's design and the materials of its
-    /// Table 2
+    /// Table 2; with [primary] the main mass that carries the pendulum is to come to rest
     pub file: Option<PathBuf>,
     /// Only the materials of the file, without those of the paper's Table 2
     #[arg(long)]

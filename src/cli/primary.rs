@@ -5,7 +5,7 @@ use crate::export::json::shard::Shard;
 use crate::export::{json, primary};
 use crate::impact::primary::{
     PrimaryCase, PrimaryError, PrimaryMotion, PrimaryParameter, PrimaryRow, PrimarySettings,
-    PrimaryStop, simulate_primary, sweep_primary,
+    PrimaryStop, nearby_rest_times, simulate_primary, sweep_primary,
 };
 use crate::impact::sweep::{Axis, grid_size, grid_values};
 use crate::problem::Problem;
@@ -40,11 +40,17 @@ fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, F
         true => Some(simulate_primary(file.case, &PrimarySettings { chain: false, ..settings })?),
         false => None,
     };
+    let is_free = file.case.primary.force == 0.0;
+    let nearby = match asked.chain && is_free {
+        true => nearby_rest_times(file.case, &settings)?,
+        false => None,
+    };
     let report = PrimaryReport {
         motion: &motion,
         units: &file.units,
         samples: &asked.sample,
         judge: judge.as_ref(),
+        nearby,
     };
     let answer = Answer {
         document: &report::primary(&report),

@@ -69,7 +69,8 @@ pub struct SimulateArguments {
     #[arg(long, value_enum)]
     pub(super) integrator: Option<Method>,
     /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with
-    /// its formula, and its error against the integration; a sweep is not judged
+    /// its formula, and its error against the integration; with [primary] main mass and pendulum
+    /// together; a sweep is not judged
     #[arg(long, conflicts_with = "integrator")]
     pub(super) chain: bool,
     /// Follow many motions: a parameter over a range by equal steps, by equal ratios

@@ -27,7 +27,7 @@ pub fn picture(laws: &AbsorberLaws, judged: &JudgedAbsorber) -> Result<String, F
     let mut designs = 0;
     let curves = judged.curves.iter().map(|curve| {
         let style = match (laws.kind, curve.kind) {
-            (AbsorberKind::Tuned(_), AbsorberCurveKind::Truth)
+            (AbsorberKind::Tuned(_) | AbsorberKind::Damped(_), AbsorberCurveKind::Truth)
             | (AbsorberKind::Nonlinear, AbsorberCurveKind::Truth | AbsorberCurveKind::Background) =>
             {
                 designs += 1;
@@ -49,7 +49,7 @@ pub fn picture(laws: &AbsorberLaws, judged: &JudgedAbsorber) -> Result<String, F
 /// Title and axes of the picture.
 fn axes(kind: AbsorberKind) -> [&'static str; 3] {
     match kind {
-        AbsorberKind::Tuned(_) => {
+        AbsorberKind::Tuned(_) | AbsorberKind::Damped(_) => {
             ["Tuned mass damper", "frequency g", "amplitude over the static one"]
         }
         AbsorberKind::Nonlinear => {

@@ -42,7 +42,7 @@ fn times(report: &PrimaryReport) -> Vec<f64> {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let table = lindstedt::export::primary::csv(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[1.0], judge: None });
+/// let table = lindstedt::export::primary::csv(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[1.0], judge: None, nearby: None });
 /// assert_eq!(table.lines().count(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -123,7 +123,7 @@ pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None };
+/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None, nearby: None };
 /// assert!(lindstedt::export::primary::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

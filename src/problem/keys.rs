@@ -73,7 +73,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
             &[Derive, Compare, Impact, Trajectory, Lagrange, Response]
         }
         ("primary", "force" | "frequency") | ("excitation", "frequency_ratio") => &[Simulate],
-        ("primary", _) => &[Simulate, Optimize],
+        ("primary", _) => &[Simulate, Materials, Optimize],
         ("contact", "force" | "law" | "linearisation") => &[Impact],
         ("pendulum", "side")
         | ("contact", "gamma")

@@ -1,12 +1,14 @@
 //! The input of `materials` from a problem file: a design, its damping, and `[[material]]`, the
 //! barriers that are tried.
 //!
-//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. The modulus of the contact of a material follows
+//! In: a [`Problem`], with `[primary]` that of a main mass which carries the pendulum. Out: a
+//! [`MaterialQuestion`]. The modulus of the contact of a material follows
 //! the rule of the other files: that of the material alone, as in the paper; or with its Poisson's
 //! ratio that under a rigid sphere, or of both bodies if `[sphere]` has a modulus.
 
 use super::design::{needs, positive};
 use super::document::MaterialSection;
+use super::primary::{in_si, long_enough};
 use super::simulate::{message_of_missing_key, refuse_two_forms};
 use super::{Problem, ProblemError, ReadingCommand, SphereSection, refused};
 use crate::impact::{
@@ -49,8 +51,15 @@ impl Problem {
             case.zeta = DEFAULT_ZETA;
             defaults.push(Parameter::Zeta);
         }
+        let main_mass = match &self.primary {
+            None => None,
+            Some(section) => Some(self.main_mass_carrying(section, &mut case)?),
+        };
         if !self.has_key("[run] duration") {
-            settings.duration = DEFAULT_DURATION;
+            settings.duration = match main_mass {
+                None => DEFAULT_DURATION,
+                Some(main_mass) => long_enough(&main_mass.primary(&in_si(&case.design))),
+            };
         }
         let mut materials = match only_own {
             true => vec![],
@@ -61,6 +70,7 @@ impl Problem {
             case,
             materials,
             sphere_yield: self.yield_limit("[sphere] yield", self.sphere.yield_limit)?,
+            main_mass,
             settings,
             integrator: Integrator::Taylor,
             defaults,

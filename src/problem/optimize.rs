@@ -5,7 +5,6 @@
 //! between its limits there unless `[limits]` has others; given in `[design]`, or by its own name,
 //! it is fixed. With `[[material]]` a material takes the place of the modulus.
 
-use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
 use super::{Objectives, Problem, ProblemError, ReadingCommand, refused};
 use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
@@ -207,18 +206,7 @@ impl Problem {
                 );
             }
             (Some(section), true) => {
-                let main_mass = section.main_mass()?;
-                self.refuse_tolerance_of_main_mass()?;
-                if self.hangs_at_rest() {
-                    question.case.start = Some(0.0);
-                    question.case.speed = 0.0;
-                }
-                let pendulum =
-                    [question.case.start.unwrap_or(question.case.amplitude), question.case.speed];
-                let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
-                if moving.into_iter().all(|value| value == 0.0) {
-                    return at_rest();
-                }
+                let main_mass = self.main_mass_carrying(section, &mut question.case)?;
                 question.main_mass = Some(main_mass);
             }
         }

@@ -5,7 +5,7 @@ use super::simulate::message_of_missing_key;
 use super::{Problem, ProblemError, refused};
 use crate::impact::hertz::StiffnessDesign;
 use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
-use crate::impact::{Parameter, Start, Units};
+use crate::impact::{Case, Parameter, Start, Units};
 
 /// A main mass with its pendulum, and the settings of the simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct PrimaryProblem {
 
 /// The default duration, in units of 1/omega: long enough for the main mass to come to rest with
 /// the damper locked and without, up to a limit.
-fn long_enough(primary: &Primary) -> f64 {
+pub(super) fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;
     let others = primary.undamped_and_locked();
@@ -79,16 +79,15 @@ impl Problem {
         let (model, Start { x, velocity }) = case.motion()?;
         let units = in_si(&case.design);
         let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
-        let primary = main_mass.primary(&units);
-        let [displacement, speed] = main_mass.start(&units);
-        let start = [x, velocity, displacement, speed];
-        if primary.force == 0.0 && start.iter().all(|value| *value == 0.0) {
+        let case = main_mass.carrying(&units, model, Start { x, velocity });
+        let primary = case.primary;
+        if primary.force == 0.0 && case.start.iter().all(|value| *value == 0.0) {
             return at_rest();
         }
         let usual = PrimarySettings::default();
         let given = |key: &str| self.has_key(&format!("[run] {key}"));
         Ok(PrimaryProblem {
-            case: PrimaryCase { primary, model, start },
+            case,
             settings: PrimarySettings {
                 duration: match given("duration") {
                     true => self.run.duration,
@@ -107,13 +106,37 @@ impl Problem {
 }
 
 /// The error of a main mass and a pendulum that are both at rest.
-pub(super) fn at_rest<T>() -> Result<T, ProblemError> {
+fn at_rest<T>() -> Result<T, ProblemError> {
     refused(
         "nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start",
     )
 }
 
 impl Problem {
+    /// The main mass of this section, which carries the pendulum of `case`; that hangs at rest unless
+    /// the file gives it a start.
+    ///
+    /// # Errors
+    /// [`ProblemError`] names the key; nothing moves.
+    pub(super) fn main_mass_carrying(
+        &self,
+        section: &PrimarySection,
+        case: &mut Case,
+    ) -> Result<MainMass, ProblemError> {
+        let main_mass = section.main_mass()?;
+        self.refuse_tolerance_of_main_mass()?;
+        if self.hangs_at_rest() {
+            case.start = Some(0.0);
+            case.speed = 0.0;
+        }
+        let pendulum = [case.start.unwrap_or(case.amplitude), case.speed];
+        let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
+        match moving.into_iter().all(|value| value == 0.0) {
+            true => at_rest(),
+            false => Ok(main_mass),
+        }
+    }
+
     /// Refuses a tolerance, which would have no effect.
     pub(super) fn refuse_tolerance_of_main_mass(&self) -> Result<(), ProblemError> {
         match self.has_key("[run] integrator_tolerance") {
@@ -133,7 +156,7 @@ impl Problem {
 }
 
 /// The units of a design.
-fn in_si(design: &StiffnessDesign) -> Units {
+pub(super) fn in_si(design: &StiffnessDesign) -> Units {
     Units {
         mass: design.mass,
         length: design.length,

@@ -95,7 +95,10 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
     let within = size_in_percent(judged.tolerance);
     blocks.push(Block::Facts(vec![(
         "verdict",
-        format!("{} (|relative error| <= {within})", judged.verdict.name()),
+        match judged.verdict {
+            Some(verdict) => format!("{} (|relative error| <= {within})", verdict.name()),
+            None => "not judged: some truth was not found".to_owned(),
+        },
     )]));
     blocks
 }

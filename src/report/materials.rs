@@ -3,6 +3,7 @@
 
 use super::{Block, Document, cell};
 use crate::decimal::{decimal, significant};
+use crate::impact::primary::MainMass;
 use crate::impact::{
     ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model,
     Parameter, REST_FRACTION, YieldCheck,
@@ -30,7 +31,10 @@ pub fn materials(study: &MaterialStudy) -> Document<'_> {
     if study.rows.iter().any(|row| row.first.is_some()) {
         sections.push(first_contacts(study));
         sections.push(vec![Block::Entries {
-            heading: "Energy of the swing after each impact until rest, in units of m g L",
+            heading: match study.question.main_mass {
+                None => "Energy of the swing after each impact until rest, in units of m g L",
+                Some(_) => "Energy of main mass and pendulum after each impact until rest, in units of m g L",
+            },
             entries: study.rows.iter().map(energies).collect(),
         }]);
     }
@@ -52,14 +56,28 @@ fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
     let value = |name: &str, value, source| Block::Value { name: name.into(), value, source };
     let si =
         |name, formula, value, unit, words| Block::SiValue { name, formula, value, unit, words };
-    let mut blocks = vec![
-        Block::Heading(format!("{count} barrier{plural} for one pendulum, equation (7):")),
+    let mut blocks = vec![Block::Heading(match study.question.main_mass {
+        None => format!("{count} barrier{plural} for one pendulum, equation (7):"),
+        Some(_) => format!("{count} barrier{plural} for the damper of one main mass:"),
+    })];
+    let carried = match study.question.main_mass {
+        None => "",
+        Some(_) => {
+            blocks.push(Block::Note(MAIN_MASS_EQUATION.to_owned()));
+            " + y''*cos(x)"
+        }
+    };
+    blocks.extend([
         Block::Note(format!(
-            "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
+            "x''{carried}{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
             decimal(study.start.x),
             decimal(study.start.velocity)
         )),
-    ];
+    ]);
+    if let Some(main_mass) = &study.question.main_mass {
+        let hangs = study.start.x == 0.0 && study.start.velocity == 0.0;
+        blocks.push(main_mass_note(main_mass, hangs));
+    }
     blocks.extend(left.map(|left| value("xl", left, Some("the left barrier"))));
     blocks.extend(right.map(|right| value("xc", right, None)));
     let design = &study.question.case.design;
@@ -101,12 +119,14 @@ fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
         Integrator::Taylor | Integrator::RungeKutta => "",
     };
     blocks.push(Block::Note(format!(
-        "followed {route}until t = {}; rest: {} % of the amplitude of the first swing",
+        "followed {route}until t = {}; rest: {} % of the amplitude of the first swing{}",
         decimal(settings.duration),
-        decimal(100.0 * REST_FRACTION)
+        decimal(100.0 * REST_FRACTION),
+        if study.question.main_mass.is_some() { " of the main mass" } else { "" }
     )));
     let amplitude = study.question.case.amplitude;
     if study.question.integrator == Integrator::Chain
+        && study.question.main_mass.is_none()
         && study.model.alpha > CHAIN_FRICTION * amplitude
     {
         blocks.push(Block::Note(format!(
@@ -116,6 +136,24 @@ fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
         )));
     }
     blocks
+}
+
+/// The equation of a main mass.
+pub(super) const MAIN_MASS_EQUATION: &str =
+    "(R + 1)*y'' + x''*cos(x) - x'^2*sin(x) + delta*y' + kappa*y = 0";
+
+/// The numbers and the start of a main mass, whose pendulum may hang at rest.
+pub(super) fn main_mass_note<'a>(main_mass: &MainMass, hangs: bool) -> Block<'a> {
+    let MainMass { mass, stiffness, damping, displacement, speed, .. } = *main_mass;
+    Block::Note(format!(
+        "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s{}",
+        decimal(mass),
+        decimal(stiffness),
+        decimal(damping),
+        decimal(displacement),
+        decimal(speed),
+        if hangs { " with the pendulum hanging at rest" } else { "" }
+    ))
 }
 
 /// Largest ratio of alpha to the amplitude for which the rest times of a chain are within one
@@ -247,8 +285,10 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
     ];
     let touched = study.rows.iter().any(|row| !row.course.impacts.is_empty());
     if !touched {
-        let words = "no barrier is touched within the run: the material has no say, every row is the plain pendulum";
-        blocks.push(Block::Note(words.to_owned()));
+        let body = if study.question.main_mass.is_some() { "main mass" } else { "plain pendulum" };
+        blocks.push(Block::Note(format!(
+            "no barrier is touched within the run: the material has no say, every row is the {body}"
+        )));
     }
     let own = study.rows.iter().filter_map(|row| {
         let damping = row.material.damping?;
@@ -267,6 +307,10 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
             decimal(study.seconds(rest))
         ),
         Err(reason) => format!("without a barrier: no rest time, {reason}"),
+    }));
+    blocks.extend(study.undamped_and_locked().map(|others| {
+        let [without, locked] = [others.without, others.locked].map(|alone| cell(alone.rest_time));
+        Block::Note(format!("main mass without the damper: {without}; with it locked: {locked}"))
     }));
     blocks
 }
@@ -373,9 +417,10 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
         }
     };
     let apart = percent(spread);
+    let body = if study.question.main_mass.is_some() { "main mass" } else { "pendulum" };
     Some(match (spread < SAME, study.order(first)) {
         (true, _) => format!(
-            "With {names} held fixed the rest times are {apart} apart: the modulus does not decide when the pendulum rests{why}."
+            "With {names} held fixed the rest times are {apart} apart: the modulus does not decide when the {body} rests{why}."
         ),
         (false, Some(true)) => format!(
             "With {names} held fixed the rest times are {apart} apart, and the softer the barrier the sooner the rest{why}."
@@ -435,8 +480,9 @@ fn baseline(study: &MaterialStudy) -> Option<String> {
     let with: Vec<f64> =
         rows.clone().map(|row| row.course.rest_time).collect::<Result<_, _>>().ok()?;
     let lossless: Vec<f64> = rows.map(|row| row.lossless).collect::<Result<_, _>>().ok()?;
+    let body = if study.question.main_mass.is_some() { "main mass" } else { "swing" };
     Some(format!(
-        "Without a barrier the swing rests at {}, with these barriers without loss {}, with their loss {}.",
+        "Without a barrier the {body} rests at {}, with these barriers without loss {}, with their loss {}.",
         significant(none, 4),
         range(lossless),
         range(with)

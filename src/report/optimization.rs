@@ -6,7 +6,7 @@ mod sentences;
 
 pub use sentences::optimization_sentences;
 
-use super::materials::{chosen, in_words, percent};
+use super::materials::{MAIN_MASS_EQUATION, chosen, in_words, main_mass_note, percent};
 use super::{Block, Document, Heading, cell};
 use crate::decimal::{decimal, significant};
 use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
@@ -115,15 +115,7 @@ fn problem_blocks(study: &Study) -> Vec<Block<'_>> {
     )));
     if let Some(of) = question.main_mass {
         let hangs = question.case.start == Some(0.0) && question.case.speed == 0.0;
-        blocks.push(Block::Note(format!(
-            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s{}",
-            decimal(of.mass),
-            decimal(of.stiffness),
-            decimal(of.damping),
-            decimal(of.displacement),
-            decimal(of.speed),
-            if hangs { " with the pendulum hanging at rest" } else { "" }
-        )));
+        blocks.push(main_mass_note(&of, hangs));
     }
     for constraint in question.constraints() {
         blocks.push(Block::Note(format!("constraint: {constraint}")));
@@ -163,8 +155,7 @@ fn equation<'a>(question: &OptimizationProblem, best: &Finalist) -> Vec<Block<'a
     let mut carried = "";
     if question.main_mass.is_some() {
         carried = " + y''*cos(x)";
-        let main_mass = "(R + 1)*y'' + x''*cos(x) - x'^2*sin(x) + delta*y' + kappa*y = 0";
-        blocks.push(Block::Note(main_mass.to_owned()));
+        blocks.push(Block::Note(MAIN_MASS_EQUATION.to_owned()));
     }
     blocks.push(Block::Note(format!(
         "x''{carried}{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",

@@ -2,10 +2,10 @@
 //! the damper.
 
 use super::trajectory::{Doubt, TRUSTED};
-use super::{Block, Document, cell, percent};
+use super::{Block, Document, cell, materials, percent};
 use crate::decimal::{decimal, significant};
 use crate::impact::Units;
-use crate::impact::primary::{Alone, PrimaryMotion, PrimaryParameter, PrimaryRow};
+use crate::impact::primary::{Alone, NEARBY, PrimaryMotion, PrimaryParameter, PrimaryRow};
 use crate::impact::sweep::{Axis, grid_values};
 use crate::symbol::Symbol;
 
@@ -23,6 +23,9 @@ pub struct PrimaryReport<'a> {
     pub samples: &'a [f64],
     /// The same motion by integration, if it was followed by closed forms.
     pub judge: Option<&'a PrimaryMotion>,
+    /// The least and the greatest rest time of starts nearby, if it was followed by closed forms and
+    /// they rest.
+    pub nearby: Option<[f64; 2]>,
 }
 
 impl PrimaryReport<'_> {
@@ -49,7 +52,7 @@ impl PrimaryReport<'_> {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None };
+/// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None, nearby: None };
 /// let text = lindstedt::export::text::document(&lindstedt::report::primary(&report), 120);
 /// assert!(text.contains("damper locked"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -273,8 +276,36 @@ fn closed_forms<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let [found, truth] = [motion, judge].map(|motion| motion.impacts.len());
     rows.push(vec!["impacts".to_owned(), found.to_string(), truth.to_string(), String::new()]);
     blocks.push(Block::table(["", "closed forms", "integration", "error"], rows));
+    if time(motion).is_some() {
+        blocks.push(Block::Sentence(validity(report.nearby)));
+    }
     blocks
 }
+
+/// Whether a rest time by closed forms can be relied upon, by those of starts nearby.
+fn validity(nearby: Option<[f64; 2]>) -> String {
+    let part = significant(100.0 * NEARBY, 1);
+    let Some([least, greatest]) = nearby else {
+        return format!(
+            "Not all starts {part} % smaller and larger rest within the run: closed forms cannot give this rest time; integrate \
+             instead, without --chain."
+        );
+    };
+    let [from, to] = [least, greatest].map(|rest| significant(rest, 4));
+    match greatest <= (1.0 + MOST_SPREAD) * least {
+        true => format!(
+            "Starts {part} % smaller and larger rest within {} of each other.",
+            materials::percent(greatest / least - 1.0)
+        ),
+        false => format!(
+            "Starts {part} % smaller and larger rest between {from} and {to}: each impact decides when the next one is, and closed \
+             forms cannot give this rest time; integrate instead, without --chain."
+        ),
+    }
+}
+
+/// The largest spread of rest times of starts nearby with which closed forms give them.
+const MOST_SPREAD: f64 = 0.005;
 
 fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let row = |time: &f64| {

@@ -71,13 +71,14 @@ fn searches_find_the_designs() {
         (SHAKEN, "mu = 1/1000"),
         (SHAKEN, "mu = 1/20"),
         (SHAKEN, "mu = 1.9"),
+        (SHAKEN, "mu = 1.99"),
     ] {
         let judged = judged(kind, at);
         for own in &judged.formulas {
             let error = own.relative_error.unwrap_or(f64::NAN);
             assert!(error.abs() < 2e-6, "{kind:?} {at}: {own:?}");
         }
-        assert_eq!(judged.verdict, Verdict::Pass);
+        assert_eq!(judged.verdict, Some(Verdict::Pass));
     }
 }
 
@@ -88,16 +89,82 @@ fn a_law_of_small_changes_is_not_judged_of_large_ones() {
         let judged =
             judged(AbsorberKind::Nonlinear, &format!("mu = 1/20, alpha3 = 1, F = {force}"));
         let cubic = judged.formulas.iter().find(|own| own.name == "cubic").expect("a formula");
-        assert_eq!((cubic.truth, judged.verdict), (None, Verdict::Fail), "F = {force}");
+        assert_eq!((cubic.truth, judged.verdict), (None, None), "F = {force}");
     }
 }
 
 /// A heavier main mass than doubles resolve is no pass.
 #[test]
-fn what_is_not_found_is_no_pass() {
+fn what_is_not_found_is_not_judged() {
     let judged = judged(TUNED, "mu = 1/100000000");
     assert!(judged.formulas.iter().all(|own| own.truth.is_none()));
-    assert_eq!(judged.verdict, Verdict::Fail);
+    assert_eq!(judged.verdict, None);
+}
+
+/// On a damped main mass the design of the lowest variance is found again by a search, with an error in
+/// proportion to the square of the damping.
+#[test]
+fn a_damped_main_mass_moves_the_lowest_variance() {
+    for excitation in [Excitation::Force, Excitation::Ground] {
+        for mu in ["1/50", "1/5"] {
+            let errors = |damping: &str| {
+                let at = format!("mu = {mu}, zeta_1 = {damping}");
+                let judged = judged(AbsorberKind::Damped(excitation), &at);
+                assert_eq!(judged.formulas.len(), 3);
+                ["tuning", "variance"].map(|name| {
+                    let own = judged.formulas.iter().find(|own| own.name == name);
+                    own.and_then(|own| own.relative_error).expect("an error").abs()
+                })
+            };
+            let [tuning, variance] = errors("1/100");
+            let [of_half, variance_of_half] = errors("1/200");
+            // The search knows the tuning to a millionth.
+            let quarter = |one: f64, other: f64| one < 0.35 * other + 2e-6;
+            assert!(quarter(of_half, tuning), "{excitation:?} {mu}: {tuning} {of_half}");
+            assert!(quarter(variance_of_half, variance), "{variance} {variance_of_half}");
+            assert!(tuning < 1e-3 && variance < 1e-2, "{excitation:?} {mu}: {tuning} {variance}");
+            // The damping of the main mass matters: the design without it is farther off.
+            let plain = value(
+                AbsorberKind::Tuned(excitation),
+                &format!("mu = {mu}"),
+                "lowest-variance",
+                "tuning",
+            );
+            let at = format!("mu = {mu}, zeta_1 = 1/100");
+            let judged = judged(AbsorberKind::Damped(excitation), &at);
+            let found = truth(&judged, "lowest-variance", "tuning");
+            assert!((plain / found - 1.0).abs() > 3.0 * tuning);
+        }
+    }
+}
+
+/// What one harmonic leaves out of a cubic sink is the third one: with its first effect the formulas
+/// are at least three times as near the motions with all harmonics, and most of them ten times.
+#[test]
+fn the_third_harmonic_is_what_one_harmonic_leaves_out() {
+    for lambda in ["0.02", "0.1", "0.2", "0.35", "0.5"] {
+        let judged =
+            judged(AbsorberKind::CubicSink, &format!("lambda = {lambda}, k = 2, eps = 1/100"));
+        let error = |design: &str, name: &str| {
+            let own = judged.formulas.iter().find(|own| (own.design, own.name) == (design, name));
+            own.and_then(|own| own.relative_error).expect("an error").abs()
+        };
+        let mut nearer = vec![];
+        for design in ["upward-jump", "downward-jump"] {
+            let refined = format!("{design}-with-third-harmonic");
+            for name in ["amplitude", "relative_amplitude", "landing", "force", "least_force"] {
+                if (design, name) == ("downward-jump", "least_force") {
+                    continue;
+                }
+                let found = error(&refined, name);
+                assert!(found < 0.005, "{lambda} {design} {name}: {found}");
+                nearer.push(error(design, name) / found);
+            }
+        }
+        nearer.sort_by(f64::total_cmp);
+        assert!(nearer[0] > 2.0 && nearer[4] > 8.0, "{lambda}: {nearer:?}");
+        assert_eq!(judged.verdict, Some(Verdict::Pass));
+    }
 }
 
 /// The response of the equations as they are printed: their highest amplitude is h of the design.

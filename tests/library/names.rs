@@ -326,6 +326,41 @@ fn every_name_of_every_method_may_be_taken() {
     assert!(tried > 400, "{tried}");
 }
 
+/// Macros of `math.h` are no names of variables in C, and keywords are none in their language.
+#[test]
+fn exported_programs_have_names_of_their_language() {
+    use lindstedt::export::code::{self, Language};
+    let program = |name: &str, language: Language| {
+        let oscillator =
+            Oscillator::parse(&format!("x'' + x + {name}*x^3 = 0")).expect("an equation");
+        let solution = solve(&oscillator, &Options::default()).expect("a law");
+        code::solution(&oscillator, &solution, None, language).expect("a program")
+    };
+    for (language, name) in [
+        (Language::C, "M_PI"),
+        (Language::C, "M_SQRT1_2"),
+        (Language::C, "HUGE_VAL"),
+        (Language::C, "double"),
+        (Language::Python, "lambda"),
+        (Language::Julia, "end"),
+        (Language::Julia, "function"),
+        (Language::Matlab, "end"),
+        (Language::Matlab, "function"),
+        (Language::Rust, "fn"),
+    ] {
+        let renamed = program(name, language);
+        assert!(renamed.contains(&format!("{name}_")), "{name}: {renamed}");
+        // A macro is nowhere but in comments, where the equation is as it was given.
+        let code = renamed.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let is_macro =
+            language == Language::C && name.starts_with(|first: char| first.is_uppercase());
+        let mut words = code.flat_map(|line| {
+            line.split(|letter: char| !(letter.is_ascii_alphanumeric() || letter == '_'))
+        });
+        assert!(!is_macro || words.all(|word| word != name), "{name}: {renamed}");
+    }
+}
+
 /// In LaTeX functions stand upright, so a parameter of the same letter is told apart.
 #[test]
 fn functions_of_answers_are_no_parameters() {

@@ -2,7 +2,8 @@
 //! chain of the pendulum alone, and the balance of momentum and energy.
 
 use lindstedt::impact::primary::{
-    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimarySettings, simulate_primary,
+    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimarySettings, nearby_rest_times,
+    simulate_primary,
 };
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
 use lindstedt::problem::Problem;
@@ -49,8 +50,87 @@ fn rest_times_are_those_of_the_integration() {
     errors.sort_by(f64::total_cmp);
     let part = |part: usize| errors[errors.len() * part / 100];
     println!("half {:.2e}, nine of ten {:.2e}, all {:.2e}", part(50), part(90), part(99));
-    assert!(part(50) < 2e-4, "{errors:?}");
-    assert!(part(90) < 1e-2, "{errors:?}");
+    assert!(part(50) < 5e-5, "{errors:?}");
+    assert!(part(90) < 3e-3, "{errors:?}");
+}
+
+/// A number from 0 to 1, by the xorshift of Marsaglia.
+fn random(state: &mut u64) -> f64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// A main mass with its pendulum at random: mass ratios from 0.01 to 0.2, dampings of 0.2 to 2 % of
+/// the critical one, barriers of any hardness on one side or both.
+fn lightly_damped(state: &mut u64) -> PrimaryCase {
+    let mut between = |from: f64, to: f64| from + (to - from) * random(state);
+    let mut decades = |from: f64, to: f64| between(from.ln(), to.ln()).exp();
+    let (mass, ratio) = (decades(5.0, 100.0), decades(0.3, 9.0));
+    let [of_mass, zeta] = [(); 2].map(|()| decades(0.002, 0.02));
+    let (gamma, displacement) = (decades(1e5, 1e9), decades(0.02, 0.2));
+    let stiffness = ratio * mass;
+    let damping = 2.0 * of_mass * (stiffness * mass).sqrt();
+    let mu = between(0.0, 1.0) * gamma;
+    let [near, far] = [(); 2].map(|()| between(0.05, 0.4));
+    let left = match between(0.0, 3.0) {
+        kind if kind < 1.0 => Some(-near),
+        kind if kind < 2.0 => Some(-far),
+        _ => None,
+    };
+    let model = Model { zeta, gamma, mu, left, right: Some(near), ..Model::default() };
+    let primary = Primary { mass, stiffness, damping, force: 0.0, frequency: 0.0 };
+    PrimaryCase { primary, model, start: [0.0, 0.0, displacement, 0.0] }
+}
+
+/// With light damping a rest time is within 1 % of the integration, or its starts nearby say that
+/// closed forms cannot give it; no more than one in a hundred does neither.
+#[test]
+fn lightly_damped_main_masses_rest_as_by_integration_or_say_that_they_may_not() {
+    const MOTIONS: usize = 200;
+    let mut state = 0x9e37_79b9_7f4a_7c15;
+    let (mut errors, mut doubtful, mut needless, mut unsaid) = (vec![], 0, 0, 0);
+    for number in 0..MOTIONS {
+        let case = lightly_damped(&mut state);
+        let rest = case.primary.undamped_and_locked().locked.rest_time.expect("a rest");
+        let duration = (1.2 * rest).clamp(300.0, 3000.0);
+        let settings = PrimarySettings {
+            duration,
+            chain: true,
+            stop_at_rest: true,
+            ..PrimarySettings::default()
+        };
+        let integration = PrimarySettings { chain: false, ..settings };
+        let [found, truth] = [settings, integration]
+            .map(|settings| simulate_primary(case, &settings).expect("a motion").rest_time());
+        let (Ok(found), Ok(truth)) = (found, truth) else {
+            let nearby = nearby_rest_times(case, &settings).expect("motions");
+            assert!(found == truth || nearby.is_none(), "{number}: {found:?} {truth:?} {case:?}");
+            continue;
+        };
+        let error = (found / truth - 1.0).abs();
+        let nearby = nearby_rest_times(case, &settings).expect("motions");
+        let is_doubtful = nearby.is_none_or(|[least, greatest]| {
+            assert!(least <= found && found <= greatest, "{number}");
+            greatest > 1.005 * least
+        });
+        unsaid += usize::from(error > 0.01 && !is_doubtful);
+        doubtful += usize::from(is_doubtful);
+        needless += usize::from(is_doubtful && error < 0.01);
+        errors.push(error);
+    }
+    errors.sort_by(f64::total_cmp);
+    let part = |part: usize| errors[errors.len() * part / 100];
+    println!(
+        "half {:.1e}, nine of ten {:.1e}, 95 of 100 {:.1e}, {doubtful} doubtful, {needless} of them needlessly, {unsaid} unsaid",
+        part(50),
+        part(90),
+        part(95)
+    );
+    assert!(errors.len() > MOTIONS * 9 / 10);
+    assert!(part(50) < 1e-5 && part(90) < 1e-3 && part(93) < 1e-2, "{errors:?}");
+    assert!(unsaid <= MOTIONS / 100 && doubtful < MOTIONS / 6, "{unsaid} {doubtful}");
 }
 
 /// Where the mass ratio is zero the pendulum is that of the chain of one coordinate.

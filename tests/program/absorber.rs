@@ -27,11 +27,12 @@ fn in_snapshots(body: impl FnOnce()) {
 }
 
 /// Values of each kind.
-const KINDS: [[&str; 2]; 4] = [
+const KINDS: [[&str; 2]; 5] = [
     ["tuned", "mu=1/20"],
     ["nonlinear", "mu=1/20,alpha3=1,F=1/100"],
     ["impact-sink", "r=0.65,b=1,mu=1/100"],
     ["cubic-sink", "lambda=0.2,k=1,eps=1/100"],
+    ["damped", "mu=1/20,zeta_1=1/100"],
 ];
 
 #[test]
@@ -62,8 +63,12 @@ fn every_kind_of_absorber_has_every_format() {
 fn a_verdict_is_an_exit_code() {
     let [kind, at] = KINDS[3];
     assert_eq!(run(&[kind, "--at", at]).status.code(), Some(0));
-    assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.01"]).status.code(), Some(3));
+    assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.001"]).status.code(), Some(3));
     assert_eq!(run(&[kind, "--at", at, "--tolerance", "0.05"]).status.code(), Some(0));
+    // What is not found is neither a pass nor a fail.
+    let sought = run(&["tuned", "--at", "mu=1/100000000"]);
+    assert_eq!(sought.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&sought.stdout).contains("not judged"));
 }
 
 #[test]

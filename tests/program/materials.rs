@@ -6,11 +6,12 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::export::decimal;
-use lindstedt::export::{json, text};
+use lindstedt::export::{json, materials, text};
 use lindstedt::impact::contact::HuntCrossley;
+use lindstedt::impact::primary::simulate_primary;
 use lindstedt::impact::{
-    ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Settings,
-    Start, course, simulate, study_materials,
+    ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Parameter,
+    Settings, Start, course, simulate, study_materials,
 };
 use lindstedt::problem::Problem;
 use lindstedt::report;
@@ -317,4 +318,92 @@ fn the_chain_tells_the_same_of_the_materials() {
             assert!((found / wanted - 1.0).abs() < 5e-3, "{found} {wanted}");
         }
     }
+}
+
+/// A main mass with the barriers of its damper, which loses nothing in contact.
+const CARRIED: &str = "[primary]\nmass = 0.3\nstiffness = 100\ndamping = 0.06\ndisplacement = 0.01\n[pendulum]\nbarrier = [-0.15, 0.15]\n";
+
+/// A contact inside of a main mass is that of Hertz with the mass of the relative motion, m (R +
+/// sin^2 x_c)/(R + 1).
+#[test]
+fn a_first_contact_beside_a_main_mass_has_the_mass_of_the_relative_motion() {
+    let study = study(&format!("{CARRIED}[contact]\nmu = 0\n[damping]\nzeta = 0"));
+    assert!(study.held_fixed.is_empty());
+    let design = &study.question.case.design;
+    let ratio = 0.3 / design.mass;
+    let relative = design.mass * (ratio + 0.15_f64.sin().powi(2)) / (ratio + 1.0);
+    for row in &study.rows {
+        let first = row.first.expect("a contact");
+        let stiffness = 4.0 / 3.0 * row.material.modulus.value() * design.radius.sqrt();
+        let [depth, duration] = hertz(relative, stiffness, first.speed);
+        let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.02;
+        assert!(near(first.penetration, depth), "{}: {depth}", row.material.name);
+        assert!(near(first.duration, duration), "{}: {duration}", row.material.name);
+        assert!((first.restitution - 1.0).abs() < 0.01, "{}", row.material.name);
+    }
+    let steel = study.rows[0].first.expect("a contact");
+    let [depth, _] = hertz(design.mass, 4.0 / 3.0 * 200e9 * design.radius.sqrt(), steel.speed);
+    assert!((steel.penetration / depth - 1.0).abs() > 0.01, "the mass of the relative motion");
+}
+
+/// Each material is the motion of `simulate` with its modulus; by closed forms it is that of the
+/// integration, and the same design rests as in a search.
+#[test]
+fn the_main_mass_rests_as_it_does_alone_in_a_file() {
+    let text = format!("{CARRIED}[contact]\nmu_over_gamma = 0.3\n[damping]\nzeta = 0.01\n");
+    let file: Problem = text.parse().expect("a file");
+    let question = file.materials(false).expect("a study");
+    let by_chain = MaterialQuestion { integrator: Integrator::Chain, ..question.clone() };
+    let [study, chain] =
+        [question, by_chain].map(|question| study_materials(question).expect("motions"));
+    for (row, of_chain) in study.rows.iter().zip(&chain.rows) {
+        let modulus = row.material.modulus.value();
+        let alone: Problem =
+            format!("{text}[design]\nmodulus = {modulus}").parse().expect("a file");
+        let asked = alone.primary_case(&[]).expect("a case");
+        let motion = simulate_primary(asked.case, &asked.settings).expect("a motion");
+        let [truth, found] =
+            [motion.rest_time(), row.course.rest_time].map(|rest| rest.expect("a rest"));
+        assert!((found / truth - 1.0).abs() < 1e-9, "{found} {truth}");
+        let of_chain = of_chain.course.rest_time.expect("a rest");
+        assert!((of_chain / truth - 1.0).abs() < 0.01, "{of_chain} {truth}");
+        // The energy after an impact is no more than before, and that of the start at most.
+        let energies = &row.course.energies;
+        assert_eq!(energies.len(), row.course.impacts.len());
+        assert!(energies[0] < motion.energy.start);
+        assert!(energies.windows(2).all(|pair| pair[1] < pair[0]), "{energies:?}");
+    }
+    // mu/gamma, lambda and a restitution hold fixed the same.
+    let rest = |form: Parameter| {
+        let held = study.held_fixed.iter().find(|held| held.damping.form() == form).expect("it");
+        held.rest_times.iter().map(|rest| rest.expect("a rest")).collect::<Vec<_>>()
+    };
+    for form in [Parameter::Lambda, Parameter::Restitution] {
+        for (one, other) in rest(Parameter::MuOverGamma).iter().zip(rest(form)) {
+            assert!((one / other - 1.0).abs() < 1e-3, "{form:?} {one} {other}");
+        }
+    }
+    let document = json::materials(&study);
+    let main_mass = document.parameters.main_mass.expect("a main mass");
+    assert_eq!((main_mass.mass, main_mass.stiffness), (0.3, 100.0));
+    let page = text::document(&report::materials(&study), 120);
+    for words in
+        ["for the damper of one main mass", "when the main mass rests", "0.3 kg on 100 N/m"]
+    {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+    let picture = materials::figure::materials(&chain).expect("a picture");
+    assert!(picture.contains("Main mass, mu_over_gamma held fixed"));
+}
+
+#[test]
+fn a_main_mass_at_rest_or_driven_is_no_study() {
+    let refused = |text: &str| {
+        let file: Problem = text.parse().expect("a file");
+        file.materials(false).expect_err("no study").to_string()
+    };
+    let still = refused("[primary]\nmass = 0.3\nstiffness = 100");
+    assert!(still.contains("nothing moves"), "{still}");
+    let driven = refused("[primary]\nmass = 0.3\nstiffness = 100\nforce = 1\nfrequency = 18");
+    assert!(driven.contains("force"), "{driven}");
 }

@@ -58,11 +58,12 @@ const SWEEP: [&str; 5] = ["simulate", "--sweep", "zeta=0.01:0.04:2", "--sweep", 
 fn any_split_gives_the_bytes_of_the_undivided_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    let [primary, front, claims] =
-        ["primary/driven.toml", "optimize/front.toml", "audit/paper.toml"].map(example);
+    let [primary, carried, front, claims] =
+        ["primary/driven.toml", "primary/chain.toml", "optimize/front.toml", "audit/paper.toml"]
+            .map(example);
     let equation = "x'' + x'/5 + x^3 = F*cos(t)";
     let section = ["--every", "2*pi", "--after", "20", "--until", "40"];
-    let commands: [(&[&str], &[&str]); 6] = [
+    let commands: [(&[&str], &[&str]); 7] = [
         (&[&SWEEP[..], &["--baseline"]].concat(), &["json", "csv", "text"]),
         (
             &[&["simulate", equation, "--from", "x=1", "--sweep", "F=0:1:10"][..], &section]
@@ -71,6 +72,7 @@ fn any_split_gives_the_bytes_of_the_undivided_run() {
         ),
         (&["simulate", &primary, "--sweep", "frequency=18:19:2"], &["json", "csv", "text"]),
         (&["materials"], &["json", "csv", "text"]),
+        (&["materials", &carried, "--chain"], &["json", "csv", "text"]),
         (&["optimize", &front, "--quiet"], &["json", "csv", "text"]),
         (&["audit", &claims], &["json", "text"]),
     ];

@@ -785,6 +785,34 @@ Barrier.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class MainMass(Document):
+    """A main mass on spring and dashpot that carries the pendulum.
+
+    Attributes:
+        damping: The coefficient of its dashpot, in N s/m.
+        displacement: Where it begins, in m.
+        mass: Its mass without the pendulum, in kg.
+        speed: How fast it begins, in m/s.
+        stiffness: The stiffness of its spring, in N/m.
+    """
+
+    damping: float
+    displacement: float
+    mass: float
+    speed: float
+    stiffness: float
+
+
+MainMass.FIELDS = (
+    ("damping", "damping", None),
+    ("displacement", "displacement", None),
+    ("mass", "mass", None),
+    ("speed", "speed", None),
+    ("stiffness", "stiffness", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ContactDissipation(Document):
     """The damping of a contact, in every form.
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 from .._answer import Answer
 from .._document import Document, several
-from .common import Barrier, Dissipation
+from .common import Barrier, Dissipation, MainMass
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,10 +24,16 @@ class MaterialsParameters(Document):
         gravity: The acceleration of gravity, in m/s^2.
         modulus: The modulus at which the damping of the contact is what is given, in Pa.
         time_unit: The unit of time sqrt(L/g), in seconds.
+        main_mass: The main mass that carries the pendulum and is to come to rest; null on a fixed
+            pivot, where the pendulum is.
+        undamped_and_locked_rest_times: The rest times of the main mass without its damper and
+            with the damper locked, in units of time; null where there is none, and on a fixed
+            pivot.
         duration: How long the motions are followed, in units of time.
         route: How the motions were found: by `integration`, or as a `chain` of closed forms.
         step_tolerance: The relative tolerance of one step of the integrator.
-        rest_fraction: The part of the first amplitude at which the pendulum rests.
+        rest_fraction: The part of the first amplitude at which the pendulum, or the main mass,
+            rests.
     """
 
     barrier: Barrier
@@ -39,6 +45,8 @@ class MaterialsParameters(Document):
     gravity: float
     modulus: float
     time_unit: float
+    main_mass: MainMass | None
+    undamped_and_locked_rest_times: tuple[float | None, float | None] | None
     duration: float
     route: Literal["integration", "chain"]
     step_tolerance: float
@@ -55,6 +63,8 @@ MaterialsParameters.FIELDS = (
     ("gravity", "gravity", None),
     ("modulus", "modulus", None),
     ("time_unit", "time_unit", None),
+    ("main_mass", "main_mass", MainMass.from_json),
+    ("undamped_and_locked_rest_times", "undamped_and_locked_rest_times", tuple),
     ("duration", "duration", None),
     ("route", "route", None),
     ("step_tolerance", "step_tolerance", None),
@@ -155,7 +165,8 @@ class MaterialRow(Document):
         first_contact: The first contact; null where the barrier is not touched, or not left
             again.
         impacts: The contacts that begin before it rests, or in the whole run where it does not.
-        energies: The energy of the swing after each of them, in units of m g L.
+        energies: The energy of the swing, or of main mass and pendulum, after each of them, in
+            units of m g L.
         rest: When it rests.
         lossless: When it rests where the contact loses nothing, mu = 0.
         yield_checks: Stated yield limits beside the pressure of the first contact.

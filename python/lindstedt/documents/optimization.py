@@ -7,7 +7,7 @@ from typing import Literal
 
 from .._answer import Answer
 from .._document import Document, several
-from .common import Barrier
+from .common import Barrier, MainMass
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,34 +77,6 @@ Genetic.FIELDS = (
     ("function_tolerance", "function_tolerance", None),
     ("stall_test", "stall_test", None),
     ("budget", "budget", None),
-)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class MainMass(Document):
-    """A main mass on spring and dashpot that carries the pendulum.
-
-    Attributes:
-        mass: Its mass without the pendulum, in kg.
-        stiffness: The stiffness of its spring, in N/m.
-        damping: The coefficient of its dashpot, in N s/m.
-        displacement: Where it begins, in m.
-        speed: How fast it begins, in m/s.
-    """
-
-    mass: float
-    stiffness: float
-    damping: float
-    displacement: float
-    speed: float
-
-
-MainMass.FIELDS = (
-    ("mass", "mass", None),
-    ("stiffness", "stiffness", None),
-    ("damping", "damping", None),
-    ("displacement", "displacement", None),
-    ("speed", "speed", None),
 )
 
 

@@ -144,8 +144,13 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
         schema: DocumentKind::Absorber.schema().to_owned(),
         absorber: laws.kind.name().to_owned(),
         excitation: match laws.kind {
-            AbsorberKind::Tuned(Excitation::Force) => Some("force".to_owned()),
-            AbsorberKind::Tuned(Excitation::Ground) => Some("ground".to_owned()),
+            AbsorberKind::Tuned(excitation) | AbsorberKind::Damped(excitation) => {
+                let words = match excitation {
+                    Excitation::Force => "force",
+                    Excitation::Ground => "ground",
+                };
+                Some(words.to_owned())
+            }
             AbsorberKind::Nonlinear | AbsorberKind::ImpactSink | AbsorberKind::CubicSink => None,
         },
         equations: laws.equations.iter().map(|(left, right)| format!("{left} = {right}")).collect(),
@@ -161,7 +166,7 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
             end: motion.end,
             largest_distance: motion.largest_distance,
         }),
-        verdict: judged.map(|judged| judged.verdict.name().to_owned()),
+        verdict: judged.and_then(|judged| Some(judged.verdict?.name().to_owned())),
         tolerance: judged.map(|judged| judged.tolerance),
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
 use super::number::text;
+use super::optimization::MainMassDocument;
 #[cfg(feature = "schema")]
 use super::simulation::ROUTES;
 use super::simulation::{Barrier, Dissipation};
@@ -61,6 +62,12 @@ pub struct MaterialsParameters {
     pub modulus: f64,
     /// The unit of time sqrt(L/g), in seconds.
     pub time_unit: f64,
+    /// The main mass that carries the pendulum and is to come to rest; null on a fixed pivot, where
+    /// the pendulum is.
+    pub main_mass: Option<MainMassDocument>,
+    /// The rest times of the main mass without its damper and with the damper locked, in units of
+    /// time; null where there is none, and on a fixed pivot.
+    pub undamped_and_locked_rest_times: Option<[Option<f64>; 2]>,
     /// How long the motions are followed, in units of time.
     pub duration: f64,
     /// How the motions were found: by `integration`, or as a `chain` of closed forms.
@@ -68,7 +75,7 @@ pub struct MaterialsParameters {
     pub route: String,
     /// The relative tolerance of one step of the integrator.
     pub step_tolerance: f64,
-    /// The part of the first amplitude at which the pendulum rests.
+    /// The part of the first amplitude at which the pendulum, or the main mass, rests.
     pub rest_fraction: f64,
 }
 
@@ -102,7 +109,7 @@ pub struct MaterialRow {
     pub first_contact: Option<FirstContact>,
     /// The contacts that begin before it rests, or in the whole run where it does not.
     pub impacts: usize,
-    /// The energy of the swing after each of them, in units of m g L.
+    /// The energy of the swing, or of main mass and pendulum, after each of them, in units of m g L.
     pub energies: Vec<f64>,
     /// When it rests.
     pub rest: RestTime,
@@ -193,6 +200,10 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
             gravity: design.gravity,
             modulus: design.modulus,
             time_unit: study.units.time(),
+            main_mass: study.question.main_mass.map(MainMassDocument::from),
+            undamped_and_locked_rest_times: study
+                .undamped_and_locked()
+                .map(|others| [others.without.rest_time, others.locked.rest_time]),
             duration: settings.duration,
             route: study.question.integrator.route().to_owned(),
             step_tolerance: settings.relative_tolerance,

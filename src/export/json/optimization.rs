@@ -14,6 +14,7 @@ use super::number::{Map, finite, text};
 use super::simulation::Barrier;
 use super::{DocumentKind, JsonError};
 use crate::genetic::{Coding, Crossover, GeneticStop, Mutation, Penalty, StallTest};
+use crate::impact::primary::MainMass;
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
 #[cfg(feature = "schema")]
 use crate::optimize::VariableRole;
@@ -348,6 +349,13 @@ pub struct MainMassDocument {
     pub speed: f64,
 }
 
+impl From<MainMass> for MainMassDocument {
+    fn from(main_mass: MainMass) -> Self {
+        let MainMass { mass, stiffness, damping, displacement, speed, .. } = main_mass;
+        Self { mass, stiffness, damping, displacement, speed }
+    }
+}
+
 /// What decides the best design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
@@ -538,13 +546,7 @@ impl Asked {
             elastic: question.elastic,
             sphere_yield: question.sphere_yield,
             barrier_yield: question.barrier_yield,
-            main_mass: question.main_mass.map(|of| MainMassDocument {
-                mass: of.mass,
-                stiffness: of.stiffness,
-                damping: of.damping,
-                displacement: of.displacement,
-                speed: of.speed,
-            }),
+            main_mass: question.main_mass.map(MainMassDocument::from),
             held_fixed: SearchHeldFixed::from_problem(question),
             defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,

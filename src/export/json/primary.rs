@@ -55,6 +55,9 @@ pub struct PrimaryDocument {
     pub integrated_phases: Option<usize>,
     /// The motion of a chain by integration; null where the motion was integrated.
     pub judge: Option<PrimaryJudge>,
+    /// The least and the greatest rest time by closed forms of starts 0.03 % smaller and larger: where they are apart, closed forms cannot give this one; null where the motion was
+    /// integrated, or one of them does not rest.
+    pub nearby_rest_times: Option<[f64; 2]>,
     /// Why the run ended.
     pub stopped: String,
     /// Whether it was followed as long as asked, and its energy is accounted for.
@@ -185,7 +188,7 @@ pub struct PrimarySweepRow {
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
 /// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
-/// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None });
+/// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[], judge: None, nearby: None });
 /// assert!(document.complete && document.energy.residual < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -248,6 +251,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
             long_run: judge.largest_since(0.75 * judge.end),
             impacts: judge.impacts.len(),
         }),
+        nearby_rest_times: report.nearby,
         stopped: motion.stop.to_string(),
         complete: report.is_complete(),
     }

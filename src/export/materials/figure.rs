@@ -6,7 +6,7 @@ use crate::export::figure::{
     Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::{
-    ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, Simulation,
+    ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, StudiedMotion,
 };
 
 /// Points of a motion, equally spaced in time.
@@ -54,13 +54,16 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         false => [0.0, study.question.settings.duration],
     };
     let end = 1.05 * last_rest(study);
+    let is_carried = study.question.main_mass.is_some();
+    // The displacement of a main mass is counted in lengths of the pendulum.
+    let unit = if is_carried { study.units.length } else { 1.0 };
     let contrast = contrast(study);
     let sides: Vec<Option<&HeldFixed>> = std::iter::once(None).chain(contrast.map(Some)).collect();
     let mut motions: Vec<[Vec<Points>; 2]> = Vec::new();
     for held in &sides {
         let (mut swings, mut decays) = (Vec::new(), Vec::new());
         for row in 0..drawn {
-            swings.push(swing(&study.motion(row, *held, window[1])?, window, second));
+            swings.push(swing(&study.motion(row, *held, window[1])?, window, [second, unit]));
             decays.push(decay(&study.motion(row, *held, end)?, second));
         }
         motions.push([swings, decays]);
@@ -79,16 +82,21 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         held.map_or(study.dissipation.contact, |held| held.damping).form().name()
     };
     let has_own = study.rows.iter().any(|row| row.material.damping.is_some());
+    let motion = if is_carried { "Main mass" } else { "Swing" };
     let title = |what: &str, held: &Option<&HeldFixed>| match has_own && held.is_none() {
         true => format!("{what}, each as given"),
         false => format!("{what}, {} held fixed", form(held)),
     };
     let titles: Vec<[String; 2]> =
-        sides.iter().map(|held| ["Swing", "Decay"].map(|what| title(what, held))).collect();
-    let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
+        sides.iter().map(|held| [motion, "Decay"].map(|what| title(what, held))).collect();
+    let barriers: Vec<f64> = match is_carried {
+        true => vec![],
+        false => [study.model.left, study.model.right].into_iter().flatten().collect(),
+    };
     let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| {
         let guides = barriers.iter().map(|barrier| GuideLine::Y(*barrier, "barrier x_c")).collect();
-        let labels = ["time t (s)", "displacement x (rad)"];
+        let displacement = if is_carried { "displacement (m)" } else { "displacement x (rad)" };
+        let labels = ["time t (s)", displacement];
         panel(title, labels, of_materials(study, swings), guides)
     });
     let decays = motions.iter().zip(&titles).map(|([_, decays], [_, title])| {
@@ -129,18 +137,18 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
         .collect()
 }
 
-/// The displacement in this window of time, the time in seconds.
-fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
+/// The displacement in this window of time; time and displacement in these units.
+fn swing(motion: &StudiedMotion, [from, to]: [f64; 2], [second, unit]: [f64; 2]) -> Points {
     let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| Some((t * second, motion.path.phase_point_at(t)?.0))).collect()
+    times.filter_map(|t| Some((t * second, unit * motion.displacement_at(t)?))).collect()
 }
 
 /// The amplitude at the turning points of the envelope, in percent of the first, the time in
 /// seconds.
-fn decay(motion: &Simulation, second: f64) -> Points {
+fn decay(motion: &StudiedMotion, second: f64) -> Points {
     let envelope = motion.envelope();
-    let first = envelope.first().map_or(1.0, |turn| turn.x.abs());
-    let points = envelope.iter().map(|turn| (turn.t * second, 100.0 * turn.x.abs() / first));
+    let first = envelope.first().map_or(1.0, |(_, height)| *height);
+    let points = envelope.iter().map(|(t, height)| (t * second, 100.0 * height / first));
     points.filter(|(_, amplitude)| *amplitude > 0.0).collect()
 }
 
@@ -156,8 +164,13 @@ fn caption(study: &MaterialStudy, contrast: Option<&HeldFixed>, drawn: usize) ->
         .trim_end()
         .to_owned()
     };
-    let mut text =
-        format!("Pendulum of {} m, ζ = {}", decimal(study.units.length), decimal(study.model.zeta));
+    let mut text = match study.question.main_mass {
+        None => String::new(),
+        Some(main_mass) => format!("Main mass of {} kg with a p", decimal(main_mass.mass)),
+    };
+    text += if text.is_empty() { "P" } else { "" };
+    text +=
+        &format!("endulum of {} m, ζ = {}", decimal(study.units.length), decimal(study.model.zeta));
     if study.model.alpha != 0.0 {
         text += &format!(", α = {}", decimal(study.model.alpha));
     }

@@ -281,6 +281,16 @@ pub struct Dissipation {
 }
 
 impl Dissipation {
+    /// These dampings with another speed of the first touch without damping.
+    #[must_use]
+    pub(super) fn touched_at(self, speed: Option<f64>) -> Self {
+        Self {
+            touch_speed: speed,
+            restitution: speed.and_then(|speed| restitution(self.mu_over_gamma * speed).ok()),
+            ..self
+        }
+    }
+
     /// The speed at which a given restitution is stated, with its unit: `1 m/s, 1.22347 rad*omega`
     /// where that is how it is stated.
     pub fn at_speed_in_words(&self) -> Option<String> {

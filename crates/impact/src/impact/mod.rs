@@ -118,7 +118,7 @@ pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRul
 pub use materials::{
     DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
     MaterialMotions, MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest,
-    course, default_lambda, material_motions, study_from_motions, study_materials,
+    StudiedMotion, course, default_lambda, material_motions, study_from_motions, study_materials,
 };
 pub use model::{
     DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,

@@ -6,9 +6,7 @@
 
 use super::question::OptimizationProblem;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
-use crate::impact::primary::{
-    MainMass, PrimaryCase, PrimaryError, PrimarySettings, simulate_primary,
-};
+use crate::impact::primary::{MainMass, PrimaryError, PrimarySettings, simulate_primary};
 use crate::impact::{
     Case, ContactRecord, Integrator, Model, MotionToRest, NoRest, Parameter, Settings, Simulation,
     SimulationError, Start, Units, hertz, simulate, simulate_each,
@@ -306,21 +304,12 @@ impl DesignMotion<'_> {
 
     /// The pendulum on the main mass that carries it, by its chain if there is one. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
     fn on_main_mass(&self, main_mass: &MainMass) -> Result<SimulatedMotion, String> {
-        let [displacement, speed] = main_mass.start(&self.units);
-        let case = PrimaryCase {
-            primary: main_mass.primary(&self.units),
-            model: self.model,
-            start: [self.start.x, self.start.velocity, displacement, speed],
-        };
-        let settings = &self.question.settings;
+        let case = main_mass.carrying(&self.units, self.model, self.start);
         let settings = PrimarySettings {
-            duration: settings.duration,
-            phase_limit: settings.maximum_steps,
             stop_at_rest: !(self.question.follows_pendulum()
                 || self.route == Route::Integration && self.contact),
             chain: self.route == Route::Chain,
-            interrupt: settings.interrupt,
-            ..PrimarySettings::default()
+            ..PrimarySettings::from(&self.question.settings)
         };
         let motion = match simulate_primary(case, &settings) {
             Err(PrimaryError::Chain(_)) => {
@@ -335,9 +324,7 @@ impl DesignMotion<'_> {
             .filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry_time < rest));
         let hardest = self.contact.then(|| {
             let contacts = impacts.clone().map(|impact| {
-                let restitution = impact.speed_out.map(|out| out / impact.speed_in);
-                let restitution = restitution.filter(|restitution| restitution.is_finite());
-                (motion.peak_force(impact), impact.penetration, restitution)
+                (motion.peak_force(impact), impact.penetration, impact.restitution())
             });
             HardestContact::from_contacts(&self.model, &self.units, contacts)
         });

@@ -134,6 +134,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                     formula("amplitude", "C_min", lowest),
                     formula("ball_amplitude", "Z_min", lowest_place),
                 ],
+                refined_by: None,
             },
             AbsorberDesign {
                 name: "period-doubling",
@@ -142,6 +143,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                     formula("amplitude", "C_max", highest),
                     formula("ball_amplitude", "Z_max", highest_place),
                 ],
+                refined_by: None,
             },
         ],
         validity: "a light ball, whose impacts take little from the main mass in a period; an impact takes no time; where r is below 0.09 or so, the ball \

@@ -4,12 +4,14 @@
 //! letters of the equations, derived from them.
 //!
 //! - `tuned`: the tuned mass damper, by exact algebra of its frequency response.
-//! - `nonlinear`: the same on a main mass with a cubic spring, with a cubic spring of its own, by
+//! - `damped`: the same on a main mass with damping of its own, to first order in it.
+//! - `nonlinear`: the tuned mass damper on a main mass with a cubic spring, with a cubic spring of its own, by
 //!   perturbation of its two peaks.
 //! - `impact_sink`: a ball in a cavity, by the conditions of its impacts.
 //! - `cubic_sink`: a light mass on a cubic spring, by the first harmonic of its motion.
 
 mod cubic_sink;
+mod damped;
 mod impact_sink;
 mod nonlinear;
 mod tuned;
@@ -39,6 +41,8 @@ pub enum Excitation {
 pub enum AbsorberKind {
     /// The tuned mass damper on a main mass without damping.
     Tuned(Excitation),
+    /// The tuned mass damper on a main mass with damping of its own.
+    Damped(Excitation),
     /// The nonlinear tuned absorber, with a cubic spring like that of the main mass.
     Nonlinear,
     /// The vibro-impact sink, a ball in a cavity.
@@ -52,6 +56,7 @@ impl AbsorberKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::Tuned(_) => "tuned",
+            Self::Damped(_) => "damped",
             Self::Nonlinear => "nonlinear",
             Self::ImpactSink => "impact-sink",
             Self::CubicSink => "cubic-sink",
@@ -63,6 +68,8 @@ impl AbsorberKind {
         match self {
             Self::Tuned(Excitation::Force) => &[tuned::MASS_RATIO],
             Self::Tuned(Excitation::Ground) => &[tuned::MASS_RATIO_BELOW_TWO],
+            Self::Damped(Excitation::Force) => &damped::LETTERS,
+            Self::Damped(Excitation::Ground) => &damped::LETTERS_BELOW_TWO,
             Self::Nonlinear => &nonlinear::LETTERS,
             Self::ImpactSink => &impact_sink::LETTERS,
             Self::CubicSink => &cubic_sink::LETTERS,
@@ -122,6 +129,9 @@ pub struct AbsorberDesign {
     pub words: &'static str,
     /// Its formulas.
     pub formulas: Vec<AbsorberFormula>,
+    /// The name of the design that has these formulas to the next order; `None` if they are the most
+    /// exact ones.
+    pub refined_by: Option<&'static str>,
 }
 
 /// A formula of a design.
@@ -228,6 +238,7 @@ impl AbsorberError {
 pub fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> {
     match kind {
         AbsorberKind::Tuned(excitation) => tuned::derive(excitation),
+        AbsorberKind::Damped(excitation) => damped::derive(excitation),
         AbsorberKind::Nonlinear => nonlinear::derive(),
         AbsorberKind::ImpactSink => impact_sink::derive(),
         AbsorberKind::CubicSink => cubic_sink::derive(),

@@ -180,6 +180,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
             name: "similar-springs",
             words: "the linear absorber with the lowest peak, and a cubic spring that keeps its two peaks equally high",
             formulas,
+            refined_by: None,
         }],
         validity: "first order in alpha3 F^2, one harmonic; no damping of the main mass; steady motions of larger forces may lie on detached branches",
     })

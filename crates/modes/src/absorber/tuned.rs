@@ -90,13 +90,37 @@ impl Names {
     }
 }
 
+/// The right sides of both equations.
+pub(super) fn right_sides(excitation: Excitation) -> [&'static str; 2] {
+    match excitation {
+        Excitation::Force => ["cos(g*t)", "0"],
+        Excitation::Ground => ["-cos(g*t)", "-cos(g*t)"],
+    }
+}
+
+/// The meanings of the letters.
+pub(super) fn meanings(names: &Names, excitation: Excitation) -> Vec<(Symbol, &'static str)> {
+    vec![
+        (names.mu, "mass of the absorber over the main mass"),
+        (names.f, "natural frequency of the absorber alone over that of the main mass alone"),
+        (names.zeta, "damping ratio of the absorber alone"),
+        (
+            names.g,
+            match excitation {
+                Excitation::Force => "frequency of the force over that of the main mass alone",
+                Excitation::Ground => "frequency of the ground over that of the main mass alone",
+            },
+        ),
+        (Symbol::new("X"), "amplitude of x"),
+        (Symbol::new("h"), "amplitude of x over the static one, where it is largest"),
+        (Symbol::new("V"), "variance of x, the right side white noise of intensity 1"),
+    ]
+}
+
 /// Derives the designs.
 pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberError> {
     let names = Names::new();
-    let right = match excitation {
-        Excitation::Force => ["cos(g*t)", "0"],
-        Excitation::Ground => ["-cos(g*t)", "-cos(g*t)"],
-    };
+    let right = right_sides(excitation);
     let equations = CoupledEquations::parse(&format!(
         "x'' + x + mu*(2*zeta*f*(x' - y') + f^2*(x - y)) = {}; y'' + 2*zeta*f*(y' - x') + f^2*(y - x) = {}",
         right[0], right[1]
@@ -119,25 +143,10 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
             words: "the fixed points, through which the curve of every damping goes",
         },
     ];
-    let meanings = vec![
-        (names.mu, "mass of the absorber over the main mass"),
-        (names.f, "natural frequency of the absorber alone over that of the main mass alone"),
-        (names.zeta, "damping ratio of the absorber alone"),
-        (
-            names.g,
-            match excitation {
-                Excitation::Force => "frequency of the force over that of the main mass alone",
-                Excitation::Ground => "frequency of the ground over that of the main mass alone",
-            },
-        ),
-        (Symbol::new("X"), "amplitude of x"),
-        (Symbol::new("h"), "amplitude of x over the static one, where it is largest"),
-        (Symbol::new("V"), "variance of x, the right side white noise of intensity 1"),
-    ];
     Ok(AbsorberLaws {
         kind: AbsorberKind::Tuned(excitation),
         equations: equations.equations,
-        meanings,
+        meanings: meanings(&names, excitation),
         definitions: vec![],
         relations,
         designs: [Some(equal_peaks), lowest_peak, Some(lowest_variance)]
@@ -169,7 +178,7 @@ fn no_closed_form<T>(what: &'static str) -> Result<T, AbsorberError> {
     Err(AbsorberError::NoClosedForm(what))
 }
 
-fn minus(polynomial: &Polynomial) -> Polynomial {
+pub(super) fn minus(polynomial: &Polynomial) -> Polynomial {
     let mut negative = polynomial.clone();
     negative.negate();
     negative
@@ -273,7 +282,7 @@ impl Response {
 }
 
 /// The polynomial in the squares of letters.
-fn halved(
+pub(super) fn halved(
     polynomial: &Polynomial,
     letters: &[(Symbol, Symbol)],
 ) -> Result<Polynomial, AbsorberError> {
@@ -414,6 +423,7 @@ fn equal_peaks(
                 formula("lower_frequency", "g1", point.conjugate().sqrt_expr(names.mu)?),
                 formula("upper_frequency", "g2", point.sqrt_expr(names.mu)?),
             ],
+            refined_by: None,
         },
     ))
 }
@@ -445,6 +455,7 @@ fn lowest_peak(
             formula("damping", "zeta", written(&lowest.damping)?),
             formula("height", "h", written(&lowest.height)?),
         ],
+        refined_by: None,
     }))
 }
 
@@ -640,9 +651,35 @@ fn lowest_variance(
     transfer: &[Polynomial; 2],
     names: &Names,
 ) -> Result<AbsorberDesign, AbsorberError> {
-    const WHAT: &str = "the design with the lowest variance";
+    let none = || AbsorberError::NoClosedForm(LOWEST_VARIANCE);
+    let [above, below] = variance_parts(transfer, names);
+    let variance = above.product(&below.power(-1).ok_or_else(none)?);
+    let [p, z] = optimum(&variance, names)?;
+    let squares = [(names.f, names.p), (names.zeta, names.z)];
+    let square = halved(&variance.product(&variance), &squares)?;
+    let square = value(&square, &[(names.p, &p), (names.z, &z)], names).ok_or_else(none)?;
+    let written = |value: &QuadraticSurd| value.rational.sqrt_expr(names.mu);
+    Ok(AbsorberDesign {
+        name: "lowest-variance",
+        words: "the variance under white noise is the least (H2)",
+        formulas: vec![
+            formula("tuning", "f", written(&p)?),
+            formula("damping", "zeta", written(&z)?),
+            formula("variance", "V", written(&square)?),
+        ],
+        refined_by: None,
+    })
+}
+
+const LOWEST_VARIANCE: &str = "the design with the lowest variance";
+
+/// f^2 and zeta^2 with which a variance is level, rational functions of mu.
+pub(super) fn optimum(
+    variance: &Polynomial,
+    names: &Names,
+) -> Result<[QuadraticSurd; 2], AbsorberError> {
+    const WHAT: &str = LOWEST_VARIANCE;
     let none = || AbsorberError::NoClosedForm(WHAT);
-    let variance = variance(transfer, names).ok_or_else(none)?;
     let squares = [(names.f, names.p), (names.zeta, names.z)];
     // Both slopes vanish; without common powers they are polynomials in zeta^2 = z and f^2 = p.
     let level = |letter: Symbol| -> Result<Vec<Polynomial>, AbsorberError> {
@@ -659,22 +696,12 @@ fn lowest_variance(
     let p = rational(free.negative().quotient(slope).ok_or_else(none)?);
     let at = |polynomial: &Polynomial| value(polynomial, &[(names.p, &p)], names).ok_or_else(none);
     let z = minus_quotient(&at(d0)?, &at(d1)?).ok_or_else(none)?;
-    let square = halved(&variance.product(&variance), &squares)?;
-    let square = value(&square, &[(names.p, &p), (names.z, &z)], names).ok_or_else(none)?;
-    let written = |value: &QuadraticSurd| value.rational.sqrt_expr(names.mu);
-    Ok(AbsorberDesign {
-        name: "lowest-variance",
-        words: "the variance under white noise is the least (H2)",
-        formulas: vec![
-            formula("tuning", "f", written(&p)?),
-            formula("damping", "zeta", written(&z)?),
-            formula("variance", "V", written(&square)?),
-        ],
-    })
+    Ok([p, z])
 }
 
-/// `1/(2 pi) int |B(i g)/A(i g)|^2 dg`, as c_3/a_4 of the partial fractions.
-fn variance(transfer: &[Polynomial; 2], names: &Names) -> Option<Polynomial> {
+/// Numerator and denominator of `1/(2 pi) int |B(i g)/A(i g)|^2 dg`, as c_3/a_4 of the partial
+/// fractions.
+pub(super) fn variance_parts(transfer: &[Polynomial; 2], names: &Names) -> [Polynomial; 2] {
     let [b, a] = [&transfer[0], &transfer[1]].map(|polynomial| by_powers(polynomial, names.s));
     let degree = a.len() - 1;
     let at = |list: &[Polynomial], place: usize| {
@@ -704,7 +731,7 @@ fn variance(transfer: &[Polynomial; 2], names: &Names) -> Option<Polynomial> {
     let columns: Vec<usize> = (0..degree).collect();
     let replaced: Vec<usize> = (0..degree - 1).chain([degree]).collect();
     let below = determinant(&rows, &columns).product(&a[degree]);
-    Some(determinant(&rows, &replaced).product(&below.power(-1)?))
+    [determinant(&rows, &replaced), below]
 }
 
 /// The determinant of some columns, expanded by the rows.

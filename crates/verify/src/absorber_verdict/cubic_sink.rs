@@ -115,10 +115,13 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     let size =
         |motion: SinkMotion| harmonic(damping, motion).map(|(first, _)| first[0].hypot(first[1]));
     let mut values = Vec::new();
-    let mut add = |design, name, value: Option<f64>| {
-        values.push((design, name, value.map(|value| value * unit)));
+    let mut add = |[design, refined]: [Option<&'static str>; 2], name, value: Option<f64>| {
+        let value = value.map(|value| value * unit);
+        values.extend([design, refined].into_iter().flatten().map(|design| (design, name, value)));
     };
     for (design, sign) in [("upward-jump", -1.0), ("downward-jump", 1.0)] {
+        let refined = laws.design(design).and_then(|own| own.refined_by);
+        let designs = [Some(design), refined];
         let extreme = found.windows(3).find(|near| {
             let [before, own, after] = [near[0], near[1], near[2]].map(SinkMotion::amplitude);
             sign * (own - before) < 0.0 && sign * (after - own) >= 0.0
@@ -132,8 +135,8 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
             let (start, _) = find_minimum(value, near[0].start, near[2].start);
             periodic(damping, start, near[1])
         });
-        add(design, "amplitude", fold.map(SinkMotion::amplitude));
-        add(design, "relative_amplitude", fold.and_then(size));
+        add(designs, "amplitude", fold.map(SinkMotion::amplitude));
+        add(designs, "relative_amplitude", fold.and_then(size));
         // A motion of the same C beyond the other fold.
         let landing = fold.and_then(|fold| {
             let beyond = |motion: &SinkMotion| -sign * (motion.start - fold.start) > 0.2;
@@ -146,16 +149,16 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
             let start = find_root(at, pair[0].start, pair[1].start).ok()?;
             periodic(damping, start, pair[0])
         });
-        add(design, "landing", landing.and_then(size));
+        add(designs, "landing", landing.and_then(size));
         let steady = fold.and_then(|fold| {
             let (first, square) = harmonic(damping, fold)?;
             // The force is the first harmonic of what the sink does to the main mass.
             let force = (fold.drive[0] + first[0]).hypot(fold.drive[1] + first[1]);
             Some([force, 2.0 * damping * square / fold.amplitude()])
         });
-        add(design, "force", steady.map(|steady| steady[0]));
+        add(designs, "force", steady.map(|steady| steady[0]));
         if sign < 0.0 {
-            add(design, "least_force", steady.map(|steady| steady[1]));
+            add(designs, "least_force", steady.map(|steady| steady[1]));
         }
     }
     let (curves, motion) = curves(laws, at, &found, [damping, mass_ratio, unit]);

@@ -33,8 +33,9 @@ pub struct JudgedAbsorber {
     pub motion: Option<AbsorberMotion>,
     /// The curves of a picture: of responses over frequency, or of motions over amplitude.
     pub curves: Vec<AbsorberCurve>,
-    /// Whether all formulas are within the tolerance.
-    pub verdict: Verdict,
+    /// Whether the formulas are within the tolerance, those aside that another design has to the next
+    /// order; `None` where those that have a truth are, and some have none.
+    pub verdict: Option<Verdict>,
 }
 
 /// A formula of a design in numbers.
@@ -144,7 +145,7 @@ struct Truth {
 /// let judged = judge_absorber(&laws, &"mu = 1/20".parse()?, 0.01)?;
 /// let height = judged.formulas.iter().find(|own| own.name == "height").ok_or("no height")?;
 /// assert!(height.truth.is_some_and(|truth| (truth - 6.403124).abs() < 1e-6));
-/// assert_eq!(judged.verdict, Verdict::Pass);
+/// assert_eq!(judged.verdict, Some(Verdict::Pass));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn judge_absorber(
@@ -154,7 +155,9 @@ pub fn judge_absorber(
 ) -> Result<JudgedAbsorber, AbsorberError> {
     laws.check(at)?;
     let truth = match laws.kind {
-        AbsorberKind::Tuned(excitation) => tuned::truth(laws, excitation, at),
+        AbsorberKind::Tuned(excitation) | AbsorberKind::Damped(excitation) => {
+            tuned::truth(laws, excitation, at)
+        }
         AbsorberKind::Nonlinear => nonlinear::truth(laws, at),
         AbsorberKind::ImpactSink => impact_sink::truth(laws, at),
         AbsorberKind::CubicSink => cubic_sink::truth(laws, at),
@@ -176,10 +179,17 @@ pub fn judge_absorber(
             });
         }
     }
-    let within = |own: &JudgedAbsorberFormula| {
-        own.relative_error.is_some_and(|error| error.abs() <= tolerance)
+    let is_refined =
+        |name: &str| laws.design(name).is_some_and(|design| design.refined_by.is_some());
+    let judged = || formulas.iter().filter(|own| !is_refined(own.design));
+    let is_off = |own: &JudgedAbsorberFormula| {
+        own.truth.is_some() && own.relative_error.is_none_or(|error| error.abs() > tolerance)
     };
-    let verdict = Verdict::from_passed(formulas.iter().all(within));
+    let verdict = match (judged().any(is_off), judged().all(|own| own.truth.is_some())) {
+        (true, _) => Some(Verdict::Fail),
+        (false, true) => Some(Verdict::Pass),
+        (false, false) => None,
+    };
     let curves = truth.curves.into_iter().filter(|curve| !curve.points.is_empty()).collect();
     Ok(JudgedAbsorber {
         at: at.clone(),

@@ -16,11 +16,16 @@ use crate::values::Values;
 /// The least mass ratio at which doubles resolve the peaks.
 const LEAST_MASS_RATIO: f64 = 1e-6;
 
+/// The largest damping ratio that is searched.
+const MOST_DAMPING: f64 = 1e3;
+
 /// A main mass with its absorber.
 #[derive(Clone, Copy)]
 struct TwoMasses {
     excitation: Excitation,
     mass_ratio: f64,
+    /// The damping ratio of the main mass.
+    main_damping: f64,
 }
 
 /// Tuning f and damping ratio zeta of the absorber.
@@ -43,7 +48,8 @@ impl TwoMasses {
             Excitation::Force => [1.0, 0.0],
             Excitation::Ground => [1.0, 1.0],
         };
-        let first = self.mass_ratio * link + 1.0 - square;
+        let own = Complex64::new(1.0 - square, 2.0 * self.main_damping * frequency);
+        let first = self.mass_ratio * link + own;
         let second = link - square;
         let determinant = first * second - self.mass_ratio * link * link;
         ((second * force[0] + self.mass_ratio * link * force[1]) / determinant).norm()
@@ -62,7 +68,13 @@ impl TwoMasses {
     /// Frequencies at which peaks are looked for: all, and those near the absorber alone closely.
     fn frequencies(self) -> Vec<f64> {
         const STEPS: u32 = 200;
-        let lowest = 0.1 / (1.0 + self.mass_ratio);
+        let lowest = match self.excitation {
+            Excitation::Force => 0.1 / (1.0 + self.mass_ratio),
+            // The lower fixed point tends to 0 as the mass ratio tends to 2.
+            Excitation::Ground => {
+                0.1 / (1.0 + self.mass_ratio) * (1.0 - 0.5 * self.mass_ratio).max(1e-3)
+            }
+        };
         let between = |from: f64, to: f64| {
             let decades = (to / from).ln();
             (0..=STEPS).map(move |step| from * (decades * f64::from(step) / f64::from(STEPS)).exp())
@@ -157,14 +169,25 @@ impl TwoMasses {
             let at = |k: f64| self.magnification(absorber, frequency + k * step);
             (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step)
         };
-        find_root(slope, 1e-2 * self.scale(), 5.0 * self.scale()).ok()
+        // On shaken ground the damping grows without bound as the mass ratio tends to 2.
+        let mut most = 5.0 * self.scale();
+        while most < MOST_DAMPING && slope(1e-2 * self.scale()) * slope(most) > 0.0 {
+            most *= 2.0;
+        }
+        find_root(slope, 1e-2 * self.scale(), most).ok()
     }
 
     /// The absorber with the least cost, and the cost.
     fn best(self, cost: &dyn Fn(Absorber) -> f64) -> (Absorber, f64) {
         let scale = self.scale();
         let damped = |tuning: f64| {
-            find_minimum(|damping| cost(Absorber { tuning, damping }), 0.05 * scale, 3.0 * scale)
+            let cost = |damping: f64| cost(Absorber { tuning, damping });
+            // On shaken ground the damping grows without bound as the mass ratio tends to 2.
+            let mut most = 3.0 * scale;
+            while most < MOST_DAMPING && cost(2.0 * most) < cost(most) {
+                most *= 2.0;
+            }
+            find_minimum(cost, 0.05 * scale, 2.0 * most)
         };
         let [from, to] = self.tunings();
         let (tuning, least) = find_minimum(|tuning| damped(tuning).1, from, to);
@@ -178,7 +201,7 @@ pub(super) fn lowest_peak(mass_ratio: f64) -> Option<[f64; 3]> {
     if mass_ratio < LEAST_MASS_RATIO {
         return None;
     }
-    let system = TwoMasses { excitation: Excitation::Force, mass_ratio };
+    let system = TwoMasses { excitation: Excitation::Force, mass_ratio, main_damping: 0.0 };
     let (best, height) = system.best(&|absorber| system.highest(absorber));
     Some([best.tuning, best.damping, height])
 }
@@ -186,11 +209,16 @@ pub(super) fn lowest_peak(mass_ratio: f64) -> Option<[f64; 3]> {
 /// The true values of the designs, and response curves.
 pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) -> Truth {
     let mass_ratio = at.get(Symbol::new("mu")).unwrap_or(f64::NAN);
-    let system = TwoMasses { excitation, mass_ratio };
+    let main_damping = at.get(Symbol::new("zeta_1")).unwrap_or(0.0);
+    let system = TwoMasses { excitation, mass_ratio, main_damping };
     if mass_ratio < LEAST_MASS_RATIO {
         return Truth { values: vec![], curves: curves(laws, system, at), motion: None };
     }
     let mut values = Vec::new();
+    if laws.design("equal-peaks").is_none() {
+        values.extend(lowest_variance(system));
+        return Truth { values, curves: damped_curves(laws, system, at), motion: None };
+    }
     let tuning = system.equal_tuning();
     let points = tuning.and_then(|tuning| system.fixed_points(tuning));
     let damping = tuning.zip(points).and_then(|(tuning, [low, high])| {
@@ -218,13 +246,40 @@ pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) ->
             values.push(("lowest-peak", name, Some(value)));
         }
     }
-    let (best, variance) = system.best(&|absorber| system.variance(absorber));
-    for (name, value) in
-        [("tuning", best.tuning), ("damping", best.damping), ("variance", variance)]
-    {
-        values.push(("lowest-variance", name, Some(value)));
-    }
+    values.extend(lowest_variance(system));
     Truth { values, curves: curves(laws, system, at), motion: None }
+}
+
+/// The numbers of the lowest variance.
+fn lowest_variance(system: TwoMasses) -> [(&'static str, &'static str, Option<f64>); 3] {
+    let (best, variance) = system.best(&|absorber| system.variance(absorber));
+    [("tuning", best.tuning), ("damping", best.damping), ("variance", variance)]
+        .map(|(name, value)| ("lowest-variance", name, Some(value)))
+}
+
+/// The response on a damped main mass with the design, and with that of the lowest peak, which is
+/// searched.
+fn damped_curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCurve> {
+    const POINTS: u32 = 600;
+    let value = |name: &str| laws.named_value("lowest-variance", name, at);
+    let Some((tuning, damping)) = value("tuning").zip(value("damping")) else { return vec![] };
+    let (lowest, _) = system.best(&|absorber| system.highest(absorber));
+    let response = |absorber: Absorber| -> Vec<(f64, f64)> {
+        (0..=POINTS)
+            .map(|step| 0.4 * tuning + (1.6 - 0.4 * tuning) * f64::from(step) / f64::from(POINTS))
+            .map(|g| (g, system.magnification(absorber, g)))
+            .collect()
+    };
+    let words =
+        format!("lowest peak by search, f = {:.4}, zeta = {:.4}", lowest.tuning, lowest.damping);
+    let designs = [("lowest variance".to_owned(), Absorber { tuning, damping }), (words, lowest)];
+    designs
+        .map(|(label, absorber)| AbsorberCurve {
+            label,
+            kind: AbsorberCurveKind::Truth,
+            points: response(absorber),
+        })
+        .into()
 }
 
 /// The response with each design, and with other dampings through the fixed points.
@@ -234,7 +289,9 @@ fn curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCu
     let points =
         value("equal-peaks", "lower_frequency").zip(value("equal-peaks", "upper_frequency"));
     let Some((low, high)) = points else { return vec![] };
-    let (from, to) = ((2.0 * low - high).max(0.4 * low), 2.0 * high - low);
+    // With a heavy absorber the main mass alone has its frequency far above both fixed points.
+    let alone = if system.mass_ratio > 1.0 { 1.5 } else { 0.0 };
+    let (from, to) = ((2.0 * low - high).max(0.4 * low), (2.0 * high - low).max(alone));
     let response = |absorber: Absorber| -> Vec<(f64, f64)> {
         (0..=POINTS)
             .map(|step| from + (to - from) * f64::from(step) / f64::from(POINTS))

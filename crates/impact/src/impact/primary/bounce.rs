@@ -2,14 +2,15 @@
 //!
 //! ```text
 //! m = (R + sin^2 x_c)/(R + 1)                          the mass of the relative motion: m d'' = -(gamma + mu d') d^(3/2) - push
-//! push = s (sin x_c + y'' cos x_c)                     of the pendulum at rest there, s = 1 on the right, -1 on the left
+//! push = s (sin x + y'' cos x)                         with y'' as without contact force, s = 1 on the right, -1 on the left
 //! p = (R + 1) y' + x' cos x,   p' = f sin(eta t) - delta y' - kappa y     the contact is inside: it leaves p alone
 //! q = (R + 1) y + sin x,       q' = p
 //! ```
 //!
 //! The relative motion is the contact of the [`chain`](mod@super::super::chain) with gamma, mu, push,
 //! zeta and alpha over m: restitution, depth, duration. The main mass takes the momentum that the
-//! pendulum loses. Over the contact, which is short, p' is that of its middle.
+//! pendulum loses. Over the contact, which is short, push and p' are those of its middle, which a first
+//! contact with the push of the touch tells; x'^2 sin x, which y'' has there too, is its mean.
 
 use super::path::PrimaryState;
 use super::{Primary, PrimaryCase};
@@ -54,37 +55,40 @@ pub(super) fn peak_force(case: &PrimaryCase, side: Side, speed: f64) -> Option<f
 /// The force of the barrier of a side on a pendulum that rests there, negative where the pendulum
 /// is pressed into it.
 pub(super) fn push(case: &PrimaryCase, side: Side, t: f64, state: PrimaryState) -> f64 {
-    let Primary { mass, stiffness, damping, .. } = case.primary;
-    let whole = mass + 1.0;
+    let whole = case.primary.mass + 1.0;
     let cosine = state.x.cos();
     let speed = state.speed + state.velocity * cosine / whole;
-    let force = drive(&case.primary, t) - damping * speed - stiffness * state.y;
+    let force = force_on(&case.primary, t, PrimaryState { speed, ..state });
     side.sign() * (state.x.sin() + cosine * force / whole)
 }
 
-/// The force on the main mass.
-fn drive(primary: &Primary, t: f64) -> f64 {
-    primary.force * (primary.frequency * t).sin()
+/// The force of spring, dashpot and drive on both bodies.
+fn force_on(primary: &Primary, t: f64, state: PrimaryState) -> f64 {
+    let drive = primary.force * (primary.frequency * t).sin();
+    drive - primary.damping * state.speed - primary.stiffness * state.y
 }
 
-impl ClosedBounce {
-    /// The contact that begins in this state on the surface of the barrier; `None` if the pendulum
-    /// leans on it rather than leaves it, goes deep, or is stopped by friction.
-    pub(super) fn new(
-        case: &PrimaryCase,
-        side: Side,
-        begin: f64,
-        state: PrimaryState,
-    ) -> Option<Self> {
-        let Primary { mass, stiffness, damping, .. } = case.primary;
+/// What a contact does to the relative motion under a constant push.
+struct Impulse {
+    depth: f64,
+    duration: f64,
+    angle: ClosedForm,
+    /// The angle at the mean depth, which is that of half a sine.
+    mean_angle: f64,
+    /// int x'^2 dt.
+    square: f64,
+}
+
+impl Impulse {
+    /// The contact that begins in this state; `None` if the pendulum does not leave.
+    fn new(case: &PrimaryCase, side: Side, state: PrimaryState, push: f64) -> Option<Self> {
         let Model { gamma, mu, zeta, alpha, .. } = case.model;
-        let (whole, speed) = (mass + 1.0, side.sign() * state.velocity);
-        let (sine, cosine) = state.x.sin_cos();
+        let speed = side.sign() * state.velocity;
         let relative = relative_mass(&case.primary, state.x);
         let contacts = Contacts {
             gamma: Lanes([gamma / relative]),
             damping: Lanes([mu / gamma]),
-            push: Lanes([push(case, side, begin, state) / relative]),
+            push: Lanes([push / relative]),
             zeta: Lanes([zeta / relative]),
             alpha: Lanes([alpha / relative]),
         };
@@ -92,14 +96,6 @@ impl ClosedBounce {
         if !(speed_out > 0.0 && duration.is_finite()) {
             return None;
         }
-        let momentum = whole * state.speed + state.velocity * cosine;
-        let centre = whole * state.y + sine;
-        // The mean depth is that of half a sine.
-        let mean_angle = state.x + side.sign() * std::f64::consts::FRAC_2_PI * depth;
-        let mean_speed = momentum / whole;
-        let mean = (centre + 0.5 * momentum * duration - mean_angle.sin()) / whole;
-        let force = drive(&case.primary, begin + 0.5 * duration);
-        let end = momentum + (force - damping * mean_speed - stiffness * mean) * duration;
         let angle = ClosedForm::contact((side, state.x), [depth, duration], [speed, speed_out]);
         let square = match angle {
             ClosedForm::Contact { sines, .. } => (1..)
@@ -111,6 +107,39 @@ impl ClosedBounce {
                 .sum(),
             ClosedForm::Swing { .. } => 0.0,
         };
+        let mean_angle = state.x + side.sign() * std::f64::consts::FRAC_2_PI * depth;
+        Some(Self { depth, duration, angle, mean_angle, square })
+    }
+}
+
+impl ClosedBounce {
+    /// The contact that begins in this state on the surface of the barrier; `None` if the pendulum
+    /// leans on it rather than leaves it, goes deep, or is stopped by friction.
+    pub(super) fn new(
+        case: &PrimaryCase,
+        side: Side,
+        begin: f64,
+        state: PrimaryState,
+    ) -> Option<Self> {
+        let whole = case.primary.mass + 1.0;
+        let (sine, cosine) = state.x.sin_cos();
+        let (momentum, centre) =
+            (whole * state.speed + state.velocity * cosine, whole * state.y + sine);
+        let first = Impulse::new(case, side, state, push(case, side, begin, state))?;
+        // The middle of the contact, as the first answer has it.
+        let half = 0.5 * first.duration;
+        let middle = |force: f64| {
+            let (x, momentum) = (first.mean_angle, momentum + force * half);
+            let y = (centre + momentum * half - x.sin()) / whole;
+            PrimaryState { x, velocity: 0.0, y, speed: momentum / whole }
+        };
+        let force = force_on(&case.primary, begin + half, middle(0.0));
+        let middle = middle(force);
+        let centrifugal = first.square / first.duration * middle.x.sin();
+        let push = push(case, side, begin + half, middle)
+            + side.sign() * middle.x.cos() * centrifugal / whole;
+        let Impulse { depth, duration, angle, square, .. } = Impulse::new(case, side, state, push)?;
+        let end = momentum + force_on(&case.primary, begin + half, middle) * duration;
         let travel = 0.5 * (momentum + end) * duration / whole;
         let squares = travel * travel / duration + square * (cosine / whole).powi(2);
         Some(Self {

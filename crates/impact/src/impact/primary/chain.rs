@@ -40,23 +40,20 @@ impl PrimaryChain {
         Ok(Self { modes, fastest })
     }
 
-    /// The longest piece of a flight with angles up to this one: the longer, the smaller the terms
-    /// that its form leaves out.
-    fn piece(&self, widest: f64) -> f64 {
-        LONGEST / (self.fastest * (1.0 + widest / WIDE))
+    /// The longest piece of a motion with small angles.
+    fn longest(&self) -> f64 {
+        LONGEST / self.fastest
     }
 }
 
-/// The phase, rad, by which the faster mode goes on in a piece of small angles, and the angle, rad,
-/// at which it is half of that.
+/// The phase, rad, by which the faster mode goes on in a piece of small angles.
 const LONGEST: f64 = 2.0;
-const WIDE: f64 = 0.3;
 
 /// The part of the energy by which the account of a piece may be wrong.
-const MOST_ASTRAY: f64 = 1e-4;
+const MOST_ASTRAY: f64 = 2e-5;
 
 /// How often a piece is halved until its energy balances.
-const HALVINGS: i32 = 3;
+const HALVINGS: i32 = 4;
 
 /// The greatest depth at which a pendulum that is pressed into a barrier counts as at rest on its
 /// surface, and the greatest speed with which it does.
@@ -93,11 +90,16 @@ impl PrimaryRun<'_> {
             .map(|barrier| barrier.map_or(f64::INFINITY, f64::abs))
             .into_iter()
             .fold(self.state.x.abs(), f64::max);
-        let start =
-            FlightStart { modes: chain.modes, forces, begin: self.t, state: self.state, farthest };
+        let start = FlightStart {
+            modes: chain.modes,
+            forces,
+            begin: self.t,
+            state: self.state,
+            farthest,
+            longest: chain.longest(),
+        };
         let mut flight = std::mem::take(&mut self.flight);
-        let is_closed =
-            flight.begin(&start) && self.follow_flight(chain, direction, &start, &flight)?;
+        let is_closed = flight.begin(&start) && self.follow_flight(direction, &start, &flight)?;
         self.flight = flight;
         Ok(is_closed)
     }
@@ -106,13 +108,12 @@ impl PrimaryRun<'_> {
     /// shorter piece if not over a longer one.
     fn follow_flight(
         &mut self,
-        chain: &PrimaryChain,
         direction: f64,
         start: &FlightStart,
         flight: &ClosedFlight,
     ) -> Result<bool, PrimaryError> {
         let barriers = [Side::Left, Side::Right].map(|side| self.case.model.barrier(side));
-        let piece = chain.piece(flight.widest()).min(self.settings.duration - self.t);
+        let piece = flight.time().min(self.settings.duration - self.t);
         let slip = if self.case.sticks() { direction } else { 0.0 };
         let before = self.case.energy(self.state);
         let balanced = (0..=HALVINGS).find_map(|halvings| {
@@ -286,7 +287,7 @@ impl PrimaryRun<'_> {
     ) -> Option<bool> {
         let resting = RestingPendulum::new(&self.case, self.t, state)?;
         let left = self.settings.duration - self.t;
-        let piece = chain.piece(0.0).min(left);
+        let piece = chain.longest().min(left);
         let release = resting.release(support, piece);
         let time = release.unwrap_or(piece);
         let after = resting.point(time);

@@ -3,7 +3,7 @@
 //! ```text
 //! x'' + y'' + 2 zeta x' + x = -alpha d + N_x             N_x = (x - sin x) + (1 - cos x) y''
 //! x'' + (R + 1) y'' + delta y' + kappa y = f sin(eta t) + N_y,     N_y = (x - sin x)''
-//! x - sin x = (X^4/384) x + (1/6 - X^2/96) x^3,   1 - cos x = X^4/192 + (1/2 - X^2/24) x^2     for |x| <= X
+//! x - sin x = (a + b u) x,   1 - cos x = c + d u,   u = x^2       for u in the range of the piece
 //! z = sum of C_k exp(lambda_k t)           lambda_k: both modes, 0 for dry friction in direction d, +-i eta for the force
 //! q_j' = s_j q_j + phi_j N/m_j,            N = sum of N_k exp(Lambda_k t) along the motion without N
 //! q_j = exp(s_j t) (b_j + w_j t + ...) + sum of n_jk exp(Lambda_k t)/(Lambda_k - s_j)
@@ -11,11 +11,12 @@
 //!
 //! Lambda_k are the sums of three of lambda_k, and lambda_k themselves. Where one of them is s_j itself
 //! the answer grows as t, and is w_j: so the frequency falls with the amplitude, as 1 - A^2/16 for the
-//! pendulum alone. The terms of fifth order of sine and cosine are economised by Chebyshev's
-//! polynomials: of x^5/120 a sixteenth of its largest value is left. What is left out else is the answer
-//! to the change of N by the answer to N, of fifth order in x and of fourth in t: a flight is divided
-//! into pieces of a third of the faster swing or less, each of which begins with the state that the last
-//! one left.
+//! pendulum alone. The terms of higher order of sine and cosine are economised by Chebyshev's
+//! polynomials over the angles that the motion without N takes in the piece: of x^5/120 a sixteenth of
+//! its largest value is left where the piece begins or ends at x = 0, less where it does not. What is
+//! left out else is the answer to the change of N by the answer to N, of fifth order in x and of fourth
+//! in t: a flight is divided into pieces of a third of the faster swing or less, each of which begins
+//! with the state that the last one left.
 //!
 //! The first event is found by steps that no event can be within: with a distance d that closes
 //! with speed w, and |d''| <= B, it is not before 2 d/(w + sqrt(w^2 + 2 B d)). Near an event that is
@@ -84,6 +85,8 @@ pub(super) struct FlightStart {
     pub state: PrimaryState,
     /// An angle beyond which the flight does not go.
     pub farthest: f64,
+    /// The longest piece of small angles.
+    pub longest: f64,
 }
 
 /// A piece of a flight; times count from its beginning.
@@ -92,8 +95,8 @@ pub(super) struct ClosedFlight {
     modes: [FlightMode; 2],
     /// eta.
     frequency: f64,
-    /// The greatest angle for which sine and cosine are economised.
-    widest: f64,
+    /// The length of the piece for which sine and cosine are economised.
+    time: f64,
     waves: Vec<Wave>,
 }
 
@@ -137,20 +140,76 @@ struct Economised {
 }
 
 impl Economised {
-    fn new(widest: f64) -> Self {
-        let square = widest * widest;
-        Self {
-            linear: square * square / 384.0,
-            cubic: 1.0 / 6.0 - square / 96.0,
-            constant: square * square / 192.0,
-            quadratic: 0.5 - square / 24.0,
+    /// The polynomials for squares of angles in this range.
+    fn new([least, most]: [f64; 2]) -> Self {
+        let (middle, half) = (0.5 * (least + most), 0.5 * (most - least));
+        let [linear, cubic] = economised_line(&SINE, middle, half);
+        let [constant, quadratic] = economised_line(&COSINE, middle, half);
+        Self { linear, cubic, constant, quadratic }
+    }
+}
+
+/// The line c + d u in place of a polynomial in u on [middle - half, middle + half]: its Taylor
+/// polynomial about the middle, of whose second and third powers Chebyshev's leave h^2/2 and 3 h^2
+/// u/4.
+fn economised_line(polynomial: &[f64], middle: f64, half: f64) -> [f64; 2] {
+    let mut taylor = [0.0; 4];
+    for coefficient in polynomial.iter().rev() {
+        for order in (1..taylor.len()).rev() {
+            taylor[order] = taylor[order] * middle + taylor[order - 1];
         }
+        taylor[0] = taylor[0] * middle + coefficient;
+    }
+    let [value, slope, bend, twist] = taylor;
+    let slope = slope + 0.75 * twist * half * half;
+    [value + 0.5 * bend * half * half - slope * middle, slope]
+}
+
+/// 1 - sin x/x and 1 - cos x by the powers of x^2.
+const SINE: [f64; 7] = [
+    0.0,
+    1.0 / 6.0,
+    -1.0 / 120.0,
+    1.0 / 5_040.0,
+    -1.0 / 362_880.0,
+    1.0 / 39_916_800.0,
+    -1.0 / 6_227_020_800.0,
+];
+const COSINE: [f64; 7] =
+    [0.0, 0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40_320.0, 1.0 / 3_628_800.0, -1.0 / 479_001_600.0];
+
+/// What becomes of a force N with the force of the accelerations that it gives at once: with the
+/// matrix M of the masses at x = 0 and C = 1 - cos x in the middle of the piece,
+///
+/// ```text
+/// N' = N + C S M^-1 N',    S M^-1 = ((-1, 1), (R + 1, -1))/R
+/// ```
+struct Reaction {
+    own: f64,
+    /// Of the force on y for x, and of that on x for y.
+    other: [f64; 2],
+}
+
+impl Reaction {
+    fn new(middle: f64, whole: f64) -> Self {
+        let share = middle / (whole - 1.0);
+        let sum = 1.0 + share;
+        let determinant = sum * sum - share * share * whole;
+        Self {
+            own: sum / determinant,
+            other: [share, share * whole].map(|other| other / determinant),
+        }
+    }
+
+    fn force(&self, [x, y]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
+        [x * self.own + y * self.other[0], y * self.own + x * self.other[1]]
     }
 }
 
 /// The terms of the motion without N: exponents, coefficients of x and of y''.
 struct TrialMotion {
     economised: Economised,
+    reaction: Reaction,
     exponents: [Complex<f64>; EXPONENTS],
     x: [Complex<f64>; EXPONENTS],
     accelerations: [Complex<f64>; EXPONENTS],
@@ -168,14 +227,36 @@ impl TrialMotion {
         let cube = cube * (orders * economised.cubic);
         // Each of the three is y'' in a third of the orders.
         let mixed = mixed * (orders / 3.0 * economised.quadratic);
-        [mixed + cube, sum * sum * cube]
+        self.reaction.force([mixed + cube, sum * sum * cube])
+    }
+
+    /// The range of x^2 from the beginning to this time, as far as a few looks tell, for these
+    /// places of exponents and angles no greater than `farthest`.
+    fn squares(&self, present: &[usize], time: f64, farthest: f64) -> [f64; 2] {
+        let steps = self.exponents.map(|exponent| (exponent * (time / f64::from(LOOKS))).exp());
+        let mut waves = self.x;
+        let mut range = [f64::INFINITY, 0.0_f64];
+        let mut before = 0.0;
+        for look in 0..=LOOKS {
+            let x: f64 = present.iter().map(|place| waves[*place].re).sum();
+            let square = x * x;
+            let least = if look > 0 && before * x < 0.0 { 0.0 } else { square };
+            range = [range[0].min(least), range[1].max(square)];
+            before = x;
+            for (wave, step) in waves.iter_mut().zip(steps) {
+                *wave *= step;
+            }
+        }
+        range.map(|square| square.min(farthest * farthest))
     }
 
     /// The force on x and on y of one exponent.
     fn linear(&self, a: usize) -> [Complex<f64>; 2] {
         let Self { exponents, x, accelerations, economised, .. } = self;
         let own = x[a] * economised.linear;
-        [own + accelerations[a] * economised.constant, exponents[a] * exponents[a] * own]
+        let force =
+            [own + accelerations[a] * economised.constant, exponents[a] * exponents[a] * own];
+        self.reaction.force(force)
     }
 }
 
@@ -188,9 +269,10 @@ impl ClosedFlight {
 
     /// Becomes the flight from this start; returns whether there is one.
     pub(super) fn begin(&mut self, start: &FlightStart) -> bool {
-        let FlightStart { ref modes, forces, begin, state, farthest } = *start;
+        let FlightStart { ref modes, forces, begin, state, farthest, longest } = *start;
         let mut trial = TrialMotion {
-            economised: Economised::new(0.0),
+            economised: Economised::new([0.0; 2]),
+            reaction: Reaction::new(0.0, modes.whole),
             exponents: [ZERO; EXPONENTS],
             x: [ZERO; EXPONENTS],
             accelerations: [ZERO; EXPONENTS],
@@ -243,7 +325,6 @@ impl ClosedFlight {
         if widest > WIDEST {
             return false;
         }
-        trial.economised = Economised::new(widest);
         let roots = modes.modes.map(|mode| mode.root);
         for (index, (mode, amplitude)) in modes.modes.iter().zip(amplitudes).enumerate() {
             let [x, y] = mode.shape.map(|shape| shape * amplitude);
@@ -255,6 +336,12 @@ impl ClosedFlight {
                 trial.accelerations[place] = turned(acceleration);
             }
         }
+        self.time = longest / (1.0 + widest / WIDE);
+        let squares = trial.squares(&present[..count], self.time, farthest);
+        trial.economised = Economised::new(squares);
+        let Economised { constant, quadratic, .. } = trial.economised;
+        let middle = constant + 0.5 * quadratic * (squares[0] + squares[1]);
+        trial.reaction = Reaction::new(middle, modes.whole);
         let projected = |index: usize, [x, y]: [Complex<f64>; 2]| {
             let [p, q] = modes.modes[index].projection;
             p * x + q * y
@@ -324,13 +411,13 @@ impl ClosedFlight {
             shape: modes.modes[index].shape,
             polynomial: polynomials[index],
         });
-        (self.frequency, self.widest) = (forces.frequency, widest);
+        self.frequency = forces.frequency;
         self.bound(2, 1.0).is_finite()
     }
 
-    /// The greatest angle for which the flight is made.
-    pub(super) fn widest(&self) -> f64 {
-        self.widest
+    /// The length of the piece for which the flight is made.
+    pub(super) fn time(&self) -> f64 {
+        self.time
     }
 
     /// A bound of the derivative of x of the second or third order over this time.
@@ -466,6 +553,13 @@ pub(super) fn safe_step(distance: f64, closing: f64, bound: f64) -> f64 {
 /// The widest swing, rad, of a flight in closed form.
 const WIDEST: f64 = 1.6;
 
+/// The angle, rad, at which a piece is half as long as one of small angles: the wider the swing, the
+/// larger the terms that are left out.
+const WIDE: f64 = 0.2;
+
+/// Looks at the angles of a piece, in equal steps.
+const LOOKS: u32 = 4;
+
 /// The distance, in rad or in rad omega, that counts as none.
 const NEAR: f64 = 1e-13;
 
@@ -500,6 +594,7 @@ mod tests {
             begin: 0.0,
             state: PrimaryState { x, velocity, y, speed },
             farthest: f64::INFINITY,
+            longest: 2.0,
         };
         ClosedFlight::new(&start).expect("a flight")
     }

@@ -108,15 +108,20 @@ impl PrimaryMotion {
     /// # Errors
     /// The reason why there is none.
     pub fn rest_time(&self) -> Result<f64, NoRest> {
+        let envelope = self.envelope();
+        match envelope.first() {
+            Some((_, first)) if *first > 0.0 => self.falls_to(REST_FRACTION * first, &envelope),
+            _ => Err(NoRest::NoAmplitude),
+        }
+    }
+
+    /// The points of the envelope of the main mass, time and |y| over L: the first swing at the
+    /// start, then the larger of every two successive turning points.
+    pub fn envelope(&self) -> Vec<(f64, f64)> {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
-        // The first swing includes the energy of the initial speed; the envelope begins at the
-        // start.
+        // The first swing includes the energy of the initial speed.
         let first = y.hypot(speed * (primary.mass / primary.stiffness).sqrt());
-        if first == 0.0 {
-            return Err(NoRest::NoAmplitude);
-        }
-        let level = REST_FRACTION * first;
         let mut envelope = vec![(0.0, first)];
         let turns: Vec<(f64, f64)> =
             self.turns.iter().filter(|(t, _)| *t > 0.0).map(|(t, y)| (*t, y.abs())).collect();
@@ -126,7 +131,7 @@ impl PrimaryMotion {
                 envelope.push(larger);
             }
         }
-        self.falls_to(level, &envelope)
+        envelope
     }
 
     /// The last time at which this envelope, straight lines of log h through (t, h), falls through

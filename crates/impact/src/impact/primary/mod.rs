@@ -29,6 +29,7 @@ mod flight;
 mod follow;
 mod linear;
 mod modes;
+mod nearby;
 mod parameter;
 mod path;
 mod pendulum;
@@ -39,12 +40,14 @@ mod sweep;
 use thiserror::Error;
 
 use super::model::{Friction, Model, Side};
+use super::simulation::{ContactRecord, Settings};
 use crate::interrupt::Interrupt;
 use crate::mechanics::MechanicsError;
 use crate::system::SystemError;
 
 pub use follow::simulate_primary;
 pub use linear::{Alone, UndampedAndLocked};
+pub use nearby::{NEARBY, nearby_rest_times};
 pub use parameter::PrimaryParameter;
 pub use path::PrimaryState;
 pub use si::MainMass;
@@ -110,6 +113,18 @@ impl Default for PrimarySettings {
     }
 }
 
+impl From<&Settings> for PrimarySettings {
+    /// Duration, interrupt and largest number of phases of a simulation of the pendulum alone.
+    fn from(settings: &Settings) -> Self {
+        Self {
+            duration: settings.duration,
+            phase_limit: settings.maximum_steps,
+            interrupt: settings.interrupt,
+            ..Self::default()
+        }
+    }
+}
+
 /// An impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -131,6 +146,27 @@ pub struct PrimaryImpact {
     pub penetration: f64,
     /// The energy that the contact took.
     pub energy_lost: f64,
+}
+
+impl PrimaryImpact {
+    /// Speed out over speed in; `None` for a contact that did not begin with a touch or did not end.
+    pub fn restitution(&self) -> Option<f64> {
+        let restitution = self.speed_out? / self.speed_in;
+        Some(restitution).filter(|restitution| restitution.is_finite())
+    }
+}
+
+impl From<&PrimaryImpact> for ContactRecord {
+    fn from(impact: &PrimaryImpact) -> Self {
+        Self {
+            exit_time: impact.exit_time,
+            speed_out: impact.speed_out,
+            penetration: impact.penetration,
+            restitution: impact.restitution(),
+            energy_lost: impact.exit_time.map(|_| impact.energy_lost),
+            ..Self::touched(impact.side, impact.entry_time, impact.speed_in)
+        }
+    }
 }
 
 /// The account of the energy.

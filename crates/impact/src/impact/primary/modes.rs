@@ -33,7 +33,7 @@ pub(super) struct DampedMode {
 pub(super) struct DampedModes {
     pub modes: [DampedMode; 2],
     /// R + 1.
-    whole: f64,
+    pub whole: f64,
     /// 2 zeta and delta.
     damping: [f64; 2],
     stiffness: f64,

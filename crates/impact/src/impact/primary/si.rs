@@ -5,8 +5,8 @@
 //! y = displacement/L,  y' = speed/sqrt(g L)
 //! ```
 
-use super::Primary;
-use crate::impact::Units;
+use super::{Primary, PrimaryCase};
+use crate::impact::{Model, Start, Units};
 
 /// A main mass in SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,5 +43,15 @@ impl MainMass {
     /// Its displacement and velocity at the start.
     pub fn start(&self, units: &Units) -> [f64; 2] {
         [self.displacement / units.length, self.speed / units.speed()]
+    }
+
+    /// The main mass together with this pendulum, let go from `start`.
+    pub fn carrying(&self, units: &Units, model: Model, start: Start) -> PrimaryCase {
+        let [displacement, speed] = self.start(units);
+        PrimaryCase {
+            primary: self.primary(units),
+            model,
+            start: [start.x, start.velocity, displacement, speed],
+        }
     }
 }

@@ -12,23 +12,26 @@
 //! ```
 //!
 //! The given damping applies at the modulus of the design; every other form is held fixed at its
-//! value there.
+//! value there. With a main mass that carries the pendulum it is the main mass that is to come to
+//! rest; `motion` follows either.
+
+mod motion;
 
 use thiserror::Error;
 
 use super::baseline::BASELINE_DURATIONS;
 use super::case::Case;
-use super::contact::HuntCrossley;
 use super::dissipation::{ContactDamping, Dissipation, SpeedUnit};
 use super::hertz;
 use super::model::{Model, ModelError, Start};
 use super::parameter::Parameter;
+use super::primary::{MainMass, PrimaryError, UndampedAndLocked};
 use super::si::YieldCheck;
 use super::simulate::{SimulationError, simulate};
-use super::simulation::{
-    CLOCK, ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop,
-};
+use super::simulation::{ContactRecord, Integrator, NoRest, Settings, SimulationStop};
 use super::units::{FIRST_YIELD, Modulus, Units};
+use motion::StudiedCase;
+pub use motion::StudiedMotion;
 
 /// The default materials of a study, with their elastic moduli, Pa.
 pub const DEFAULT_MATERIALS: [(&str, f64); 3] = [
@@ -99,6 +102,8 @@ pub struct MaterialQuestion {
     pub sphere_yield: Option<f64>,
     /// Duration and accuracy of the motions.
     pub settings: Settings,
+    /// The main mass that carries the pendulum and is to come to rest; `None` on a fixed pivot.
+    pub main_mass: Option<MainMass>,
     /// The method that follows them; pictures use the same one.
     pub integrator: Integrator,
     /// The dampings that were not given, for which the defaults are used.
@@ -116,6 +121,7 @@ impl Default for MaterialQuestion {
             },
             materials: Material::defaults(),
             sphere_yield: None,
+            main_mass: None,
             settings: Settings { duration: DEFAULT_DURATION, ..Settings::default() },
             integrator: Integrator::Taylor,
             defaults: vec![Parameter::Lambda, Parameter::Zeta],
@@ -144,6 +150,9 @@ pub enum MaterialsError {
     /// A motion that cannot begin.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A motion of a main mass that cannot begin.
+    #[error(transparent)]
+    MainMass(#[from] PrimaryError),
 }
 
 /// The motion against one barrier until it rests.
@@ -153,7 +162,8 @@ pub struct MotionToRest {
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until then; all of them where it does not rest.
     pub impacts: Vec<ContactRecord>,
-    /// The energy of the swing after each of them that ended, in units of m g L.
+    /// The energy of the swing, or of main mass and pendulum, after each of them that ended, in
+    /// units of m g L.
     pub energies: Vec<f64>,
     /// The reason why it was followed no further.
     pub stop: SimulationStop,
@@ -181,27 +191,6 @@ pub fn course(
 ) -> Result<MotionToRest, SimulationError> {
     let settings = Settings { keep_path: false, ..*settings };
     Ok(MotionToRest::from(&simulate(model, start, integrator, &settings)?))
-}
-
-impl From<&Simulation> for MotionToRest {
-    fn from(motion: &Simulation) -> Self {
-        let model = &motion.model;
-        let rest_time = motion.rest().time;
-        let before_rest = |impact: &&ContactRecord| {
-            rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
-        };
-        let impacts: Vec<ContactRecord> =
-            motion.impacts.iter().filter(before_rest).copied().collect();
-        let energy = |impact: &ContactRecord| {
-            Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?))
-        };
-        Self {
-            rest_time,
-            energies: impacts.iter().filter_map(energy).collect(),
-            impacts,
-            stop: motion.stop,
-        }
-    }
 }
 
 /// The first contact of a barrier.
@@ -347,17 +336,17 @@ pub fn material_motions(
     number: usize,
 ) -> Result<MaterialMotions, MaterialsError> {
     let material = question.materials.get(number).ok_or(MaterialsError::NoMaterial)?;
-    let StudyDesign { model: design, units, dissipation, .. } = StudyDesign::new(question)?;
-    let (model, start) = MaterialQuestion::motion_of(material, &question.own_case(material))?;
-    let course = course(&model, start, question.integrator, &question.settings)?;
+    let StudyDesign { case: design, dissipation } = StudyDesign::new(question)?;
+    let (integrator, settings) = (question.integrator, &question.settings);
+    let own = question.studied(material, &question.own_case(material), &design.units)?;
+    let course = own.course(integrator, settings)?;
     let first = match course.impacts.first() {
-        Some(impact) => first_contact(impact, &model, start, question, &units)?,
+        Some(impact) => own.first_contact(impact, integrator, settings)?,
         None => None,
     };
-    let lossless = Model { mu: 0.0, ..model };
-    let longer = with_longer_duration(&question.settings);
-    let lossless = self::course(&lossless, start, question.integrator, &longer)?.rest_time;
-    let held = match design.mu > 0.0 && first.is_some() {
+    let lossless = StudiedCase { model: Model { mu: 0.0, ..own.model }, ..own };
+    let lossless = lossless.course(integrator, &with_longer_duration(settings))?.rest_time;
+    let held = match design.model.mu > 0.0 && first.is_some() {
         true => rest_times_held_fixed(question, material, &dissipation)?,
         false => vec![],
     };
@@ -382,39 +371,31 @@ pub fn study_from_motions(
     question: MaterialQuestion,
     motions: Vec<MaterialMotions>,
 ) -> Result<MaterialStudy, MaterialsError> {
-    let StudyDesign { model, start, units, dissipation } = StudyDesign::new(&question)?;
+    let StudyDesign { case, dissipation } = StudyDesign::new(&question)?;
+    let StudiedCase { model, start, units, .. } = case;
     let loses = model.mu > 0.0 && motions.iter().any(|motions| motions.first.is_some());
     let (mut rows, mut held) = (Vec::new(), Vec::new());
     for (material, motions) in question.materials.iter().zip(motions) {
         held.push(match (loses, motions.held.is_empty()) {
             // It is not touched itself, but another one is.
             (true, true) => rest_times_held_fixed(&question, material, &dissipation)?,
-            _ => motions.held,
+            _ => motions.held.clone(),
         });
-        rows.push(row(
-            &question,
-            &units,
-            material,
-            motions.course,
-            motions.first,
-            motions.lossless,
-        )?);
+        rows.push(row(&question, &units, &dissipation, material, motions)?);
     }
     let held_fixed = match loses {
         true => held_fixed(&question, &dissipation, &held)?,
         false => vec![],
     };
-    let without = Model { left: None, right: None, ..model };
+    let without = StudiedCase { model: Model { left: None, right: None, ..model }, ..case };
     let longer = with_longer_duration(&question.settings);
-    let no_barrier = course(&without, start, question.integrator, &longer)?.rest_time;
+    let no_barrier = without.course(question.integrator, &longer)?.rest_time;
     Ok(MaterialStudy { units, model, start, rows, no_barrier, dissipation, held_fixed, question })
 }
 
 /// The design of a study, at its own modulus.
 struct StudyDesign {
-    model: Model,
-    start: Start,
-    units: Units,
+    case: StudiedCase,
     dissipation: Dissipation,
 }
 
@@ -438,7 +419,13 @@ impl StudyDesign {
             sphere_yield: question.sphere_yield,
             barrier_yield: None,
         };
-        Ok(Self { model, start, units, dissipation: case.dissipation(Some(&units))? })
+        let studied = StudiedCase { model, start, units, main_mass: question.main_mass };
+        let mut dissipation = case.dissipation(Some(&units))?;
+        if question.main_mass.is_some() {
+            let speed = studied.carried_touch_speed(question.settings.duration)?;
+            dissipation = dissipation.touched_at(speed);
+        }
+        Ok(Self { case: studied, dissipation })
     }
 }
 
@@ -467,6 +454,32 @@ impl MaterialQuestion {
         }
     }
 
+    /// The motion against the barrier of a material.
+    fn studied(
+        &self,
+        material: &Material,
+        case: &Case,
+        units: &Units,
+    ) -> Result<StudiedCase, MaterialsError> {
+        let (model, start) = Self::motion_of(material, case)?;
+        Ok(StudiedCase { model, start, units: *units, main_mass: self.main_mass })
+    }
+
+    /// The dampings of a material in every form; the speed of the first touch beside a main mass is
+    /// that of `design`, because the flight to it does not depend on the barrier.
+    fn dissipation_of(
+        &self,
+        case: &Case,
+        units: Option<&Units>,
+        design: &Dissipation,
+    ) -> Result<Dissipation, MaterialsError> {
+        let dissipation = case.dissipation(units)?;
+        Ok(match self.main_mass {
+            None => dissipation,
+            Some(_) => dissipation.touched_at(design.touch_speed),
+        })
+    }
+
     /// The equation of a material, and its start.
     fn motion_of(material: &Material, case: &Case) -> Result<(Model, Start), MaterialsError> {
         case.motion()
@@ -477,11 +490,11 @@ impl MaterialQuestion {
 fn row(
     question: &MaterialQuestion,
     units: &Units,
+    design: &Dissipation,
     material: &Material,
-    course: MotionToRest,
-    first: Option<FirstContact>,
-    lossless: Result<f64, NoRest>,
+    motions: MaterialMotions,
 ) -> Result<MaterialRow, MaterialsError> {
+    let MaterialMotions { first, course, lossless, .. } = motions;
     let case = question.own_case(material);
     let (model, _) = MaterialQuestion::motion_of(material, &case)?;
     let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
@@ -491,53 +504,13 @@ fn row(
     });
     Ok(MaterialRow {
         gamma: model.gamma,
-        dissipation: case.dissipation(Some(units))?,
+        dissipation: question.dissipation_of(&case, Some(units), design)?,
         yield_checks: checks.collect(),
         first,
         lossless,
         course,
         material: material.clone(),
     })
-}
-
-/// The numbers of a first contact in SI units; the greatest force is found on the motion itself.
-/// For a contact of a chain, or one too short for the clock, duration and force are those of the
-/// closed form, which neglects the force of the swing.
-fn first_contact(
-    impact: &ContactRecord,
-    model: &Model,
-    start: Start,
-    question: &MaterialQuestion,
-    units: &Units,
-) -> Result<Option<FirstContact>, SimulationError> {
-    let (Some(exit), Some(restitution)) = (impact.exit_time, impact.restitution) else {
-        return Ok(None);
-    };
-    let closed =
-        question.integrator == Integrator::Chain || exit - impact.entry_time < CLOCK * exit;
-    let closed_form = match closed {
-        true => HuntCrossley::new(1.5, model.gamma, model.mu / model.gamma, impact.speed_in).ok(),
-        false => None,
-    };
-    let until = Settings { duration: exit, keep_path: true, ..question.settings };
-    let motion = simulate(model, start, question.integrator, &until)?;
-    let (duration, peak_force) = match closed_form {
-        Some(contact) => (contact.duration, contact.peak_force),
-        None => match motion.peak_force(impact) {
-            Some(force) => (exit - impact.entry_time, force),
-            None => return Ok(None),
-        },
-    };
-    let metres = units.length * impact.penetration;
-    let elastic = units.force() * hertz::force(model.gamma, impact.penetration);
-    Ok(Some(FirstContact {
-        speed: units.speed() * impact.speed_in,
-        duration: units.time() * duration,
-        penetration: metres,
-        peak_force: units.force() * peak_force,
-        peak_pressure: units.pressure(elastic, metres).unwrap_or(f64::NAN),
-        restitution,
-    }))
 }
 
 /// The forms of the damping of the design, the given one first, each with the speed at which a
@@ -577,10 +550,11 @@ fn rest_times_held_fixed(
     material: &Material,
     dissipation: &Dissipation,
 ) -> Result<Vec<Result<f64, NoRest>>, MaterialsError> {
+    let units = StudyDesign::new(question)?.case.units;
     let rest_time = |form| {
         let case = case_held_fixed(question, material, form);
-        let (model, start) = MaterialQuestion::motion_of(material, &case)?;
-        Ok(course(&model, start, question.integrator, &question.settings)?.rest_time)
+        let studied = question.studied(material, &case, &units)?;
+        Ok(studied.course(question.integrator, &question.settings)?.rest_time)
     };
     forms(dissipation).into_iter().map(rest_time).collect()
 }
@@ -605,7 +579,7 @@ fn held_fixed(
             let case = case_held_fixed(question, material, (damping, at_speed));
             let (model, _) = MaterialQuestion::motion_of(material, &case)?;
             held.ratios.push(model.mu / model.gamma);
-            held.restitutions.push(case.dissipation(None)?.restitution);
+            held.restitutions.push(question.dissipation_of(&case, None, dissipation)?.restitution);
         }
         found.push(held);
     }
@@ -660,14 +634,14 @@ impl MaterialStudy {
         row: usize,
         held: Option<&HeldFixed>,
         duration: f64,
-    ) -> Result<Simulation, MaterialsError> {
+    ) -> Result<StudiedMotion, MaterialsError> {
         let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
         let case = match held {
             None => self.question.own_case(material),
             Some(held) => case_held_fixed(&self.question, material, (held.damping, held.at_speed)),
         };
-        let (model, start) = MaterialQuestion::motion_of(material, &case)?;
-        self.follow(&model, start, duration)
+        let (model, _) = MaterialQuestion::motion_of(material, &case)?;
+        self.follow(model, duration)
     }
 
     /// The motion of the same swing without a barrier, or with that of a material without loss.
@@ -678,21 +652,24 @@ impl MaterialStudy {
         &self,
         barrier_of: Option<usize>,
         duration: f64,
-    ) -> Result<Simulation, MaterialsError> {
+    ) -> Result<StudiedMotion, MaterialsError> {
         let model = match barrier_of.and_then(|row| self.rows.get(row)) {
             None => Model { left: None, right: None, ..self.model },
             Some(row) => Model { gamma: row.gamma, mu: 0.0, ..self.model },
         };
-        self.follow(&model, self.start, duration)
+        self.follow(model, duration)
     }
 
-    fn follow(
-        &self,
-        model: &Model,
-        start: Start,
-        duration: f64,
-    ) -> Result<Simulation, MaterialsError> {
+    /// The main mass without its damper and with the damper locked; `None` on a fixed pivot.
+    pub fn undamped_and_locked(&self) -> Option<UndampedAndLocked> {
+        let main_mass = self.question.main_mass?;
+        Some(main_mass.primary(&self.units).undamped_and_locked())
+    }
+
+    fn follow(&self, model: Model, duration: f64) -> Result<StudiedMotion, MaterialsError> {
+        let main_mass = self.question.main_mass;
+        let studied = StudiedCase { model, start: self.start, units: self.units, main_mass };
         let settings = Settings { duration, keep_path: true, ..self.question.settings };
-        Ok(simulate(model, start, self.question.integrator, &settings)?)
+        studied.follow(self.question.integrator, &settings)
     }
 }

@@ -216,7 +216,7 @@ fn one_mode(
         approximant: mode.approximant.as_ref().map(|_| mode.formula().replace("omega^2 = ", "")),
         balance: mode.balance.as_ref().map(|balance| ModeBalanceDocument {
             harmonics: balance.harmonics.clone(),
-            unknowns: texts(&balance.unknowns()),
+            unknowns: texts(balance.unknowns()),
             equations: balance.equations.iter().map(ToString::to_string).collect(),
         }),
         formula: mode.formula(),

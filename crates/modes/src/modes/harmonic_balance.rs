@@ -351,7 +351,7 @@ impl<'a> Forces<'a> {
                 match settled {
                     true => Progress::Settled,
                     // A step of this size leads to another motion.
-                    false if !(relative <= 0.5) => Progress::Lost,
+                    false if relative.is_nan() || relative > 0.5 => Progress::Lost,
                     false => Progress::Going,
                 }
             },

@@ -115,7 +115,7 @@ pub struct Stability {
 }
 
 impl Stability {
-    /// Nothing is proved.
+    /// The stability of which nothing is proved.
     pub(super) const UNKNOWN: Self = Self { attracts: None, largest: None };
 
     /// The stability of a limit cycle of one coordinate, from its characteristic exponent and
@@ -141,7 +141,7 @@ impl Stability {
     }
 }
 
-/// What a certificate claims of the stability of its motion.
+/// The stability that a certificate claims for its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimedStability {
     /// Whether the motion attracts; `None` if nothing is claimed of that.
@@ -267,7 +267,7 @@ pub(super) fn multipliers(problem: &DampedProblem, radius: Bound) -> Option<Mult
 }
 
 impl Multipliers {
-    /// What they say of the stability.
+    /// Returns the stability that the multipliers prove.
     pub(super) fn stability(&self) -> Stability {
         Stability { attracts: self.attracts, largest: self.largest.as_ref().map(Enclosure::size) }
     }

@@ -47,7 +47,7 @@ pub fn certify_coupled(
     if let Some((name, _)) = others.iter().next() {
         return Err(NotCertified::NoParameter(name.to_string()));
     }
-    let start = Start::new(start)?;
+    let start = Displacements::new(start)?;
     let missing = equations.parameters.iter().find(|name| !values.contains_key(name));
     if let Some(name) = missing {
         return Err(NotCertified::NoValueOf(name.to_string()));
@@ -88,11 +88,11 @@ pub fn certify_coupled(
     if !certificate.problem().has_potential_damping()? {
         return Err(NotCertified::DampingOfNoFunction);
     }
-    let flow = Flow::new(equations, &rates)?;
+    let flow = NumericalEquations::new(equations, &rates)?;
     let truth = match &mut certificate.drive {
         Some(drive) => {
             let state = flow.state(&start, &|_| 0.0);
-            let SteadyMotion { periods, samples, change } =
+            let DrivenPeriod { periods, samples, change } =
                 flow.settled(state, to_f64(&drive.frequency))?;
             let found = harmonics(&samples, change);
             drive.periods = periods;
@@ -104,7 +104,7 @@ pub fn certify_coupled(
         }
         None => {
             let state = flow.state(&start, &|place| 0.1 / (place + 1) as f64);
-            let OnePeriod { period, samples, change } =
+            let CyclePeriod { period, samples, change } =
                 flow.cycle(state).map_err(|reason| reason.of_motion_from(&start))?;
             certificate.reciprocal = units(period / TAU, BITS);
             let found = harmonics(&samples, change);
@@ -212,9 +212,9 @@ fn parts(
 }
 
 /// The displacements from which a motion starts at rest, of the coordinates that have one.
-struct Start(BTreeMap<Symbol, f64>);
+struct Displacements(BTreeMap<Symbol, f64>);
 
-impl Start {
+impl Displacements {
     fn new(values: BTreeMap<Symbol, Expr>) -> Result<Self, NotCertified> {
         let number = |(name, value): (Symbol, Expr)| match value.evaluate(&BTreeMap::new()) {
             Ok(number) if number.is_finite() => Ok((name, number)),
@@ -233,7 +233,7 @@ enum NoCycle {
 
 impl NoCycle {
     /// The refusal of the motion from this start.
-    fn of_motion_from(self, Start(start): &Start) -> NotCertified {
+    fn of_motion_from(self, Displacements(start): &Displacements) -> NotCertified {
         let equations: Vec<String> =
             start.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         let from = match equations.is_empty() {
@@ -249,21 +249,21 @@ impl NoCycle {
 }
 
 /// One period of a limit cycle.
-struct OnePeriod {
+struct CyclePeriod {
     period: f64,
     /// The places of all coordinates at equal steps.
     samples: Vec<Vec<f64>>,
-    /// By how much the states at both ends differ, beside the size of the motion.
+    /// Difference of the states at both ends, as a part of the size of the motion.
     change: f64,
 }
 
 /// One period of a driven motion.
-struct SteadyMotion {
+struct DrivenPeriod {
     /// The number of periods of the drive in it.
     periods: usize,
     /// The places of all coordinates at equal steps.
     samples: Vec<Vec<f64>>,
-    /// By how much the states at both ends differ, beside the largest.
+    /// Difference of the states at both ends, as a part of the largest value.
     change: f64,
 }
 
@@ -278,7 +278,7 @@ const SAMPLES: usize = 1024;
 const SETTLED: [f64; 2] = [1e-9, 1e-4];
 
 /// The equations in doubles.
-struct Flow {
+struct NumericalEquations {
     rates: CompiledList,
     coordinates: Vec<Symbol>,
     /// The number of states.
@@ -288,7 +288,7 @@ struct Flow {
     scratch: RefCell<Vec<f64>>,
 }
 
-impl Flow {
+impl NumericalEquations {
     fn new(equations: &CoupledEquations, rates: &[Expr]) -> Result<Self, NotCertified> {
         let states = &equations.rates.states;
         let names: Vec<Symbol> = states.iter().copied().chain([Symbol::new("t")]).collect();
@@ -313,7 +313,11 @@ impl Flow {
     }
 
     /// The state at rest at a start; where it has no value, at another displacement by place.
-    fn state(&self, Start(start): &Start, otherwise: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    fn state(
+        &self,
+        Displacements(start): &Displacements,
+        otherwise: &dyn Fn(usize) -> f64,
+    ) -> Vec<f64> {
         let places =
             self.coordinates.iter().enumerate().map(|(place, name)| match start.get(name) {
                 None if start.is_empty() => otherwise(place),
@@ -326,7 +330,7 @@ impl Flow {
 
     /// The motion to which that from a state at t = 0 comes, over its period of some periods of the
     /// drive, from a multiple of that on.
-    fn settled(&self, mut state: Vec<f64>, frequency: f64) -> Result<SteadyMotion, NotCertified> {
+    fn settled(&self, mut state: Vec<f64>, frequency: f64) -> Result<DrivenPeriod, NotCertified> {
         /// The largest number of periods.
         const PERIODS: usize = 1000;
         let field = |t: f64, state: &Vec<f64>, rates: &mut Vec<f64>| self.rates(t, state, rates);
@@ -368,12 +372,12 @@ impl Flow {
             let part = |index: usize| (index * periods) as f64 / SAMPLES as f64;
             state = after(state, [part(index), part(index + 1)])?;
         }
-        Ok(SteadyMotion { periods, samples, change })
+        Ok(DrivenPeriod { periods, samples, change })
     }
 
     /// One period of the limit cycle to which the motion from a state comes. It is seen where the
     /// coordinate that moves most is highest: the state there comes back.
-    fn cycle(&self, mut state: Vec<f64>) -> Result<OnePeriod, NoCycle> {
+    fn cycle(&self, mut state: Vec<f64>) -> Result<CyclePeriod, NoCycle> {
         /// The largest number of pieces of the motion, each of so many steps.
         const PIECES: usize = 100;
         const STEPS: usize = 1000;
@@ -438,7 +442,7 @@ impl Flow {
                 };
                 let samples: Option<_> = (0..SAMPLES).map(sample).collect();
                 let samples = samples.ok_or(NoCycle::Irregular)?;
-                return Ok(OnePeriod { period, samples, change });
+                return Ok(CyclePeriod { period, samples, change });
             }
         }
         match travel > REST * first {

@@ -280,7 +280,7 @@ def response(
 
 
 def absorber(
-    kind: Literal["tuned", "nonlinear", "impact-sink", "cubic-sink"],
+    kind: Literal["tuned", "damped", "nonlinear", "impact-sink", "cubic-sink"],
     *,
     excitation: Literal["force", "ground"] | None = None,
     tolerance: float | None = None,

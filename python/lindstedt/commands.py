@@ -280,7 +280,7 @@ def response(
 
 
 def absorber(
-    kind: Literal["tuned", "nonlinear", "impact-sink", "cubic-sink"],
+    kind: Literal["tuned", "damped", "nonlinear", "impact-sink", "cubic-sink"],
     *,
     excitation: Literal["force", "ground"] | None = None,
     tolerance: float | None = None,
@@ -292,9 +292,9 @@ def absorber(
     """Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, its cubic spring where the main mass has one, thresholds of a ball in a cavity and of a light mass on a cubic spring.
 
     Args:
-        kind: The kind of absorber: a tuned mass damper; a nonlinear one, with a cubic spring
-            beside that of the main mass; a vibro-impact sink, a ball in a cavity; a light mass on a
-            cubic spring.
+        kind: The kind of absorber: a tuned mass damper; the same on a damped main mass; a
+            nonlinear one, with a cubic spring beside that of the main mass; a vibro-impact sink, a
+            ball in a cavity; a light mass on a cubic spring.
         excitation: What shakes the main mass of a tuned mass damper: a force on it, or the
             ground; force without it.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.

@@ -507,9 +507,9 @@ fn a_backbone_has_the_energy_of_its_turns() {
         let rest = 1.0 + 1.0 / 7.0;
         potential(rest + q[0], q[1]) - potential(rest, 0.0)
     };
-    let cases: [(&FreeSystem, &dyn Fn(&[f64]) -> f64); 2] =
-        [(&pair, &of_pair), (&pendulum, &of_pendulum)];
-    for (system, potential) in cases {
+    type Potential<'a> = &'a dyn Fn(&[f64]) -> f64;
+    let potentials: [Potential; 2] = [&of_pair, &of_pendulum];
+    for (system, potential) in [&pair, &pendulum].into_iter().zip(potentials) {
         let found = derive(system, &to_order(4)).expect("modes");
         for mode in formulas(&found) {
             let at = "a = 2/5".parse().expect("values");

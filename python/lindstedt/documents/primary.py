@@ -232,6 +232,9 @@ class Primary(Answer):
         integrated_phases: The number of phases of a chain that were integrated for want of a
             closed form; null where the motion was integrated.
         judge: The motion of a chain by integration; null where the motion was integrated.
+        nearby_rest_times: The least and the greatest rest time by closed forms of starts 0.03 %
+            smaller and larger: where they are apart, closed forms cannot give this one; null
+            where the motion was integrated, or one of them does not rest.
         stopped: Why the run ended.
         complete: Whether it was followed as long as asked, and its energy is accounted for.
     """
@@ -252,6 +255,7 @@ class Primary(Answer):
     route: Literal["integration", "chain"]
     integrated_phases: int | None
     judge: PrimaryJudge | None
+    nearby_rest_times: tuple[float, float] | None
     stopped: str
     complete: bool
 
@@ -273,6 +277,7 @@ Primary.FIELDS = (
     ("route", "route", None),
     ("integrated_phases", "integrated_phases", None),
     ("judge", "judge", PrimaryJudge.from_json),
+    ("nearby_rest_times", "nearby_rest_times", tuple),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )

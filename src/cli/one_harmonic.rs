@@ -62,12 +62,17 @@ pub(super) fn run(
     let answer = Answer {
         document: &report::one_harmonic(&report),
         width: files::width(arguments.common.output.as_deref()),
-        picture: None,
+        picture: Some(&|| {
+            Err(Failure::because(
+                "closed forms with one harmonic have no picture: --order 2 draws the modes with two harmonics"
+                    .to_owned(),
+            ))
+        }),
         other: &|format| {
             match format {
             Format::Json => json_text(&json::one_harmonic(&report)),
             Format::Code(_) => Err(Failure::Usage(
-                "there is no program of the modes of coupled equations: --format json has their formulas"
+                "closed forms with one harmonic have no program: --order 2 has one with the numbers of two harmonics, --format json has the formulas"
                     .to_owned(),
             )),
             format => no_such(format),

@@ -99,8 +99,11 @@ pub(super) fn run(
     let (slow, values) = with_progress("of the calculation", || {
         with_numbers(&system, &options, values).map_err(refused)
     })?;
-    let asked =
-        values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
+    // Of numbers alone there is nothing left to give.
+    let asked = values.is_some()
+        || arguments.common.draws()
+        || arguments.common.tolerance.is_some()
+        || slow.system.equations.parameters.is_empty();
     let mut lost = None;
     let judged = match asked {
         true => {

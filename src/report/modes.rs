@@ -191,8 +191,11 @@ fn one_mode<'a>(
         Some(own) => blocks.push(Block::Equality { left: squared, right: &own.value }),
         None => blocks.push(law(squared, mode.ordered(&mode.frequency_squared))),
     }
-    if mode.balance.is_none() {
-        blocks.extend(motion(report, mode));
+    match mode.balance.as_ref().map(|balance| balance.equations.last()) {
+        None => blocks.extend(motion(report, mode)),
+        Some(amplitude) => {
+            blocks.extend(amplitude.map(|right| Block::Equality { left: Expr::zero(), right }))
+        }
     }
     let others = coordinates.iter().zip(&mode.lines).enumerate();
     let others = others.filter(|(index, _)| *index != mode.along);

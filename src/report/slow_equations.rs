@@ -228,7 +228,7 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
     let mut blocks = vec![Block::Heading(format!("Steady motions{}", values_in_words(&judged.at)))];
     if judged.steady.is_empty() {
         blocks.push(Block::Note(
-            "no isolated steady motion: without damping or drive there are families of them; give amplitudes, such as a1=0.1, for a motion"
+            "no steady motion was found that stands alone: others are members of families, as without damping or drive, or on the edge of stability; give amplitudes, such as a1=0.1, for a motion"
                 .to_owned(),
         ));
         return blocks;
@@ -261,7 +261,7 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
     blocks.push(Block::Table { head, rows: rows.collect() });
     if judged.has_families {
         blocks.push(Block::Note(
-            "there are families of steady motions as well, without isolated members; they are not listed"
+            "other steady motions are members of families or on the edge of stability; they are not listed"
                 .to_owned(),
         ));
     }

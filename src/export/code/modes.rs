@@ -28,9 +28,7 @@ pub(super) fn program(report: &ModesReport) -> Result<Program, NoCode> {
     let mut routines = Vec::new();
     for (mode, judged) in report.judged_modes() {
         let own = match mode.balance {
-            Some(_) => {
-                one_mode(report, &in_numbers(mode, judged.and_then(|own| own.as_ref().ok()))?)
-            }
+            Some(_) => one_mode(report, &in_numbers(mode, judged)?),
             None => one_mode(report, mode),
         };
         let program = Program { header: vec![], routines: own };
@@ -40,9 +38,15 @@ pub(super) fn program(report: &ModesReport) -> Result<Program, NoCode> {
 }
 
 /// A mode by balance of harmonics with the numbers that were found at the values.
-fn in_numbers(mode: &NonlinearMode, judged: Option<&JudgedMode>) -> Result<NonlinearMode, NoCode> {
-    let solved = || NoCode::SolvedByNumbers(SEVERAL_EQUATIONS.to_owned());
-    let judged = judged.ok_or_else(solved)?;
+fn in_numbers(
+    mode: &NonlinearMode,
+    judged: Option<&Result<JudgedMode, String>>,
+) -> Result<NonlinearMode, NoCode> {
+    let judged = match judged {
+        None => return Err(NoCode::SolvedByNumbers(SEVERAL_EQUATIONS.to_owned())),
+        Some(Err(reason)) => return Err(NoCode::NoMotion(Some(reason.clone()))),
+        Some(Ok(judged)) => judged,
+    };
     let number = |value: f64| from_f64(value).map(Polynomial::constant).ok_or(NoCode::Beyond);
     let frequency = judged.frequency.ok_or(NoCode::NoMotion(None))?;
     let mut known = BTreeMap::new();

@@ -45,7 +45,8 @@ pub struct ModeOptions {
     /// The degrees in a^2 of numerator and denominator of an approximant of omega^2, in place of its
     /// series.
     pub pade: Option<(u32, u32)>,
-    /// The number of harmonics to balance, in place of a series.
+    /// The number of harmonics to balance, in place of a series; the amplitude is the start of the first
+    /// coordinate then, whatever `amplitude` says.
     pub harmonics: Option<u32>,
     /// The definition of the amplitude.
     pub amplitude: AmplitudeConvention,
@@ -254,7 +255,7 @@ pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes,
     let of_approximant =
         options.pade.map(|(above, below)| above.saturating_add(below).saturating_mul(2));
     let order = of_approximant.or(options.order).unwrap_or(USUAL_ORDER);
-    if order > HIGHEST_ORDER {
+    if order > HIGHEST_ORDER && options.harmonics.is_none() {
         return Err(ModeError::Order(order, HIGHEST_ORDER));
     }
     let mut system = system.clone();
@@ -289,8 +290,11 @@ pub fn derive(system: &FreeSystem, options: &ModeOptions) -> Result<NormalModes,
             numbers.map(of).collect()
         }
     };
-    let order = options.harmonics.unwrap_or(order);
-    Ok(NormalModes { system, modes, count, order, amplitude: options.amplitude })
+    let (order, amplitude) = match options.harmonics {
+        Some(harmonics) => (harmonics, AmplitudeConvention::Initial),
+        None => (order, options.amplitude),
+    };
+    Ok(NormalModes { system, modes, count, order, amplitude })
 }
 
 fn one_mode(

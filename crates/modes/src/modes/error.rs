@@ -143,6 +143,9 @@ pub enum ModeError {
     /// An order that is too high.
     #[error("order {0} is above the limit of {1}")]
     Order(u32, u32),
+    /// A number of harmonics that no balance has.
+    #[error("{0} harmonics: a balance has 1 to {1}")]
+    Harmonics(u32, u32),
 }
 
 fn listed(letters: &[Symbol]) -> String {

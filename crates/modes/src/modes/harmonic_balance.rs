@@ -87,7 +87,7 @@ pub(super) fn balance(
     count: u32,
 ) -> Result<(ModeBalance, Vec<FourierSeries<Polynomials>>), ModeError> {
     if !(1..=MOST_HARMONICS).contains(&count) {
-        return Err(ModeError::Order(count, MOST_HARMONICS));
+        return Err(ModeError::Harmonics(count, MOST_HARMONICS));
     }
     let residuals = system.residuals();
     let harmonics = harmonics(count, is_odd(system, &residuals)?);
@@ -269,7 +269,10 @@ impl ModeBalance {
             let series = (0..count).map(|index| {
                 let mut cosine = vec![0.0; self.harmonics.last().map_or(0, |last| last + 1)];
                 for (place, &k) in self.harmonics.iter().enumerate() {
-                    cosine[k] = unknowns[index * harmonics + place];
+                    let own = unknowns[index * harmonics + place];
+                    // What is left of zero by rounding.
+                    cosine[k] =
+                        if own.abs() < 1e-14 * (part * amplitude).abs() { 0.0 } else { own };
                 }
                 FourierSeries::from_parts(Doubles, cosine, vec![])
             });

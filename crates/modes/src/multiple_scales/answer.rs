@@ -8,7 +8,8 @@ use super::expansion::{Expansion, OrderedTerm, Problem, WaveVector};
 use super::modal::ModalForm;
 use super::resonance::{Frequencies, Lattice, Resonance, alias};
 use super::slow_equations::{
-    PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, slow_phases,
+    PolarNames, SlowRate, combination, expression, in_slow_phases, motion, rates, reduced_rows,
+    slow_phases,
 };
 use super::{CoupledSystem, MultipleScalesError, SlowSteadyState, steps};
 use crate::coupled::CoupledEquations;
@@ -166,17 +167,18 @@ impl SlowMotion {
     pub fn is_locked_together(&self, state: &SlowSteadyState) -> bool {
         let moving: Vec<usize> =
             (0..state.amplitudes.len()).filter(|mode| state.amplitudes[*mode] > 0.0).collect();
-        let of_moving = |turns: &Vec<i32>| {
-            turns.iter().enumerate().all(|(mode, turn)| *turn == 0 || moving.contains(&mode))
-        };
-        let ties: Vec<&Vec<i32>> = self
+        // The slow phases are independent; those of moving modes alone are the combinations of them in
+        // which the modes at rest cancel.
+        let at_rest: Vec<Vec<i32>> = self
             .slow_phases
             .iter()
-            .map(|(_, turns)| turns)
-            .filter(|turns| of_moving(turns))
+            .map(|(_, turns)| {
+                let own = turns.iter().enumerate().filter(|(mode, _)| !moving.contains(mode));
+                own.map(|(_, turn)| *turn).collect()
+            })
             .collect();
-        // The slow phases are independent of each other.
-        moving.len() == ties.len() + 1
+        let ties = self.slow_phases.len() - reduced_rows(at_rest).len();
+        moving.len() == ties + 1
     }
 
     /// `a_j'` and `phi_j'` as expressions.

@@ -175,7 +175,7 @@ fn chooses(
 
 /// The Hermite normal form of rows of whole numbers, without rows of zeros (H. Cohen, *A Course in
 /// Computational Algebraic Number Theory*, 1993, section 2.4.2).
-fn reduced_rows(mut rows: Vec<Vec<i32>>) -> Vec<Vec<i32>> {
+pub(super) fn reduced_rows(mut rows: Vec<Vec<i32>>) -> Vec<Vec<i32>> {
     let width = rows.first().map_or(0, Vec::len);
     let mut done = 0;
     for column in 0..width {
@@ -273,14 +273,29 @@ pub(super) fn expression(
     let mut terms = Vec::new();
     for (turns, [cosine, sine]) in waves {
         let angle = combination(turns, phases);
-        if !cosine.is_zero() {
-            terms.push(&part(cosine) * &angle.cos()?);
-        }
-        if !sine.is_zero() {
-            terms.push(&part(sine) * &angle.sin()?);
+        for (polynomial, wave) in [(cosine, angle.cos()?), (sine, angle.sin()?)] {
+            for polynomial in readable(polynomial) {
+                terms.push(&part(&polynomial) * &wave);
+            }
         }
     }
     Ok(Expr::sum(terms))
+}
+
+/// The parts of a polynomial whose common factor is readable: the whole, or its terms where its numbers
+/// are rounded.
+fn readable(polynomial: &Polynomial) -> Vec<Polynomial> {
+    /// The length of denominators in binary digits beyond which they stand for decimals.
+    const LONGEST: u64 = 40;
+    let rounded = polynomial.terms().any(|(_, number)| number.denom().bits() > LONGEST);
+    match (polynomial.is_zero(), rounded) {
+        (true, _) => vec![],
+        (false, false) => vec![polynomial.clone()],
+        (false, true) => polynomial
+            .terms()
+            .map(|(monomial, number)| Polynomial::term(monomial.clone(), number.clone()))
+            .collect(),
+    }
 }
 
 /// A whole combination of names.

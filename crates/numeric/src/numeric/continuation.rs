@@ -82,9 +82,9 @@ pub fn follow<Point, End>(
 }
 
 /// Returns the motions at parts of an amplitude up to all of it, followed from a linear motion in
-/// eighths that are halved where `near` finds no motion near a guess at a part. `linear` has the
-/// unknowns of the linear motion at a part, `unknowns` those of a motion; the last of them changes
-/// with the square of the amplitude at first.
+/// eighths, and in shorter steps where `near` finds no motion at a part, or one that is not near its
+/// guess. `linear` has the unknowns of the linear motion at a part, `unknowns` those of a motion; the
+/// last of them changes with the square of the amplitude at first, the others in proportion to it.
 ///
 /// # Errors
 /// The part that was reached.
@@ -95,10 +95,10 @@ pub fn follow<Point, End>(
 /// use nalgebra::DVector;
 ///
 /// // omega^2 = 1 + 3 a^2/4 at a = 2.
-/// let linear = |_: f64| DVector::from_element(1, 1.0);
-/// let near = |_: DVector<f64>, part: f64| Some(DVector::from_element(1, 1.0 + 3.0 * part * part));
+/// let linear = |part: f64| DVector::from_vec(vec![part, 1.0]);
+/// let near = |_: DVector<f64>, part: f64| Some(DVector::from_vec(vec![part, 1.0 + 3.0 * part * part]));
 /// let found = in_amplitude(linear, near, |motion| motion)?;
-/// assert_eq!(found.last().map(|(part, motion)| (*part, motion[0])), Some((1.0, 4.0)));
+/// assert_eq!(found.last().map(|(part, motion)| (*part, motion[1])), Some((1.0, 4.0)));
 /// # Ok::<(), f64>(())
 /// ```
 pub fn in_amplitude<Motion>(
@@ -106,44 +106,88 @@ pub fn in_amplitude<Motion>(
     mut near: impl FnMut(DVector<f64>, f64) -> Option<Motion>,
     unknowns: impl Fn(&Motion) -> &DVector<f64>,
 ) -> Result<Vec<(f64, Motion)>, f64> {
-    /// Steps of the amplitude, and halvings of a step.
-    const STEPS: usize = 8;
-    const HALVINGS: usize = 6;
+    /// The longest step, the ratio of two steps, and the shortest as a part of the amplitude reached.
+    const LONGEST: f64 = 0.125;
+    const RATIO: f64 = 2.0;
+    const SHORTEST: f64 = 1e-3;
+    const FIRST_AT_LEAST: f64 = 1e-5;
+    const MOST: usize = 400;
+    /// The largest share of a step by which the motion may miss its guess: one farther away may be of
+    /// another branch.
+    const SHARE: f64 = 0.05;
+    /// The share of the motion itself by which it may miss its guess in any case.
+    const SHARE_OF_ALL: f64 = 0.005;
+    /// That of the last unknown, by which it may change in a step at all as well.
+    const SHARE_OF_LAST: f64 = 0.25;
+    /// That of the first motion, which has to be nearly linear for its direction to be known.
+    const SHARE_OF_FIRST: f64 = 0.05;
     let mut known: Vec<(f64, Motion)> = Vec::new();
-    let mut step = 1.0 / STEPS as f64;
+    let mut step = LONGEST;
     let mut reached = 0.0_f64;
-    let mut halvings = 0;
-    while reached < 1.0 {
+    for _ in 0..MOST {
+        // Whole multiples of the step, so that parts are halves of each other where steps are equal.
         let next = (reached + step).min(1.0);
         let guess = match known.as_slice() {
-            [.., (before, first), (last, second)] => {
+            [.., (a, first), (b, second), (c, third)] => {
+                // The parabola through the last three.
+                let weight = |x: f64, y: f64, z: f64| (next - y) * (next - z) / ((x - y) * (x - z));
+                unknowns(first) * weight(*a, *b, *c)
+                    + unknowns(second) * weight(*b, *a, *c)
+                    + unknowns(third) * weight(*c, *a, *b)
+            }
+            [(before, first), (last, second)] => {
                 let part = (next - last) / (last - before);
                 let (first, second) = (unknowns(first), unknowns(second));
                 second + (second - first) * part
             }
             [(last, motion)] => {
-                let mut guess = linear(next);
+                let known = unknowns(motion);
+                let mut guess = known + linear(next) - linear(*last);
                 let index = guess.len() - 1;
-                guess[index] += (unknowns(motion)[index] - guess[index]) * (next / last).powi(2);
+                let changed = known[index] - linear(*last)[index];
+                guess[index] += changed * ((next / last).powi(2) - 1.0);
                 guess
             }
             [] => linear(next),
         };
-        match near(guess, next) {
+        let is_near = |motion: &Motion| {
+            let found = unknowns(motion);
+            let last = found.len() - 1;
+            let missed = (found - &guess).rows(0, last).norm();
+            let size = found.rows(0, last).norm();
+            let before = known.last().map_or(found[last], |(_, before)| unknowns(before)[last]);
+            let from_guess = (found[last] - guess[last]).abs() / guess[last].abs();
+            let from_before = (found[last] / before).abs().ln().abs();
+            if from_guess.max(from_before) > SHARE_OF_LAST {
+                return false;
+            }
+            missed
+                <= match known.last() {
+                    Some((_, before)) => {
+                        let moved = (found - unknowns(before)).rows(0, last).norm();
+                        (SHARE * moved).max(SHARE_OF_ALL * size)
+                    }
+                    None => SHARE_OF_FIRST * size,
+                }
+        };
+        match near(guess.clone(), next).filter(is_near) {
             Some(motion) => {
                 known.push((next, motion));
                 reached = next;
+                if reached >= 1.0 {
+                    return Ok(known);
+                }
+                step = LONGEST.min(RATIO * step);
             }
             None => {
-                halvings += 1;
-                step *= 0.5;
-                if halvings > HALVINGS {
+                step /= RATIO;
+                if step < SHORTEST * reached || step < FIRST_AT_LEAST {
                     return Err(reached);
                 }
             }
         }
     }
-    Ok(known)
+    Err(reached)
 }
 
 /// Returns the Jacobian of n equations for n + 1 unknowns, bordered with `row` as its last row.

@@ -109,7 +109,7 @@ pub enum VerificationError {
     },
     /// A balance of harmonics has no motion of a mode at the amplitude.
     #[error(
-        "the balance of mode {number}, in steps of {} from rest on, has motions up to {} alone", amplitude.written(), decimal(*reached)
+        "the balance of mode {number} was not solved: the search, in steps of {} from rest on, came to {}, where it turns back or has no motion near", amplitude.written(), decimal(*reached)
     )]
     NoBalance {
         /// The number of the mode.

@@ -121,7 +121,8 @@ pub fn judge_mode(
         return Err(VerificationError::AtRest);
     }
     let truth = TrueMode::new(system, mode, &numbers)?;
-    let formula = formula_at(mode, &truth, &numbers)?;
+    let balanced = balanced_motions(mode, &truth, &numbers)?;
+    let formula = formula_at(mode, &truth, &numbers, &balanced)?;
     let motions = truth.followed_to(size, mode.number, amplitude)?;
     let Some((_, whole)) = motions.last().cloned() else {
         return Err(VerificationError::NoMode { number: mode.number, amplitude, reached: 0.0 });
@@ -142,7 +143,7 @@ pub fn judge_mode(
     for (part, motion) in &motions {
         let mut smaller = numbers.clone();
         smaller.insert(amplitude, part * size);
-        let frequency = formula_at(mode, &truth, &smaller)?.frequency_squared.sqrt();
+        let frequency = formula_at(mode, &truth, &smaller, &balanced)?.frequency_squared.sqrt();
         errors.push((*part, error(frequency, motion)));
         let start = motion.unknowns.iter().take(count).copied();
         let start: Vec<f64> = start.chain(std::iter::repeat_n(0.0, count)).collect();
@@ -189,16 +190,32 @@ pub fn judge_mode(
     })
 }
 
-/// The exponent of an error from its values at parts of an amplitude: from the smallest part at which
-/// rounding does not hide it, and twice that.
+/// The exponent of an error from its values at rising parts of an amplitude: from the smallest part at
+/// which rounding does not hide it and the one that is nearest to twice that; `None` where the next pair
+/// has another exponent, as where the error changes its sign.
 fn slope(errors: &[(f64, f64)]) -> Option<f64> {
     /// Shooting is exact to some 1e-13.
     const SMALLEST: f64 = 2e-11;
-    let at =
-        |part: f64| errors.iter().find(|(known, _)| *known == part).map(|(_, error)| error.abs());
-    let pairs = errors.iter().filter_map(|(part, error)| Some((error.abs(), at(2.0 * part)?)));
-    let mut seen = pairs.filter(|(small, large)| *small > SMALLEST && large.is_finite());
-    seen.next().map(|(small, large)| (large / small).log2())
+    /// The largest difference between two exponents.
+    const ALIKE: f64 = 1.5;
+    let seen: Vec<(f64, f64)> = errors
+        .iter()
+        .map(|(part, error)| (*part, error.abs()))
+        .filter(|(_, error)| *error > SMALLEST && error.is_finite())
+        .collect();
+    let twice = |from: (f64, f64)| {
+        let apart = |own: &(f64, f64)| (own.0 / (2.0 * from.0)).ln().abs();
+        let near = seen.iter().copied().filter(|own| apart(own) < 0.3);
+        near.min_by(|one, other| apart(one).total_cmp(&apart(other)))
+    };
+    let of = |(small, large): ((f64, f64), (f64, f64))| {
+        (large.1 / small.1).ln() / (large.0 / small.0).ln()
+    };
+    let mut pairs = seen.iter().filter_map(|own| Some((*own, twice(*own)?)));
+    let first = pairs.next()?;
+    let next = twice(first.1).map(|beyond| of((first.1, beyond)));
+    let slope = of(first);
+    next.is_none_or(|next| (next - slope).abs() < ALIKE).then_some(slope)
 }
 
 /// The values as numbers.
@@ -246,27 +263,50 @@ fn symbol_values(
         .collect())
 }
 
-/// The mode in numbers.
+/// The motions by a balance of harmonics up to an amplitude; none of a series.
+fn balanced_motions(
+    mode: &NonlinearMode,
+    truth: &TrueMode,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Vec<(f64, ModeInNumbers)>, VerificationError> {
+    let Some(balance) = &mode.balance else { return Ok(vec![]) };
+    let amplitude = mode.amplitude.symbol();
+    let size = numbers[&amplitude];
+    let start = BalanceStart {
+        shape: &truth.shape,
+        frequency_squared: truth.linear_frequency.powi(2),
+        along: mode.along,
+    };
+    let found = balance.followed_to(start, &symbol_values(mode, numbers)?, size);
+    let found = found.map_err(|reached| VerificationError::NoBalance {
+        number: mode.number,
+        amplitude,
+        reached: reached * size,
+    })?;
+    Ok(found.into_iter().map(|(part, motion)| (part * size, motion)).collect())
+}
+
+/// The mode in numbers; `balanced` are the motions that are known of a balance.
 fn formula_at(
     mode: &NonlinearMode,
     truth: &TrueMode,
     numbers: &BTreeMap<Symbol, f64>,
+    balanced: &[(f64, ModeInNumbers)],
 ) -> Result<ModeInNumbers, VerificationError> {
     let values = symbol_values(mode, numbers)?;
-    if let Some(balance) = &mode.balance {
-        let amplitude = mode.amplitude.symbol();
-        let size = numbers[&amplitude];
-        let start = BalanceStart {
-            shape: &truth.shape,
-            frequency_squared: truth.linear_frequency.powi(2),
-            along: mode.along,
+    if mode.balance.is_some() {
+        let size = numbers[&mode.amplitude.symbol()];
+        let known = balanced.iter().find(|(amplitude, _)| *amplitude == size);
+        if let Some((_, motion)) = known {
+            return Ok(motion.clone());
+        }
+        let own = balanced_motions(mode, truth, numbers)?;
+        let nothing = VerificationError::NoBalance {
+            number: mode.number,
+            amplitude: mode.amplitude.symbol(),
+            reached: 0.0,
         };
-        let nothing = |reached: f64| {
-            let reached = reached * size;
-            VerificationError::NoBalance { number: mode.number, amplitude, reached }
-        };
-        let found = balance.followed_to(start, &values, size).map_err(nothing)?;
-        return found.into_iter().last().map(|(_, motion)| motion).ok_or_else(|| nothing(0.0));
+        return own.into_iter().last().map(|(_, motion)| motion).ok_or(nothing);
     }
     let value_of = |name: Symbol| values.get(&name).copied();
     let missing = |name| VerificationError::Missing(vec![name]);

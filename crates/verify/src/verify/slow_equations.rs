@@ -114,7 +114,8 @@ pub fn judge_slow_motion(
     tolerance: f64,
 ) -> Result<JudgedSlowMotion, VerificationError> {
     let truth = TrueMotion::new(slow, at)?;
-    let started = slow.amplitudes.iter().any(|name| truth.numbers.contains_key(name));
+    let mut polar = slow.amplitudes.iter().chain(&slow.phases);
+    let started = polar.any(|name| truth.numbers.contains_key(name));
     let transient = if started { Some(truth.transient(None)?) } else { None };
     let mut has_families = false;
     let steady = match started {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::figure::{Curve, CurveStyle, FigureError, Panel, Scale, figure};
 use crate::absorber::{AbsorberKind, AbsorberLaws};
-use crate::absorber_verdict::{AbsorberCurveKind, JudgedAbsorber};
+use crate::absorber_verdict::{AbsorberCurve, AbsorberCurveKind, JudgedAbsorber};
 
 /// The response of a tuned mass damper with each design, that of a nonlinear absorber with and without
 /// its cubic spring, or the manifold of a sink with a motion
@@ -41,17 +41,38 @@ pub fn picture(laws: &AbsorberLaws, judged: &JudgedAbsorber) -> Result<String, F
         };
         Curve { label: &curve.label, points: &curve.points, style }
     });
-    let panel = Panel { title, x_label, y_label, curves: curves.collect(), ..Panel::default() };
+    let x_scale = match laws.kind {
+        AbsorberKind::Tuned(_) | AbsorberKind::Damped(_) if is_wide(&judged.curves) => {
+            Scale::Logarithmic
+        }
+        _ => Scale::Linear,
+    };
+    let curves = curves.collect();
+    let panel = Panel { title, x_label, y_label, x_scale, curves, ..Panel::default() };
     let values = judged.at.iter().map(|(name, value)| format!("{name} = {value}"));
     figure(&[panel], &format!("{}.", values.collect::<Vec<_>>().join(", ")))
+}
+
+/// Whether frequencies are so far apart that the lowest cannot be told apart in a linear picture, as
+/// both fixed points of a heavy absorber.
+fn is_wide(curves: &[AbsorberCurve]) -> bool {
+    const WIDE: f64 = 20.0;
+    let places = || curves.iter().flat_map(|curve| &curve.points).map(|(x, _)| *x);
+    let (least, greatest) = (places().fold(f64::INFINITY, f64::min), places().fold(0.0, f64::max));
+    least > 0.0 && greatest > WIDE * least
 }
 
 /// Title and axes of the picture.
 fn axes(kind: AbsorberKind) -> [&'static str; 3] {
     match kind {
-        AbsorberKind::Tuned(_) | AbsorberKind::Damped(_) => {
+        AbsorberKind::Tuned(_) => {
             ["Tuned mass damper", "frequency g", "amplitude over the static one"]
         }
+        AbsorberKind::Damped(_) => [
+            "Tuned mass damper on a damped main mass",
+            "frequency g",
+            "amplitude over the static one",
+        ],
         AbsorberKind::Nonlinear => {
             ["Nonlinear tuned absorber", "frequency g", "amplitude of x over F"]
         }

@@ -79,10 +79,23 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
             own.relative_error.map_or("-".to_owned(), percent),
         ]
     });
+    let searched = judged.lowest_peak.iter().flat_map(|peak| {
+        [("f", peak.tuning), ("zeta", peak.damping), ("h", peak.height)].map(|(symbol, value)| {
+            let [design, symbol, none] = ["lowest peak", symbol, "-"].map(str::to_owned);
+            vec![design, symbol, none.clone(), decimal(value), none]
+        })
+    });
+    let rows = rows.chain(searched);
     let mut blocks = vec![
         Block::Heading(format!("Beside the truth{}", values_in_words(&judged.at))),
         Block::table(["design", "quantity", "formula", "truth", "relative error"], rows),
     ];
+    if judged.lowest_peak.is_some() {
+        blocks.push(Block::Note(
+            "lowest peak: the highest amplitude at any frequency is the least (H-infinity), by a search; no formula is given"
+                .to_owned(),
+        ));
+    }
     if let Some(motion) = &judged.motion {
         blocks.push(Block::Note(format!(
             "{}: C from {} to {}, never farther from it than {} of the start",

@@ -1,9 +1,10 @@
 //! A study of materials: the problem, the first contact of each barrier, the motion until rest, and
 //! the effect of holding another form of the damping fixed. The sentences follow from the numbers.
 
+use super::primary::{MOST_SPREAD, rests_as_nearby};
 use super::{Block, Document, cell};
 use crate::decimal::{decimal, significant};
-use crate::impact::primary::MainMass;
+use crate::impact::primary::{MainMass, NEARBY};
 use crate::impact::{
     ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model,
     Parameter, REST_FRACTION, YieldCheck,
@@ -379,7 +380,32 @@ pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     }
     sentences.extend(what_the_modulus_changes(study));
     sentences.extend(baseline(study));
+    sentences.extend(validity(study));
     sentences
+}
+
+/// Whether the rest times of a main mass by closed forms can be relied upon, by those of starts nearby;
+/// `None` by integration, and if none rests.
+fn validity(study: &MaterialStudy) -> Option<String> {
+    if study.question.main_mass.is_none() || study.question.integrator != Integrator::Chain {
+        return None;
+    }
+    let rests = || study.rows.iter().filter(|row| row.course.rest_time.is_ok());
+    let doubtful = rests().filter(|row| !rests_as_nearby(row.nearby));
+    let doubtful: Vec<&str> = doubtful.map(|row| &row.material.name[..]).collect();
+    let [part, most] = [NEARBY, MOST_SPREAD].map(|part| significant(100.0 * part, 1));
+    let count = rests().count();
+    match (count, doubtful.len()) {
+        (0, _) => None,
+        (_, 0) => Some(format!(
+            "Starts {part} % smaller and larger rest within {most} % of each other against every barrier at which the main mass rests."
+        )),
+        (_, those) => Some(format!(
+            "For {those} of {count} materials, {}, starts {part} % smaller and larger rest more than {most} % apart or not at all: each impact \
+             decides when the next one is, and closed forms cannot give these rest times; integrate instead, without --chain.",
+            doubtful.join(", ")
+        )),
+    }
 }
 
 /// The effect of holding one of these forms fixed on the rest times.

@@ -292,7 +292,7 @@ fn validity(nearby: Option<[f64; 2]>) -> String {
         );
     };
     let [from, to] = [least, greatest].map(|rest| significant(rest, 4));
-    match greatest <= (1.0 + MOST_SPREAD) * least {
+    match rests_as_nearby(nearby) {
         true => format!(
             "Starts {part} % smaller and larger rest within {} of each other.",
             materials::percent(greatest / least - 1.0)
@@ -305,7 +305,12 @@ fn validity(nearby: Option<[f64; 2]>) -> String {
 }
 
 /// The largest spread of rest times of starts nearby with which closed forms give them.
-const MOST_SPREAD: f64 = 0.005;
+pub(super) const MOST_SPREAD: f64 = 0.005;
+
+/// Whether starts nearby rest at times so near each other that closed forms give them.
+pub(super) fn rests_as_nearby(nearby: Option<[f64; 2]>) -> bool {
+    nearby.is_some_and(|[least, greatest]| greatest <= (1.0 + MOST_SPREAD) * least)
+}
 
 fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let row = |time: &f64| {

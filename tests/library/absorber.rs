@@ -138,6 +138,64 @@ fn a_damped_main_mass_moves_the_lowest_variance() {
     }
 }
 
+/// The highest response of a main mass with a tuned mass damper, over the static one, from the two
+/// equations by Cramer's rule at closely spaced frequencies.
+fn highest_response(shaken: bool, mu: f64, own_damping: f64, [f, zeta]: [f64; 2]) -> f64 {
+    let response = |g: f64| {
+        let i = Complex64::i();
+        let link = f * f + 2.0 * zeta * f * g * i;
+        let stiffness = [
+            [1.0 - g * g + 2.0 * own_damping * g * i + mu * link, -mu * link],
+            [-link, link - g * g],
+        ];
+        let force = [1.0, if shaken { 1.0 } else { 0.0 }];
+        let determinant = stiffness[0][0] * stiffness[1][1] - stiffness[0][1] * stiffness[1][0];
+        ((force[0] * stiffness[1][1] - force[1] * stiffness[0][1]) / determinant).norm()
+    };
+    let grid = (1..20_000).map(|step| response(f64::from(step) * 1e-4));
+    grid.fold(0.0, f64::max) / response(0.0)
+}
+
+/// Where the lowest peak has no formula its search ends at a design to every side of which the highest
+/// response is higher, and which tends to the formulas as the damping of the main mass tends to 0.
+#[test]
+fn a_lowest_peak_without_a_formula_is_searched() {
+    let searched = |kind, at: &str| judged(kind, at).lowest_peak.expect("a peak");
+    for (excitation, own_damping) in
+        [(Excitation::Force, 0.02), (Excitation::Ground, 0.02), (Excitation::Ground, 0.0)]
+    {
+        let shaken = excitation == Excitation::Ground;
+        for mu in [0.02, 0.2] {
+            let found = match own_damping > 0.0 {
+                true => {
+                    let at = format!("mu = {mu}, zeta_1 = {own_damping}");
+                    searched(AbsorberKind::Damped(excitation), &at)
+                }
+                false => searched(AbsorberKind::Tuned(excitation), &format!("mu = {mu}")),
+            };
+            let height = |[f, zeta]: [f64; 2]| {
+                let design = [f * found.tuning, zeta * found.damping];
+                highest_response(shaken, mu, own_damping, design)
+            };
+            let least = height([1.0, 1.0]);
+            assert!((found.height / least - 1.0).abs() < 1e-6, "{} {least}", found.height);
+            for aside in [[0.998, 1.0], [1.002, 1.0], [1.0, 0.98], [1.0, 1.02], [0.999, 1.01]] {
+                assert!(height(aside) > least, "{excitation:?} {mu} {aside:?}");
+            }
+        }
+    }
+    let plain = |name: &str| value(TUNED, "mu = 1/5", "lowest-peak", name);
+    let found = searched(AbsorberKind::Damped(Excitation::Force), "mu = 1/5, zeta_1 = 0");
+    for (found, wanted) in [
+        (found.tuning, plain("tuning")),
+        (found.damping, plain("damping")),
+        (found.height, plain("height")),
+    ] {
+        assert!((found / wanted - 1.0).abs() < 2e-5, "{found} {wanted}");
+    }
+    assert_eq!(judged(TUNED, "mu = 1/5").lowest_peak, None);
+}
+
 /// What one harmonic leaves out of a cubic sink is the third one: with its first effect the formulas
 /// are at least three times as near the motions with all harmonics, and most of them ten times.
 #[test]

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 
 use lindstedt::coupled::CoupledEquations;
 use lindstedt::exact::rational::to_f64;
-use lindstedt::expr::CompiledFunction;
+use lindstedt::exact::{Polynomial, Rational};
+use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::mechanics::Mechanism;
 use lindstedt::modes::{
     FreeSystem, ModeError, ModeOptions, NonlinearMode, NormalModes, OneHarmonicFamily, derive,
@@ -16,6 +17,7 @@ use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
 use lindstedt::solution::{AmplitudeConvention, defined_values};
 use lindstedt::verify::{VerificationError, judge_mode, judge_one_harmonic};
 use lindstedt::{Symbol, Verdict};
+use num_traits::One as _;
 
 const PAIR: &str = "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0";
 
@@ -257,6 +259,36 @@ fn letters_give_what_their_numbers_give() {
     }
 }
 
+/// The sum of coordinates of which the amplitude is that of the first harmonic is 1 for the shape of
+/// its own mode and 0 for that of the other, with letters in masses and springs.
+#[test]
+fn a_modal_coordinate_is_that_of_its_own_mode() {
+    let values = [("m", 2.0), ("k", 3.0), ("c", 0.5), ("d", 0.4)];
+    for equations in [
+        "m*x'' + (k + c)*x - c*y + x^3 = 0; y'' + (1 + c)*y - c*x = 0",
+        "(m + d)*x'' + d*y'' + k*x + x^3 = 0; d*x'' + y'' + 7*y = 0",
+        "(m + d)*x'' + k*x + x^3 = 0; y'' + 7*y + c*x*y = 0",
+        "(m + d)*x'' + k*x + x^3 = 0; c*x'' + (1 + d)*y'' + 7*y = 0",
+    ] {
+        let found = modes_of(equations, &to_order(2));
+        let modes = formulas(&found);
+        for (own, mode) in modes.iter().enumerate() {
+            let at = |polynomial: &Polynomial, mode: &NonlinearMode| {
+                // Definitions of either mode; the amplitude does not occur.
+                let all = values_of(mode, &values);
+                polynomial.evaluate(|name| all.get(&name).copied()).expect("values")
+            };
+            for (number, other) in modes.iter().enumerate() {
+                let products = mode.linear.modal.iter().zip(&other.linear.shape);
+                let sum: f64 =
+                    products.map(|(factor, entry)| at(factor, mode) * at(entry, other)).sum();
+                let wanted = f64::from(u8::from(own == number));
+                assert!((sum - wanted).abs() < 1e-12, "{equations}: {own} {number} {sum}");
+            }
+        }
+    }
+}
+
 #[test]
 fn both_definitions_of_the_amplitude_are_of_one_motion() {
     for equations in [PAIR, "x'' + 2*x - y + x^2/3 = 0; y'' + 3*y - x = 0"] {
@@ -341,6 +373,13 @@ fn an_elastic_pendulum_has_a_divisor_of_two_to_one() {
     // g over the length of the spring that hangs
     assert!((all[&"omega1".into()].powi(2) - 10.0 / (1.0 + 10.0 / 30.0)).abs() < 1e-12);
     assert!((all[&"d2".into()] - (30.0 - 4.0 * 7.5)).abs() < 1e-12);
+    // Only b swings, and its amplitude is that of b itself, whatever mu1 is.
+    let factors: Vec<String> =
+        swing.linear.modal.iter().map(|factor| Expr::from(factor).to_string()).collect();
+    assert_eq!(
+        (&swing.linear.shape[0].as_number(), &factors[0][..], &factors[1][..]),
+        (&Some(Rational::one()), "1", "0")
+    );
     let judged = judge_mode(
         &found.system,
         swing,

@@ -396,6 +396,47 @@ fn the_main_mass_rests_as_it_does_alone_in_a_file() {
     assert!(picture.contains("Main mass, mu_over_gamma held fixed"));
 }
 
+/// By closed forms each row has the rest times of starts nearby, those of the files that have these
+/// starts, and the study says whether they are near each other; by integration it does not.
+#[test]
+fn rest_times_by_closed_forms_say_how_far_those_of_starts_nearby_are() {
+    let of = |displacement: f64, integrator: Integrator| {
+        let text = CARRIED.replace("0.01", &displacement.to_string());
+        let text = format!("{text}[contact]\nmu_over_gamma = 0.3\n[damping]\nzeta = 0.01\n");
+        let file: Problem = text.parse().expect("a file");
+        let question = file.materials(false).expect("a study");
+        study_materials(MaterialQuestion { integrator, ..question }).expect("motions")
+    };
+    let [below, study, above] =
+        [1.0 - 3e-4, 1.0, 1.0 + 3e-4].map(|part| of(0.01 * part, Integrator::Chain));
+    let document = json::materials(&study);
+    for (number, row) in document.materials.iter().enumerate() {
+        let rests = [&below, &study, &above].map(|study| study.rows[number].course.rest_time);
+        let rests = rests.map(|rest| rest.expect("a rest"));
+        let wanted = [
+            rests.into_iter().fold(f64::INFINITY, f64::min),
+            rests.into_iter().fold(0.0, f64::max),
+        ];
+        let found = row.nearby_rest_times.expect("rests");
+        assert!(
+            found.iter().zip(wanted).all(|(found, wanted)| (found / wanted - 1.0).abs() < 1e-9)
+        );
+    }
+    let last = |study: &MaterialStudy| report::material_sentences(study).pop().expect("a sentence");
+    let words = last(&study);
+    assert!(words.contains("within 0.5 % of each other"), "{words}");
+    let integrated = of(0.01, Integrator::Taylor);
+    assert!(integrated.rows.iter().all(|row| row.nearby.is_none()));
+    assert!(!last(&integrated).contains("Starts 0.03 %"));
+    // Rest times that are far apart are said, with their materials.
+    let mut doubtful = study;
+    doubtful.rows[1].nearby = Some([180.0, 190.0]);
+    doubtful.rows[2].nearby = None;
+    let words = last(&doubtful);
+    let named = "For 2 of 3 materials, Aluminum alloy (6061-T6), Polyester elastomer, starts";
+    assert!(words.contains(named), "{words}");
+}
+
 #[test]
 fn a_main_mass_at_rest_or_driven_is_no_study() {
     let refused = |text: &str| {

@@ -86,6 +86,28 @@ AbsorberDesign.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LowestPeak(Document):
+    """The tuned mass damper with which the highest amplitude at any frequency is the least.
+
+    Attributes:
+        tuning: The natural frequency of the absorber alone over that of the main mass alone.
+        damping: The damping ratio of the absorber alone.
+        height: The highest amplitude over the static one.
+    """
+
+    tuning: float
+    damping: float
+    height: float
+
+
+LowestPeak.FIELDS = (
+    ("tuning", "tuning", None),
+    ("damping", "damping", None),
+    ("height", "height", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class AbsorberMotion(Document):
     """A simulated motion that follows the manifold of a sink.
 
@@ -117,7 +139,8 @@ class Absorber(Answer):
 
     Attributes:
         schema: The kind of document.
-        absorber: The kind of absorber: `tuned`, `nonlinear`, `impact-sink` or `cubic-sink`.
+        absorber: The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink` or `cubic-
+            sink`.
         excitation: What shakes the main mass of a tuned mass damper, `force` or `ground`; null of
             other kinds.
         equations: The equations of motion.
@@ -127,6 +150,8 @@ class Absorber(Answer):
         designs: The designs.
         validity: What the formulas leave out, in words.
         at: The values; null without them.
+        lowest_peak: The tuned mass damper with the lowest peak, by a search where no formula
+            gives it; null otherwise, and without values.
         motion: A simulated motion that follows the manifold of a sink; null without values, of a
             tuned or nonlinear absorber, and where the motion does not follow it.
         verdict: `pass` or `fail`; null without values.
@@ -143,6 +168,7 @@ class Absorber(Answer):
     designs: tuple[AbsorberDesign, ...]
     validity: str
     at: dict[str, Constant] | None
+    lowest_peak: LowestPeak | None
     motion: AbsorberMotion | None
     verdict: str | None
     tolerance: float | None
@@ -159,6 +185,7 @@ Absorber.FIELDS = (
     ("designs", "designs", several(AbsorberDesign.from_json)),
     ("validity", "validity", None),
     ("at", "at", mapped(Constant.from_json)),
+    ("lowest_peak", "lowest_peak", LowestPeak.from_json),
     ("motion", "motion", AbsorberMotion.from_json),
     ("verdict", "verdict", None),
     ("tolerance", "tolerance", None),

@@ -168,6 +168,9 @@ class MaterialRow(Document):
         energies: The energy of the swing, or of main mass and pendulum, after each of them, in
             units of m g L.
         rest: When it rests.
+        nearby_rest_times: The least and the greatest rest time of starts 0.03 % smaller and
+            larger, in units of time, where a main mass is followed by closed forms and rests;
+            null otherwise, and where one of them does not rest.
         lossless: When it rests where the contact loses nothing, mu = 0.
         yield_checks: Stated yield limits beside the pressure of the first contact.
     """
@@ -181,6 +184,7 @@ class MaterialRow(Document):
     impacts: int
     energies: tuple[float, ...]
     rest: RestTime
+    nearby_rest_times: tuple[float, float] | None
     lossless: RestTime
     yield_checks: tuple[MaterialYieldCheck, ...]
 
@@ -195,6 +199,7 @@ MaterialRow.FIELDS = (
     ("impacts", "impacts", None),
     ("energies", "energies", tuple),
     ("rest", "rest", RestTime.from_json),
+    ("nearby_rest_times", "nearby_rest_times", tuple),
     ("lossless", "lossless", RestTime.from_json),
     ("yield_checks", "yield_checks", several(MaterialYieldCheck.from_json)),
 )

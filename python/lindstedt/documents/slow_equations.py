@@ -106,6 +106,9 @@ class SlowSteadyMotion(Document):
             of the largest displacement; null where none was sought, or found near.
         truly_stable: Whether the true motion is stable, by its multipliers; null where it is not
             known.
+        omega: The frequency of a motion that nothing drives; left out of others.
+        true_omega: The true frequency of a motion that nothing drives; left out where it was not
+            found.
     """
 
     amplitudes: dict[str, float]
@@ -115,6 +118,8 @@ class SlowSteadyMotion(Document):
     growth: float | None
     error: float | None
     truly_stable: bool | None
+    omega: float | None
+    true_omega: float | None
 
 
 SlowSteadyMotion.FIELDS = (
@@ -125,7 +130,10 @@ SlowSteadyMotion.FIELDS = (
     ("growth", "growth", None),
     ("error", "error", None),
     ("truly_stable", "truly_stable", None),
+    ("omega", "omega", None),
+    ("true_omega", "true_omega", None),
 )
+SlowSteadyMotion.OPTIONAL = frozenset(['omega', 'true_omega'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -199,12 +207,15 @@ class SlowEquations(Answer):
         relations: The relations of steady motions with the phases eliminated.
         near: Waves that are near the frequency of a mode they are not in resonance with, where
             values are known: a divisor is small.
+        derivation: The derivation line by line, as text; left out where it was not asked for.
         numerical: Whether coefficients are rounded to fifteen digits.
         at: The values at which steady motions, or a motion, were computed; null without values.
         steady: The steady motions at the values, the largest first.
         has_families: Whether there are families of steady motions as well, which are not listed.
         transient: The motion from the amplitudes that were given, beside the true one; null
             without them.
+        slope: The measured exponent of the deviation by halving of everything that is small; left
+            out where it was not measured.
         verdict: `pass` or `fail`; null where nothing was compared.
         tolerance: The largest error that passes; null without values.
     """
@@ -226,11 +237,13 @@ class SlowEquations(Answer):
     constants: tuple[str, ...]
     relations: tuple[SteadyRelation, ...]
     near: tuple[NearDivisor, ...]
+    derivation: tuple[str, ...] | None
     numerical: bool
     at: dict[str, Constant] | None
     steady: tuple[SlowSteadyMotion, ...]
     has_families: bool
     transient: SlowTransient | None
+    slope: float | None
     verdict: str | None
     tolerance: float | None
 
@@ -253,11 +266,14 @@ SlowEquations.FIELDS = (
     ("constants", "constants", tuple),
     ("relations", "relations", several(SteadyRelation.from_json)),
     ("near", "near", several(NearDivisor.from_json)),
+    ("derivation", "derivation", tuple),
     ("numerical", "numerical", None),
     ("at", "at", mapped(Constant.from_json)),
     ("steady", "steady", several(SlowSteadyMotion.from_json)),
     ("has_families", "has_families", None),
     ("transient", "transient", SlowTransient.from_json),
+    ("slope", "slope", None),
     ("verdict", "verdict", None),
     ("tolerance", "tolerance", None),
 )
+SlowEquations.OPTIONAL = frozenset(['derivation', 'slope'])

@@ -15,7 +15,7 @@ use crate::report::AbsorberReport;
 pub struct AbsorberDocument {
     /// The kind of document.
     pub schema: String,
-    /// The kind of absorber: `tuned`, `nonlinear`, `impact-sink` or `cubic-sink`.
+    /// The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink` or `cubic-sink`.
     pub absorber: String,
     /// What shakes the main mass of a tuned mass damper, `force` or `ground`; null of other kinds.
     pub excitation: Option<String>,
@@ -33,6 +33,9 @@ pub struct AbsorberDocument {
     pub validity: String,
     /// The values; null without them.
     pub at: Option<Map<Constant>>,
+    /// The tuned mass damper with the lowest peak, by a search where no formula gives it; null otherwise,
+    /// and without values.
+    pub lowest_peak: Option<LowestPeakDocument>,
     /// A simulated motion that follows the manifold of a sink; null without values, of a tuned
     /// or nonlinear absorber, and where the motion does not follow it.
     pub motion: Option<AbsorberMotionDocument>,
@@ -83,6 +86,18 @@ pub struct AbsorberFormulaDocument {
     pub truth: Option<f64>,
     /// `value/truth - 1`; null likewise.
     pub relative_error: Option<f64>,
+}
+
+/// The tuned mass damper with which the highest amplitude at any frequency is the least.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "LowestPeak"))]
+pub struct LowestPeakDocument {
+    /// The natural frequency of the absorber alone over that of the main mass alone.
+    pub tuning: f64,
+    /// The damping ratio of the absorber alone.
+    pub damping: f64,
+    /// The highest amplitude over the static one.
+    pub height: f64,
 }
 
 /// A simulated motion that follows the manifold of a sink.
@@ -160,6 +175,11 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
         designs: designs.collect(),
         validity: laws.validity.to_owned(),
         at: judged.map(|judged| constants(&judged.at)),
+        lowest_peak: judged.and_then(|judged| judged.lowest_peak).map(|peak| LowestPeakDocument {
+            tuning: peak.tuning,
+            damping: peak.damping,
+            height: peak.height,
+        }),
         motion: motion.map(|motion| AbsorberMotionDocument {
             words: motion.words.to_owned(),
             start: motion.start,

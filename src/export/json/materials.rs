@@ -113,6 +113,10 @@ pub struct MaterialRow {
     pub energies: Vec<f64>,
     /// When it rests.
     pub rest: RestTime,
+    /// The least and the greatest rest time of starts 0.03 % smaller and larger, in units of time,
+    /// where a main mass is followed by closed forms and rests; null otherwise, and where one of them
+    /// does not rest.
+    pub nearby_rest_times: Option<[f64; 2]>,
     /// When it rests where the contact loses nothing, mu = 0.
     pub lossless: RestTime,
     /// Stated yield limits beside the pressure of the first contact.
@@ -183,6 +187,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
         impacts: row.course.impacts.len(),
         energies: row.course.energies.clone(),
         rest: rest(row.course.rest_time),
+        nearby_rest_times: row.nearby,
         lossless: rest(row.lossless),
         yield_checks: row.yield_checks.iter().map(yield_check).collect(),
     };

@@ -260,6 +260,8 @@ pub struct MaterialPoint {
     pub energies: Vec<AnyNumber>,
     /// The reason why it was followed no further.
     pub stop: SimulationStop,
+    /// The least and the greatest rest time of starts nearby; null where it is not known.
+    pub nearby_rest_times: Option<[f64; 2]>,
     /// The rest time where the contact loses nothing.
     pub lossless: RestOrReason,
     /// The rest time under every form of the damping of the contact.
@@ -275,6 +277,7 @@ impl MaterialPoint {
             impacts: motions.course.impacts.clone(),
             energies: numbers(&motions.course.energies),
             stop: motions.course.stop,
+            nearby_rest_times: motions.nearby,
             lossless: motions.lossless.into(),
             held_fixed: motions.held.iter().copied().map(RestOrReason::from).collect(),
         }
@@ -290,6 +293,7 @@ impl MaterialPoint {
                 energies: read_numbers(&self.energies)?,
                 stop: self.stop,
             },
+            nearby: self.nearby_rest_times,
             lossless: self.lossless.into(),
             held: self.held_fixed.iter().copied().map(Into::into).collect(),
         })

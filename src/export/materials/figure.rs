@@ -1,6 +1,8 @@
 //! The paper's Figure 4 and its explanation: the swing against every barrier, and its decay with
 //! two forms of the damping held fixed.
 
+use std::f64::consts::TAU;
+
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
     Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
@@ -28,7 +30,11 @@ const STYLES: [CurveStyle; 8] = [
 /// The times of the paper's Figure 4, s.
 const FIGURE_4: [f64; 2] = [1.0, 2.5];
 
-/// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
+/// The periods of a main mass with its damper locked between which its motion is drawn.
+const PERIODS: [f64; 2] = [3.0, 7.0];
+
+/// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, or some periods of the
+/// main mass, and the decay of
 /// its amplitude: as requested, and with the contact damping held fixed in the form under which the
 /// modulus has the opposite effect. The decays without a barrier and with a lossless one are drawn
 /// for comparison.
@@ -47,10 +53,17 @@ const FIGURE_4: [f64; 2] = [1.0, 2.5];
 pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     let drawn = study.rows.len().min(STYLES.len());
     let second = study.units.time();
-    let window = FIGURE_4.map(|time| time / second);
+    let seconds = match &study.question.main_mass {
+        None => FIGURE_4,
+        Some(main_mass) => {
+            let heavy = main_mass.mass + study.units.mass;
+            PERIODS.map(|periods| periods * TAU * (heavy / main_mass.stiffness).sqrt())
+        }
+    };
+    let window = seconds.map(|time| time / second);
     let window = match window[1] <= study.question.settings.duration {
         true => window,
-        // A slow pendulum or a short run is drawn from its start.
+        // A slow motion or a short run is drawn from its start.
         false => [0.0, study.question.settings.duration],
     };
     let end = 1.05 * last_rest(study);

@@ -118,7 +118,7 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
         formula,
     });
     let mut meanings = tuned::meanings(&names, excitation);
-    meanings.retain(|(name, _)| !["X", "h"].contains(&name.name()));
+    meanings.retain(|(name, _)| name.name() != "X");
     meanings.insert(0, (damping, "damping ratio of the main mass alone"));
     Ok(AbsorberLaws {
         kind: AbsorberKind::Damped(excitation),
@@ -136,8 +136,8 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
             formulas: formulas.into(),
             refined_by: None,
         }],
-        validity: "linear, zeta_1 small beside 1, time in units of 1/(the frequency of the main mass alone without damping); with damping of the main mass the \
-                   curves of all dampings have no point in common, so that there are no fixed points of equal height, and the lowest peak has no closed form",
+        validity: "linear, zeta_1 small beside 1 and sqrt(mu), time in units of 1/(the frequency of the main mass alone without damping); with damping of the main mass the \
+                   curves of all dampings have no point in common, so that there are no fixed points of equal height, and the lowest peak has no closed form: at values it is searched",
     })
 }
 

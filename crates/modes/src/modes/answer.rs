@@ -462,14 +462,29 @@ fn in_amplitude(
     }
 }
 
-/// `u^T M/(u^T M v)`.
+/// `u^T M/(u^T M v)`. An entry that is a number times `u^T M v` is that number, also where the sum
+/// `u^T M v` has a name, by which it cannot be seen.
 fn modal_coordinate(mass: &[Vec<Polynomial>], mode: &LinearMode) -> Vec<Polynomial> {
-    let entry = |column: usize| {
-        let products = mode.left.iter().zip(mass).map(|(left, row)| left.product(&row[column]));
-        let sum = products.fold(Polynomial::zero(), |sum, product| sum + product);
-        sum.product(&mode.inverse_mass)
+    let row: Vec<Polynomial> = (0..mass.len())
+        .map(|column| {
+            let products = mode.left.iter().zip(mass).map(|(left, row)| left.product(&row[column]));
+            products.fold(Polynomial::zero(), |sum, product| sum + product)
+        })
+        .collect();
+    let products = row.iter().zip(&mode.shape).map(|(entry, shape)| entry.product(shape));
+    let modal_mass = products.fold(Polynomial::zero(), |sum, product| sum + product);
+    let over_mass = |entry: &Polynomial| match multiple(entry, &modal_mass) {
+        Some(number) => Polynomial::constant(number),
+        None => entry.product(&mode.inverse_mass),
     };
-    (0..mass.len()).map(entry).collect()
+    row.iter().map(over_mass).collect()
+}
+
+/// The number by which a polynomial is a multiple of another; `None` if it is none.
+fn multiple(polynomial: &Polynomial, other: &Polynomial) -> Option<Rational> {
+    let (monomial, coefficient) = other.terms().next()?;
+    let number = polynomial.coefficient(monomial) / coefficient;
+    (other.map(|own| own * &number) == *polynomial).then_some(number)
 }
 
 /// The definitions that occur in a mode, or in others that do.

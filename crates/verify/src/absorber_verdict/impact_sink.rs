@@ -238,7 +238,7 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     let heavy = BallInCavity { mass_ratio: letter("mu"), ..light };
     let (start, end) = match balls {
         Some((_, most)) => (on_manifold((half_width + most) / 2.0), 1.2 * most),
-        None => return Truth { values, curves: vec![], motion: None },
+        None => return Truth { values, ..Truth::default() },
     };
     let slide = heavy.slide(start, balls.map_or(0.0, |(least, _)| least));
     let manifold = |ball: f64| on_manifold(ball).amplitude;
@@ -248,7 +248,8 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
         .map(|ball| (manifold(ball), ball))
         .collect();
     let motion = AbsorberMotion::along(&points, &slide, words);
-    Truth { values, curves: curves(&manifold, balls, end, slide), motion }
+    let curves = curves(&manifold, balls, end, slide);
+    Truth { values, curves, motion, lowest_peak: None }
 }
 
 impl BallInCavity {

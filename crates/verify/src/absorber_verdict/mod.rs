@@ -29,6 +29,9 @@ pub struct JudgedAbsorber {
     pub tolerance: f64,
     /// The formulas, design by design.
     pub formulas: Vec<JudgedAbsorberFormula>,
+    /// The lowest peak by a search; `None` if it has a formula, or has no meaning, and where doubles do
+    /// not resolve the peaks.
+    pub lowest_peak: Option<LowestPeak>,
     /// A simulated motion of a sink; `None` for a tuned or nonlinear absorber.
     pub motion: Option<AbsorberMotion>,
     /// The curves of a picture: of responses over frequency, or of motions over amplitude.
@@ -53,6 +56,17 @@ pub struct JudgedAbsorberFormula {
     pub truth: Option<f64>,
     /// `value/truth - 1`.
     pub relative_error: Option<f64>,
+}
+
+/// The tuned mass damper with which the highest amplitude at any frequency is the least (H-infinity).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowestPeak {
+    /// The natural frequency of the absorber alone over that of the main mass alone, f.
+    pub tuning: f64,
+    /// The damping ratio of the absorber alone, zeta.
+    pub damping: f64,
+    /// The highest amplitude over the static one, h.
+    pub height: f64,
 }
 
 /// A simulated motion that follows the manifold of a sink.
@@ -124,9 +138,11 @@ impl AbsorberCurveKind {
 }
 
 /// True values by design and quantity, and the curves.
+#[derive(Default)]
 struct Truth {
     values: Vec<(&'static str, &'static str, Option<f64>)>,
     curves: Vec<AbsorberCurve>,
+    lowest_peak: Option<LowestPeak>,
     motion: Option<AbsorberMotion>,
 }
 
@@ -195,6 +211,7 @@ pub fn judge_absorber(
         at: at.clone(),
         tolerance,
         formulas,
+        lowest_peak: truth.lowest_peak,
         motion: truth.motion,
         curves,
         verdict,

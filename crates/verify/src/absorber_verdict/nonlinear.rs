@@ -3,7 +3,7 @@
 //!
 //! In units in which F is 1, the equations have the cubic coefficients `alpha3 F^2` and `b3 F^2`.
 
-use super::{AbsorberCurve, AbsorberCurveKind, Truth, tuned};
+use super::{AbsorberCurve, AbsorberCurveKind, LowestPeak, Truth, tuned};
 use crate::absorber::AbsorberLaws;
 use crate::response::{ResponseRequest, respond};
 use crate::symbol::Symbol;
@@ -62,8 +62,10 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     let letter = |name: &str| at.get(Symbol::new(name)).unwrap_or(f64::NAN);
     let formula = |name: &str| laws.named_value(DESIGN, name, at);
     let mass_ratio = letter("mu");
-    let mut truth = Truth { values: vec![], curves: vec![], motion: None };
-    let Some([tuning, damping, height]) = tuned::lowest_peak(mass_ratio) else { return truth };
+    let mut truth = Truth::default();
+    let Some(LowestPeak { tuning, damping, height }) = tuned::lowest_peak(mass_ratio) else {
+        return truth;
+    };
     truth.values = vec![(DESIGN, "tuning", Some(tuning)), (DESIGN, "damping", Some(damping))];
     let square = letter("F") * letter("F");
     let known = (|| Some([formula("tuning")?, formula("damping")?, formula("cubic")?]))();

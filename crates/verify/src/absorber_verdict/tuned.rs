@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::{AbsorberCurve, AbsorberCurveKind, Truth};
+use super::{AbsorberCurve, AbsorberCurveKind, LowestPeak, Truth};
 use crate::absorber::{AbsorberLaws, Excitation};
 use crate::numeric::ode::quadrature::integrate_piecewise;
 use crate::numeric::ode::root::{find_minimum, find_root};
@@ -193,17 +193,21 @@ impl TwoMasses {
         let (tuning, least) = find_minimum(|tuning| damped(tuning).1, from, to);
         (Absorber { tuning, damping: damped(tuning).0 }, least)
     }
+
+    /// The absorber whose highest peak is the lowest.
+    fn lowest_peak(self) -> LowestPeak {
+        let (best, height) = self.best(&|absorber| self.highest(absorber));
+        LowestPeak { tuning: best.tuning, damping: best.damping, height }
+    }
 }
 
-/// Tuning, damping and height of the lowest peak under a force; `None` where doubles do not
-/// resolve the peaks.
-pub(super) fn lowest_peak(mass_ratio: f64) -> Option<[f64; 3]> {
+/// The lowest peak under a force on a main mass without damping; `None` where doubles do not resolve
+/// the peaks.
+pub(super) fn lowest_peak(mass_ratio: f64) -> Option<LowestPeak> {
     if mass_ratio < LEAST_MASS_RATIO {
         return None;
     }
-    let system = TwoMasses { excitation: Excitation::Force, mass_ratio, main_damping: 0.0 };
-    let (best, height) = system.best(&|absorber| system.highest(absorber));
-    Some([best.tuning, best.damping, height])
+    Some(TwoMasses { excitation: Excitation::Force, mass_ratio, main_damping: 0.0 }.lowest_peak())
 }
 
 /// The true values of the designs, and response curves.
@@ -212,12 +216,14 @@ pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) ->
     let main_damping = at.get(Symbol::new("zeta_1")).unwrap_or(0.0);
     let system = TwoMasses { excitation, mass_ratio, main_damping };
     if mass_ratio < LEAST_MASS_RATIO {
-        return Truth { values: vec![], curves: curves(laws, system, at), motion: None };
+        return Truth { curves: curves(laws, system, None, at), ..Truth::default() };
     }
+    let lowest = system.lowest_peak();
     let mut values = Vec::new();
     if laws.design("equal-peaks").is_none() {
         values.extend(lowest_variance(system));
-        return Truth { values, curves: damped_curves(laws, system, at), motion: None };
+        let curves = damped_curves(laws, system, lowest, at);
+        return Truth { values, curves, lowest_peak: Some(lowest), motion: None };
     }
     let tuning = system.equal_tuning();
     let points = tuning.and_then(|tuning| system.fixed_points(tuning));
@@ -238,16 +244,14 @@ pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) ->
     ] {
         values.push(("equal-peaks", name, value));
     }
-    if laws.design("lowest-peak").is_some() {
-        let (best, height) = system.best(&|absorber| system.highest(absorber));
-        for (name, value) in
-            [("tuning", best.tuning), ("damping", best.damping), ("height", height)]
-        {
-            values.push(("lowest-peak", name, Some(value)));
-        }
+    for (name, value) in
+        [("tuning", lowest.tuning), ("damping", lowest.damping), ("height", lowest.height)]
+    {
+        values.push(("lowest-peak", name, Some(value)));
     }
     values.extend(lowest_variance(system));
-    Truth { values, curves: curves(laws, system, at), motion: None }
+    let lowest = laws.design("lowest-peak").is_none().then_some(lowest);
+    Truth { values, curves: curves(laws, system, lowest, at), lowest_peak: lowest, motion: None }
 }
 
 /// The numbers of the lowest variance.
@@ -259,45 +263,66 @@ fn lowest_variance(system: TwoMasses) -> [(&'static str, &'static str, Option<f6
 
 /// The response on a damped main mass with the design, and with that of the lowest peak, which is
 /// searched.
-fn damped_curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCurve> {
-    const POINTS: u32 = 600;
+fn damped_curves(
+    laws: &AbsorberLaws,
+    system: TwoMasses,
+    lowest: LowestPeak,
+    at: &Values,
+) -> Vec<AbsorberCurve> {
     let value = |name: &str| laws.named_value("lowest-variance", name, at);
     let Some((tuning, damping)) = value("tuning").zip(value("damping")) else { return vec![] };
-    let (lowest, _) = system.best(&|absorber| system.highest(absorber));
-    let response = |absorber: Absorber| -> Vec<(f64, f64)> {
-        (0..=POINTS)
-            .map(|step| 0.4 * tuning + (1.6 - 0.4 * tuning) * f64::from(step) / f64::from(POINTS))
-            .map(|g| (g, system.magnification(absorber, g)))
-            .collect()
+    // Both peaks are about so far from the frequency of both masses together, or as wide as the
+    // damping of the main mass makes them.
+    let near = (2.5 * system.scale().max(system.main_damping)).min(1.0).exp();
+    let middle = 1.0 / (1.0 + system.mass_ratio).sqrt();
+    let frequencies = match system.mass_ratio > 1.0 {
+        true => [0.4 * lowest.tuning.min(tuning), 1.6],
+        false => [middle / near, middle * near],
     };
-    let words =
-        format!("lowest peak by search, f = {:.4}, zeta = {:.4}", lowest.tuning, lowest.damping);
-    let designs = [("lowest variance".to_owned(), Absorber { tuning, damping }), (words, lowest)];
-    designs
-        .map(|(label, absorber)| AbsorberCurve {
-            label,
-            kind: AbsorberCurveKind::Truth,
-            points: response(absorber),
-        })
-        .into()
+    let design = Absorber { tuning, damping };
+    vec![
+        response("lowest variance".to_owned(), system, design, frequencies),
+        response(BY_SEARCH.to_owned(), system, Absorber::from(lowest), frequencies),
+    ]
+}
+
+/// The label of the response of a design that no formula gives.
+const BY_SEARCH: &str = "lowest peak, by a search";
+
+impl From<LowestPeak> for Absorber {
+    fn from(lowest: LowestPeak) -> Self {
+        Self { tuning: lowest.tuning, damping: lowest.damping }
+    }
+}
+
+/// The response between two frequencies, at equal ratios: with a heavy absorber they are decades apart.
+fn response(
+    label: String,
+    system: TwoMasses,
+    absorber: Absorber,
+    [from, to]: [f64; 2],
+) -> AbsorberCurve {
+    const POINTS: u32 = 600;
+    let points = (0..=POINTS)
+        .map(|step| from * (to / from).powf(f64::from(step) / f64::from(POINTS)))
+        .map(|g| (g, system.magnification(absorber, g)));
+    AbsorberCurve { label, kind: AbsorberCurveKind::Truth, points: points.collect() }
 }
 
 /// The response with each design, and with other dampings through the fixed points.
-fn curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCurve> {
-    const POINTS: u32 = 600;
+fn curves(
+    laws: &AbsorberLaws,
+    system: TwoMasses,
+    lowest: Option<LowestPeak>,
+    at: &Values,
+) -> Vec<AbsorberCurve> {
     let value = |design: &str, name: &str| laws.named_value(design, name, at);
     let points =
         value("equal-peaks", "lower_frequency").zip(value("equal-peaks", "upper_frequency"));
     let Some((low, high)) = points else { return vec![] };
     // With a heavy absorber the main mass alone has its frequency far above both fixed points.
     let alone = if system.mass_ratio > 1.0 { 1.5 } else { 0.0 };
-    let (from, to) = ((2.0 * low - high).max(0.4 * low), (2.0 * high - low).max(alone));
-    let response = |absorber: Absorber| -> Vec<(f64, f64)> {
-        (0..=POINTS)
-            .map(|step| from + (to - from) * f64::from(step) / f64::from(POINTS))
-            .map(|g| (g, system.magnification(absorber, g)))
-            .collect()
-    };
+    let frequencies = [(2.0 * low - high).max(0.4 * low), (2.0 * high - low).max(alone)];
     let design = |name: &str| {
         let (tuning, damping) = value(name, "tuning").zip(value(name, "damping"))?;
         Some(Absorber { tuning, damping })
@@ -305,21 +330,19 @@ fn curves(laws: &AbsorberLaws, system: TwoMasses, at: &Values) -> Vec<AbsorberCu
     let mut curves = Vec::new();
     if let Some(equal) = design("equal-peaks") {
         for factor in [0.5, 0.75, 1.5, 2.5] {
-            curves.push(AbsorberCurve {
-                label: "the same tuning, other dampings".to_owned(),
-                kind: AbsorberCurveKind::Background,
-                points: response(Absorber { damping: factor * equal.damping, ..equal }),
-            });
+            let label = "the same tuning, other dampings".to_owned();
+            let other = Absorber { damping: factor * equal.damping, ..equal };
+            let curve = response(label, system, other, frequencies);
+            curves.push(AbsorberCurve { kind: AbsorberCurveKind::Background, ..curve });
         }
     }
     for own in &laws.designs {
         let Some(absorber) = design(own.name) else { continue };
-        curves.push(AbsorberCurve {
-            label: own.name.replace('-', " "),
-            kind: AbsorberCurveKind::Truth,
-            points: response(absorber),
-        });
+        curves.push(response(own.name.replace('-', " "), system, absorber, frequencies));
     }
+    curves.extend(
+        lowest.map(|lowest| response(BY_SEARCH.to_owned(), system, lowest.into(), frequencies)),
+    );
     if let Some(height) = value("equal-peaks", "height") {
         curves.push(AbsorberCurve {
             label: "fixed points".to_owned(),

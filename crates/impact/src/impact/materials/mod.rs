@@ -227,6 +227,9 @@ pub struct MaterialRow {
     pub first: Option<FirstContact>,
     /// The motion until it rests.
     pub course: MotionToRest,
+    /// The least and the greatest rest time of starts nearby, in units of 1/omega, where closed forms
+    /// follow a main mass that rests; `None` otherwise, and if a start nearby does not rest.
+    pub nearby: Option<[f64; 2]>,
     /// The rest time of the same barrier without loss, mu = 0, in units of 1/omega.
     pub lossless: Result<f64, NoRest>,
     /// Its stated yield limit, and that of the sphere, beside the pressure of the first contact.
@@ -298,6 +301,9 @@ pub struct MaterialMotions {
     pub first: Option<FirstContact>,
     /// The motion until it rests.
     pub course: MotionToRest,
+    /// The least and the greatest rest time of starts nearby, in units of 1/omega, where closed forms
+    /// follow a main mass that rests; `None` otherwise, and if a start nearby does not rest.
+    pub nearby: Option<[f64; 2]>,
     /// The rest time of the same barrier without loss, in units of 1/omega.
     pub lossless: Result<f64, NoRest>,
     /// The rest time under every form of the contact damping, the given one first, in units of
@@ -344,13 +350,17 @@ pub fn material_motions(
         Some(impact) => own.first_contact(impact, integrator, settings)?,
         None => None,
     };
+    let nearby = match course.rest_time {
+        Ok(_) => own.nearby_rest_times(integrator, settings)?,
+        Err(_) => None,
+    };
     let lossless = StudiedCase { model: Model { mu: 0.0, ..own.model }, ..own };
     let lossless = lossless.course(integrator, &with_longer_duration(settings))?.rest_time;
     let held = match design.model.mu > 0.0 && first.is_some() {
         true => rest_times_held_fixed(question, material, &dissipation)?,
         false => vec![],
     };
-    Ok(MaterialMotions { first, course, lossless, held })
+    Ok(MaterialMotions { first, course, nearby, lossless, held })
 }
 
 /// Makes the study of the motions of all its materials, in their order.
@@ -494,7 +504,7 @@ fn row(
     material: &Material,
     motions: MaterialMotions,
 ) -> Result<MaterialRow, MaterialsError> {
-    let MaterialMotions { first, course, lossless, .. } = motions;
+    let MaterialMotions { first, course, nearby, lossless, .. } = motions;
     let case = question.own_case(material);
     let (model, _) = MaterialQuestion::motion_of(material, &case)?;
     let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
@@ -507,6 +517,7 @@ fn row(
         dissipation: question.dissipation_of(&case, Some(units), design)?,
         yield_checks: checks.collect(),
         first,
+        nearby,
         lossless,
         course,
         material: material.clone(),

@@ -8,7 +8,8 @@ use super::super::contact::HuntCrossley;
 use super::super::hertz;
 use super::super::model::{Model, Start};
 use super::super::primary::{
-    MainMass, PrimaryError, PrimaryMotion, PrimarySettings, PrimaryStop, simulate_primary,
+    MainMass, PrimaryError, PrimaryMotion, PrimarySettings, PrimaryStop, nearby_rest_times,
+    simulate_primary,
 };
 use super::super::simulate::simulate;
 use super::super::simulation::{
@@ -71,6 +72,23 @@ impl StudiedCase {
         let stop_at_rest = settings.stop_at_rest || self.main_mass.is_some();
         let settings = Settings { keep_path: false, stop_at_rest, ..*settings };
         Ok(MotionToRest::from(&self.follow(integrator, &settings)?))
+    }
+
+    /// The least and the greatest rest time of starts nearby; `None` if closed forms follow no main
+    /// mass, or if one of the starts does not rest.
+    ///
+    /// # Errors
+    /// As [`simulate_primary`].
+    pub(super) fn nearby_rest_times(
+        &self,
+        integrator: Integrator,
+        settings: &Settings,
+    ) -> Result<Option<[f64; 2]>, PrimaryError> {
+        let Some(main_mass) = self.main_mass.filter(|_| integrator == Integrator::Chain) else {
+            return Ok(None);
+        };
+        let case = main_mass.carrying(&self.units, self.model, self.start);
+        nearby_rest_times(case, &PrimarySettings::from(settings))
     }
 
     /// The speed of the first touch without damping, in units of L omega; `None` if no barrier is

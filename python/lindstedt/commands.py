@@ -214,8 +214,8 @@ def simulate(
         integrator: The method: power series with the contact in a variable in which it is
             analytic; Runge-Kutta, one smooth phase at a time; or both, and how far they differ.
         chain: Do not integrate: swing and contact in closed form, impact after impact to rest,
-            each with its formula, and its error against the integration; with [primary] main
-            mass and pendulum together; a sweep is not judged.
+            each with its formula, and its error against the integration; with [primary] main mass
+            and pendulum together; a sweep is not judged.
         sweep: Follow many motions: a parameter over a range by equal steps, by equal ratios
             (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
             combination.

@@ -14,7 +14,7 @@
 
 use std::ops::Bound;
 
-use super::tuned::{self, Names, halved, minus, optimum, transfer, value, variance_parts};
+use super::tuned::{self, AbsorberNames, halved, minus, optimum, transfer, value, variance_parts};
 use super::{
     AbsorberDesign, AbsorberError, AbsorberFormula, AbsorberKind, AbsorberLaws, AbsorberLetter,
     AbsorberRelation, Excitation,
@@ -47,7 +47,7 @@ const WHAT: &str = "the design with the lowest variance on a damped main mass";
 /// Derives the design.
 pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
-    let names = Names::new();
+    let names = AbsorberNames::new();
     let damping = Symbol::new("zeta_1");
     let right = tuned::right_sides(excitation);
     let equations = CoupledEquations::parse(&format!(

@@ -28,7 +28,7 @@ use std::ops::Bound;
 
 use num_traits::{One, Zero};
 
-use super::tuned::{Names, Response, numbers_of_the_lowest_peak, transfer, value};
+use super::tuned::{AbsorberNames, Response, numbers_of_the_lowest_peak, transfer, value};
 use super::{
     AbsorberDesign, AbsorberError, AbsorberFormula, AbsorberKind, AbsorberLaws, AbsorberLetter,
     AbsorberRelation,
@@ -71,7 +71,7 @@ type AtPeaks = [QuadraticSurd; 2];
 /// Derives the cubic spring and the change of the peaks.
 pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
-    let names = Names::new();
+    let names = AbsorberNames::new();
     let (alpha3, b3, force) = (Symbol::new("alpha3"), Symbol::new("b3"), Symbol::new("F"));
     let equations = CoupledEquations::parse(
         "x'' + x + alpha3*x^3 + mu*(2*zeta*f*(x' - y') + f^2*(x - y) + b3*(x - y)^3) = F*cos(g*t); \

@@ -52,7 +52,7 @@ pub(super) const MASS_RATIO_BELOW_TWO: AbsorberLetter = AbsorberLetter {
 type InUnknown = Vec<RationalFunction>;
 
 /// The symbols of the derivation.
-pub(super) struct Names {
+pub(super) struct AbsorberNames {
     pub(super) mu: Symbol,
     pub(super) f: Symbol,
     pub(super) zeta: Symbol,
@@ -71,7 +71,7 @@ pub(super) struct Names {
     m: Symbol,
 }
 
-impl Names {
+impl AbsorberNames {
     pub(super) fn new() -> Self {
         let of = Symbol::new;
         Self {
@@ -99,7 +99,10 @@ pub(super) fn right_sides(excitation: Excitation) -> [&'static str; 2] {
 }
 
 /// The meanings of the letters.
-pub(super) fn meanings(names: &Names, excitation: Excitation) -> Vec<(Symbol, &'static str)> {
+pub(super) fn meanings(
+    names: &AbsorberNames,
+    excitation: Excitation,
+) -> Vec<(Symbol, &'static str)> {
     vec![
         (names.mu, "mass of the absorber over the main mass"),
         (names.f, "natural frequency of the absorber alone over that of the main mass alone"),
@@ -119,7 +122,7 @@ pub(super) fn meanings(names: &Names, excitation: Excitation) -> Vec<(Symbol, &'
 
 /// Derives the designs.
 pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberError> {
-    let names = Names::new();
+    let names = AbsorberNames::new();
     let right = right_sides(excitation);
     let equations = CoupledEquations::parse(&format!(
         "x'' + x + mu*(2*zeta*f*(x' - y') + f^2*(x - y)) = {}; y'' + 2*zeta*f*(y' - x') + f^2*(y - x) = {}",
@@ -164,7 +167,7 @@ pub(super) fn derive(excitation: Excitation) -> Result<AbsorberLaws, AbsorberErr
     })
 }
 
-impl Names {
+impl AbsorberNames {
     /// A polynomial with g, f and zeta in the place of w, p and z.
     fn written(&self, polynomial: &Polynomial) -> Result<Expr, crate::expr::ExprError> {
         let square = |name: Symbol| Expr::from(name) * Expr::from(name);
@@ -195,7 +198,7 @@ fn power(name: Symbol, exponent: i32) -> Polynomial {
 /// Numerator and denominator of the transfer function of x, polynomials in s.
 pub(super) fn transfer(
     equations: &CoupledEquations,
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<[Polynomial; 2], AbsorberError> {
     let polynomial = |expr: &Expr| -> Result<Polynomial, AbsorberError> {
         match expr.to_polynomial(&mut |_| None)? {
@@ -238,7 +241,10 @@ pub(super) struct Response {
 }
 
 impl Response {
-    pub(super) fn new(transfer: &[Polynomial; 2], names: &Names) -> Result<Self, AbsorberError> {
+    pub(super) fn new(
+        transfer: &[Polynomial; 2],
+        names: &AbsorberNames,
+    ) -> Result<Self, AbsorberError> {
         let parts = |polynomial: &Polynomial| -> Result<[Polynomial; 2], AbsorberError> {
             let mut parts = [Polynomial::zero(), Polynomial::zero()];
             for (exponent, coefficient) in by_powers(polynomial, names.s).iter().enumerate() {
@@ -261,7 +267,7 @@ impl Response {
     }
 
     /// |X|^2 in the letters of the equations.
-    fn written(&self, names: &Names) -> Result<Expr, AbsorberError> {
+    fn written(&self, names: &AbsorberNames) -> Result<Expr, AbsorberError> {
         let square = |[even, odd]: &[Polynomial; 2]| -> Result<Expr, AbsorberError> {
             let damping = names.written(&power(names.z, 1).product(&power(names.w, 1)))?;
             let [even, odd] =
@@ -272,7 +278,7 @@ impl Response {
     }
 
     /// Squared numerator and denominator.
-    fn squares(&self, names: &Names) -> [Polynomial; 2] {
+    fn squares(&self, names: &AbsorberNames) -> [Polynomial; 2] {
         [&self.numerator, &self.denominator].map(|[even, odd]| {
             let mut sum = odd.product(odd).product(&power(names.z, 1)).product(&power(names.w, 1));
             sum.accumulate(&even.product(even));
@@ -321,7 +327,7 @@ fn in_unknown(polynomial: &Polynomial, unknown: Symbol, mu: Symbol) -> Option<In
 pub(super) fn value(
     polynomial: &Polynomial,
     values: &[(Symbol, &QuadraticSurd)],
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Option<QuadraticSurd> {
     let (_, first) = values.first()?;
     let one = first.constant(RationalFunction::number(Rational::one()));
@@ -360,7 +366,7 @@ fn formula(name: &'static str, symbol: &str, formula: Expr) -> AbsorberFormula {
 /// The polynomial whose roots are the fixed points, and the design with equal heights there.
 fn equal_peaks(
     response: &Response,
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<(Polynomial, AbsorberDesign), AbsorberError> {
     const WHAT: &str = "the design with equal fixed points";
     let none = || AbsorberError::NoClosedForm(WHAT);
@@ -443,7 +449,7 @@ pub(super) struct LowestPeak {
 /// The design with the lowest peak; `None` if the relation of p and rho is not linear in rho.
 fn lowest_peak(
     response: &Response,
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<Option<AbsorberDesign>, AbsorberError> {
     let Some(lowest) = numbers_of_the_lowest_peak(response, names)? else { return Ok(None) };
     let written = |value: &QuadraticSurd| value.sqrt_expr(names.mu);
@@ -461,7 +467,7 @@ fn lowest_peak(
 
 pub(super) fn numbers_of_the_lowest_peak(
     response: &Response,
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<Option<LowestPeak>, AbsorberError> {
     const WHAT: &str = "the design with the lowest peak";
     let none = || AbsorberError::NoClosedForm(WHAT);
@@ -557,7 +563,7 @@ fn minus_quotient(above: &QuadraticSurd, below: &QuadraticSurd) -> Option<Quadra
 
 /// The relation of p and rho in `q = p (1 + mu)^2/rho`, its two coefficients by powers of rho as
 /// polynomials in q; `None` if it is not linear in rho.
-fn scaled_relation(relation: &Polynomial, names: &Names) -> Option<[InUnknown; 2]> {
+fn scaled_relation(relation: &Polynomial, names: &AbsorberNames) -> Option<[InUnknown; 2]> {
     let mass = power(names.m, 1) + constant(-1);
     let scaled = Monomial::power_of(names.q, 1)
         .product(&Monomial::power_of(names.rho, 1))
@@ -649,7 +655,7 @@ fn common_divisor(left: &[RationalFunction], right: &[RationalFunction]) -> InUn
 /// The design with the lowest variance under white noise.
 fn lowest_variance(
     transfer: &[Polynomial; 2],
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<AbsorberDesign, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(LOWEST_VARIANCE);
     let [above, below] = variance_parts(transfer, names);
@@ -676,7 +682,7 @@ const LOWEST_VARIANCE: &str = "the design with the lowest variance";
 /// f^2 and zeta^2 with which a variance is level, rational functions of mu.
 pub(super) fn optimum(
     variance: &Polynomial,
-    names: &Names,
+    names: &AbsorberNames,
 ) -> Result<[QuadraticSurd; 2], AbsorberError> {
     const WHAT: &str = LOWEST_VARIANCE;
     let none = || AbsorberError::NoClosedForm(WHAT);
@@ -701,7 +707,7 @@ pub(super) fn optimum(
 
 /// Numerator and denominator of `1/(2 pi) int |B(i g)/A(i g)|^2 dg`, as c_3/a_4 of the partial
 /// fractions.
-pub(super) fn variance_parts(transfer: &[Polynomial; 2], names: &Names) -> [Polynomial; 2] {
+pub(super) fn variance_parts(transfer: &[Polynomial; 2], names: &AbsorberNames) -> [Polynomial; 2] {
     let [b, a] = [&transfer[0], &transfer[1]].map(|polynomial| by_powers(polynomial, names.s));
     let degree = a.len() - 1;
     let at = |list: &[Polynomial], place: usize| {

@@ -445,7 +445,7 @@ impl TwoModes {
             [0, 1].map(|row| [0, 1].map(|column| rows[row][column].clone()))
         };
         let (mass, stiffness) = (pair(mass), pair(stiffness));
-        let mut names = Names { taken, definitions: vec![] };
+        let mut names = ModeNames { taken, definitions: vec![] };
         let alone = has_row_of_its_own(&mass, &stiffness);
         let squares = squares(&mass, &stiffness)?;
         let mut modes = Vec::new();
@@ -612,12 +612,12 @@ impl LambdaName {
 }
 
 /// The names of the closed modes.
-struct Names {
+struct ModeNames {
     taken: Vec<Symbol>,
     definitions: Vec<Definition>,
 }
 
-impl Names {
+impl ModeNames {
     fn define(&mut self, wanted: &str, meaning: Expr) -> Symbol {
         let symbol = fresh(wanted, &self.taken);
         self.taken.push(symbol);

@@ -102,7 +102,7 @@ pub fn one_harmonic_modes(system: &FreeSystem) -> Result<OneHarmonicModes, ModeE
     let mut system = system.clone();
     let force = system.force_terms(HIGHEST_DEGREE + 2)?;
     let taken = system.names();
-    let names = Names { ratio: fresh("r", &taken), square: fresh("s", &taken) };
+    let names = BalanceNames { ratio: fresh("r", &taken), square: fresh("s", &taken) };
     let balances = [balance(&system, &force, 0, &names)?, balance(&system, &force, 1, &names)?];
     let mut found = OneHarmonicModes {
         ratio: names.ratio,
@@ -119,12 +119,12 @@ pub fn one_harmonic_modes(system: &FreeSystem) -> Result<OneHarmonicModes, ModeE
 }
 
 /// The symbols of a balance: r, and s for omega^2.
-struct Names {
+struct BalanceNames {
     ratio: Symbol,
     square: Symbol,
 }
 
-impl Names {
+impl BalanceNames {
     /// A polynomial with omega^2 in the place of s.
     fn written(&self, polynomial: &Polynomial) -> Result<Expr, ExprError> {
         let omega = Expr::from(FREQUENCY);
@@ -137,7 +137,7 @@ fn balance(
     system: &FreeSystem,
     force: &[Vec<ForceTerm>],
     row: usize,
-    names: &Names,
+    names: &BalanceNames,
 ) -> Result<Polynomial, ModeError> {
     let of = |name: Symbol| Polynomial::symbol(name);
     let minus = Polynomial::constant(-Rational::one());
@@ -221,7 +221,7 @@ pub(crate) fn by_powers(polynomial: &Polynomial, name: Symbol) -> Vec<Polynomial
 /// The family along omega, where an equation is linear, and the other linear in A^2.
 fn along_frequency(
     balances: &[Polynomial; 2],
-    names: &Names,
+    names: &BalanceNames,
 ) -> Result<Option<OneHarmonicFamily>, ModeError> {
     for (linear, other) in [(1, 0), (0, 1)] {
         if balances[linear].symbols().contains(&AMPLITUDE) {
@@ -262,7 +262,7 @@ fn along_frequency(
 /// The similar modes, and the family that is left along the ratio.
 fn along_ratio(
     balances: &[Polynomial; 2],
-    names: &Names,
+    names: &BalanceNames,
     found: &mut OneHarmonicModes,
 ) -> Result<(), ModeError> {
     let [first, second] = balances.each_ref().map(|balance| by_powers(balance, names.square));
@@ -373,7 +373,7 @@ fn along_ratio(
     }
 }
 
-fn in_ratio(rows: &InRatio, names: &Names) -> Polynomial {
+fn in_ratio(rows: &InRatio, names: &BalanceNames) -> Polynomial {
     let mut sum = Polynomial::zero();
     for (power, row) in rows.iter().enumerate() {
         let exponent = i32::try_from(power).unwrap_or(i32::MAX);

@@ -33,7 +33,7 @@ pub(super) struct ModalForm {
     pub(super) projection: Vec<Vec<Polynomial>>,
     /// `omega_j`.
     pub(super) frequencies: Vec<Frequency>,
-    pub(super) names: Names,
+    pub(super) names: FormulaNames,
     /// Whether coefficients are rounded to [`DIGITS`] digits.
     pub(super) rounded: bool,
     /// The waves that are near the frequency of a mode.
@@ -51,13 +51,13 @@ pub(super) struct Frequency {
 
 /// Names of what stands in formulas, and the squares that are known of them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Names {
+pub(super) struct FormulaNames {
     pub(super) taken: Vec<Symbol>,
     pub(super) definitions: Vec<Definition>,
     squares: BTreeMap<Symbol, Polynomial>,
 }
 
-impl Names {
+impl FormulaNames {
     /// A new name.
     pub(super) fn define(&mut self, wanted: &str, meaning: Expr) -> Symbol {
         let known = self.definitions.iter().find(|known| known.meaning == meaning);
@@ -166,7 +166,7 @@ impl ModalForm {
     /// # Errors
     /// [`ModeError`] for modes that do not oscillate, or have no closed form.
     pub(super) fn new(system: &CoupledSystem) -> Result<Self, MultipleScalesError> {
-        let mut names = Names {
+        let mut names = FormulaNames {
             taken: system.names(),
             definitions: system.constants.clone(),
             squares: BTreeMap::new(),
@@ -203,7 +203,10 @@ impl ModalForm {
         Ok(form)
     }
 
-    fn of_diagonal(system: &CoupledSystem, names: Names) -> Result<Self, MultipleScalesError> {
+    fn of_diagonal(
+        system: &CoupledSystem,
+        names: FormulaNames,
+    ) -> Result<Self, MultipleScalesError> {
         let count = system.mass.len();
         let zeros = || vec![vec![Polynomial::zero(); count]; count];
         let mut form = Self {

@@ -76,7 +76,7 @@ impl SmallTerm {
 }
 
 impl SmallTerm {
-    /// What stands beside the coefficient: powers of the coordinates of a system, and waves in time.
+    /// The factors beside the coefficient: powers of the coordinates of a system, and waves in time.
     pub(super) fn product(&self, system: &CoupledSystem) -> Result<Expr, ExprError> {
         let mut factors = Vec::new();
         for wave in &self.waves {

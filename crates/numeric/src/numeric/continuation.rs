@@ -117,9 +117,9 @@ pub fn in_amplitude<Motion>(
     const SHARE: f64 = 0.05;
     /// The share of the motion itself by which it may miss its guess in any case.
     const SHARE_OF_ALL: f64 = 0.005;
-    /// That of the last unknown, by which it may change in a step at all as well.
+    /// The share by which the last unknown may miss its guess, and the most that it may change in a step.
     const SHARE_OF_LAST: f64 = 0.25;
-    /// That of the first motion, which has to be nearly linear for its direction to be known.
+    /// The share for the first motion, which has to be nearly linear for its direction to be known.
     const SHARE_OF_FIRST: f64 = 0.05;
     let mut known: Vec<(f64, Motion)> = Vec::new();
     let mut step = LONGEST;

@@ -68,7 +68,7 @@ fn force_on(primary: &Primary, t: f64, state: PrimaryState) -> f64 {
     drive - primary.damping * state.speed - primary.stiffness * state.y
 }
 
-/// What a contact does to the relative motion under a constant push.
+/// The effect of a contact on the relative motion under a constant push.
 struct Impulse {
     depth: f64,
     duration: f64,

@@ -178,7 +178,7 @@ const SINE: [f64; 7] = [
 const COSINE: [f64; 7] =
     [0.0, 0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40_320.0, 1.0 / 3_628_800.0, -1.0 / 479_001_600.0];
 
-/// What becomes of a force N with the force of the accelerations that it gives at once: with the
+/// The force that a force N becomes with the force of the accelerations that it gives at once: with the
 /// matrix M of the masses at x = 0 and C = 1 - cos x in the middle of the piece,
 ///
 /// ```text

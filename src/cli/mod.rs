@@ -38,6 +38,7 @@ mod slow_equations;
 mod stability;
 mod suggestions;
 mod trajectory;
+mod walls;
 
 pub use call::{CallFailure, CallResult, EquationRead, call, commands, read_equation};
 

@@ -133,6 +133,14 @@ fn refused(error: TrajectoryError) -> Failure {
         TrajectoryError::Missing(names) => {
             Some(format!("{}, or [values] in the file", values_of(names)))
         }
+        TrajectoryError::WallWithoutMass(_) => Some(
+            "write each equation with its mass before the acceleration, m1*x'' + ... = 0"
+                .to_owned(),
+        ),
+        TrajectoryError::BehindWall { .. } => Some(
+            "give a start on the allowed side with --from, or turn the sign of the wall round"
+                .to_owned(),
+        ),
         TrajectoryError::Unknown(_) => Some(
             "its start is given by --from x=1, say, and the values of parameters by --at"
                 .to_owned(),
@@ -145,6 +153,7 @@ fn refused(error: TrajectoryError) -> Failure {
 /// The course of the file with the start, the values and the duration of the command line.
 fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequest, Failure> {
     let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
+    course = course.with_walls(asked.walls.walls(problem)?);
     course.section = section(&course, asked)?;
     let needed = course.parameters();
     let values = exact_values(&asked.at, problem.values_with(&needed))?.unwrap_or_default();
@@ -237,6 +246,11 @@ fn section(
             ))),
             period => Ok(Some(PoincareSection::Every(period))),
         },
+        (None, Some("impacts")) if course.walls.is_empty() => Err(Failure::Usage(
+            "--section impacts: there are no impacts without a wall: give --wall \"x < 1\", or [[wall]] in the file"
+                .to_owned(),
+        )),
+        (None, Some("impacts")) => Ok(Some(PoincareSection::Impacts)),
         (None, Some(text)) => match read("section", text)? {
             expression if moves(&expression) => Ok(Some(PoincareSection::Rising(expression))),
             _ => Err(Failure::Usage(format!(

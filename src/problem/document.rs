@@ -66,6 +66,8 @@ pub struct Problem {
     pub units: BTreeMap<String, String>,
     /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
+    /// Rigid walls.
+    pub wall: Vec<WallSection>,
     /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
     /// The options of its genetic algorithm.
@@ -219,6 +221,16 @@ pub struct MaterialSection {
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2).
     pub damping: Option<f64>,
+}
+
+/// `[[wall]]`: a rigid wall.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallSection {
+    /// The side on which motions are allowed: `"x < d"`.
+    pub bound: String,
+    /// The coefficient of restitution: a number, or text such as `"e"`.
+    pub restitution: Option<toml::Value>,
 }
 
 /// `[limits]`: what a search for the best design may vary between, in SI units, and what it must

@@ -73,17 +73,7 @@ impl Problem {
     pub fn exact_values(&self) -> Result<Values, ProblemError> {
         let mut values = Values::default();
         for (name, value) in &self.values {
-            let text = match value {
-                toml::Value::String(text) => text.clone(),
-                toml::Value::Integer(number) => number.to_string(),
-                // The shortest decimal that reads back to the same float is what was typed.
-                toml::Value::Float(number) if number.is_finite() => number.to_string(),
-                _ => {
-                    return refused(format!(
-                        "the value of `{name}` in [values] should be a number, or text such as \"pi/3\""
-                    ));
-                }
-            };
+            let text = number_or_text(value, &format!("the value of `{name}` in [values]"))?;
             let value = parse_expression(&text).map_err(|error| {
                 ProblemError::new(format!("the value of `{name}` in [values]: {error}"))
             })?;
@@ -134,5 +124,19 @@ mod tests {
             values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
         assert!("[values]\nA = \"k\"".parse::<Problem>().unwrap().exact_values().is_err());
+    }
+}
+
+/// The text of a value that is a number or an expression.
+///
+/// # Errors
+/// [`ProblemError`] names the key.
+pub(super) fn number_or_text(value: &toml::Value, key: &str) -> Result<String, ProblemError> {
+    match value {
+        toml::Value::String(text) => Ok(text.clone()),
+        toml::Value::Integer(number) => Ok(number.to_string()),
+        // The shortest decimal that reads back to the same float is what was typed.
+        toml::Value::Float(number) if number.is_finite() => Ok(number.to_string()),
+        _ => refused(format!("{key} should be a number, or text such as \"pi/3\"")),
     }
 }

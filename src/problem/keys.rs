@@ -85,6 +85,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "duration") => &[Simulate, Materials, Trajectory, Optimize],
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
+        ("", "[[wall]]") => &[Trajectory],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -122,7 +123,7 @@ const SECTIONS: [KeySection; 15] = [
     ("sphere", keys_of::<SphereSection>),
     ("barrier", keys_of::<BarrierSection>),
     ("run", keys_of::<Run>),
-    ("", || &["[[material]]"]),
+    ("", || &["[[material]]", "[[wall]]"]),
     ("limits", keys_of::<LimitsSection>),
     ("genetic", keys_of::<GeneticSection>),
 ];
@@ -182,7 +183,9 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
             toml::Value::Table(_) if name == "values" || name == "units" => {
                 keys.push(format!("[{name}]"))
             }
-            toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
+            toml::Value::Array(_) if ["material", "wall"].contains(&name.as_str()) => {
+                keys.push(format!("[[{name}]]"))
+            }
             toml::Value::Table(section) => {
                 keys.extend(section.keys().map(|key| format!("[{name}] {key}")))
             }
@@ -257,6 +260,6 @@ mod tests {
             let section = format!("[{name}]");
             assert!(known.iter().any(|key| key == name || key.contains(&section)), "{name}");
         }
-        assert_eq!(known.len(), 98);
+        assert_eq!(known.len(), 99);
     }
 }

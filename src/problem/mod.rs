@@ -28,6 +28,7 @@ mod optimize;
 mod primary;
 mod simulate;
 mod trajectory;
+mod wall;
 
 use std::str::FromStr;
 
@@ -43,7 +44,7 @@ use crate::values::ValueError;
 pub use document::{
     Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation,
     GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
-    Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
+    Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection, WallSection,
 };
 pub use formula::FormulaProblem;
 pub use keys::{ReadingCommand, keys};

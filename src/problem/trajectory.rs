@@ -2,6 +2,7 @@
 
 use super::mechanism::no_mechanism;
 use super::{Problem, ProblemError, ReadingCommand};
+use crate::coupled::CoupledEquations;
 use crate::oscillator::Oscillator;
 use crate::trajectory::TrajectoryRequest;
 
@@ -26,6 +27,12 @@ impl Problem {
             (Some(_), _) => {
                 let mechanism = self.mechanism()?.mechanism;
                 TrajectoryRequest::of_mechanism(&mechanism, &mechanism.equations()?)?
+            }
+            (None, Some(equations)) if equations.contains(';') => {
+                let coupled = CoupledEquations::parse(equations).map_err(|error| {
+                    ProblemError::new(error.to_string()).with_help(error.help())
+                })?;
+                TrajectoryRequest::of_coupled(&coupled)
             }
             (None, Some(equation)) => TrajectoryRequest::of_equation(&Oscillator::parse(equation)?),
             (None, None) => return Err(no_mechanism()),

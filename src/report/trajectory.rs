@@ -9,14 +9,19 @@ use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest, in_words,
+    Crossing, DISPLACEMENT, Impact, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest,
+    WallRecord, WallRest, in_words,
 };
+use crate::wall::Wall;
 
 /// Largest number of listed times of sticking.
 const MOST_HELD: usize = 6;
 
 /// Largest number of listed states of a section.
 const MOST_ON_SECTION: usize = 40;
+
+/// Largest number of listed impacts.
+const MOST_IMPACTS: usize = 20;
 
 /// Number of rows of the table if no samples are requested.
 const ROWS: u32 = 20;
@@ -127,6 +132,9 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     if let Some(section) = &course.section {
         sections.push(on_section(motion, section));
     }
+    if !course.walls.is_empty() {
+        sections.push(on_walls(motion));
+    }
     sections.push(account(report));
     Document { sections }
 }
@@ -179,6 +187,71 @@ fn on_section<'a>(motion: &Trajectory, section: &PoincareSection) -> Vec<Block<'
     blocks
 }
 
+/// The walls, the first impacts, and the rests.
+fn on_walls<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
+    let walls = &motion.course.walls;
+    let several = walls.len() > 1;
+    let mut blocks: Vec<Block> = walls
+        .iter()
+        .enumerate()
+        .map(|(index, wall)| Block::Note(wall_in_words(index, wall, several)))
+        .collect();
+    let WallRecord { impacts, rests, order_matters } = &motion.walls;
+    let count = impacts.len();
+    let mut words = format!("{count} impact{}", if count == 1 { "" } else { "s" });
+    if count > MOST_IMPACTS {
+        words.push_str(&format!("; the first {MOST_IMPACTS}, all of them as JSON"));
+    }
+    blocks.push(Block::Heading(words));
+    let with_loss = impacts.iter().any(|impact| impact.loss.is_some());
+    let mut head = vec!["t"];
+    head.extend(several.then_some("wall"));
+    head.extend(["speed before", "speed after"]);
+    head.extend(with_loss.then_some("energy lost"));
+    let row = |impact: &Impact| -> Vec<String> {
+        let mut cells = vec![decimal(impact.time)];
+        cells.extend(several.then(|| (impact.wall + 1).to_string()));
+        cells.extend([impact.speed, impact.departure].map(decimal));
+        cells.extend(with_loss.then(|| impact.loss.map_or_else(String::new, decimal)));
+        cells
+    };
+    if count > 0 {
+        blocks.push(Block::table(head, impacts.iter().take(MOST_IMPACTS).map(row)));
+    }
+    blocks
+        .extend(rests.iter().take(MOST_HELD).map(|rest| Block::Note(rest_in_words(rest, several))));
+    if rests.len() > MOST_HELD {
+        blocks.push(Block::Note(format!("and {} rests more", rests.len() - MOST_HELD)));
+    }
+    blocks.extend(order_matters.map(|time| {
+        Block::Note(format!(
+            "at t = {} several walls are hit at once, and the order of the impacts matters: they are taken in the order of the walls",
+            decimal(time)
+        ))
+    }));
+    blocks
+}
+
+/// A wall in words.
+fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
+    let number = if several { format!(" {}", index + 1) } else { String::new() };
+    format!("wall{number} at {} = 0, coefficient of restitution {}", wall.gap, wall.restitution)
+}
+
+/// A rest on a wall in words.
+fn rest_in_words(rest: &WallRest, several: bool) -> String {
+    let number = if several { format!(" {}", rest.wall + 1) } else { String::new() };
+    let after = match rest.after_chatter {
+        true => ", after infinitely many impacts, the time of which is summed in closed form",
+        false => "",
+    };
+    format!(
+        "rests on wall{number} from t = {} to {}{after}",
+        decimal(rest.from),
+        decimal(rest.until)
+    )
+}
+
 /// The section in words.
 pub(crate) fn section_in_words(section: &PoincareSection) -> String {
     match section {
@@ -186,6 +259,7 @@ pub(crate) fn section_in_words(section: &PoincareSection) -> String {
         PoincareSection::Rising(expression) => {
             format!("Section where {expression} grows through zero")
         }
+        PoincareSection::Impacts => "Section just before each impact".to_owned(),
     }
 }
 
@@ -206,11 +280,16 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     if on_section {
         head.push("section");
     }
+    let with_walls = !course.walls.is_empty();
+    if with_walls {
+        head.push("impacts");
+    }
     let rows = sweep.motions.iter().map(|motion| {
         let numbers = motion.values.iter().chain(motion.extremes.iter().flatten());
         let numbers = numbers.map(|value| decimal(*value));
         let counted = on_section.then(|| motion.crossings.len().to_string());
-        numbers.chain(counted).collect()
+        let hits = with_walls.then(|| motion.impacts.to_string());
+        numbers.chain(counted).chain(hits).collect()
     });
     let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
     if course.after > 0.0 {

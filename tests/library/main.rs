@@ -60,3 +60,4 @@ mod steps;
 mod stop_response;
 mod system;
 mod units;
+mod walls;

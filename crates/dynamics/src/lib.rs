@@ -22,5 +22,7 @@ pub mod mechanics;
 
 pub mod coupled;
 
+pub mod wall;
+
 pub use interrupt::{Interrupt, Progress};
 pub use symbol::Symbol;

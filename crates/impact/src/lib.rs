@@ -9,7 +9,7 @@
 #![warn(missing_docs)]
 
 #[doc(no_inline)]
-pub use lindstedt_dynamics::{mechanics, system};
+pub use lindstedt_dynamics::{mechanics, system, wall};
 #[doc(no_inline)]
 pub use lindstedt_expr::{decimal, exact, expr, parallel, spelling, symbol, values};
 #[doc(no_inline)]

@@ -21,29 +21,35 @@ mod sensitivity;
 mod surplus;
 mod sweep;
 mod two_sided;
+mod walls;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
 
-use crate::expr::{CompiledFunction, Expr, ExprError, LostDigits};
+use crate::coupled::CoupledEquations;
+use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
 use crate::system::{
-    Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
+    Event, Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
 };
+
+use crate::wall::{Wall, WallError};
 
 pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
-use hold::{Layout, StateEquations};
+use hold::Layout;
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
+use walls::{CompiledWalls, WORK_OF_WALLS, resting_equations};
+pub use walls::{Impact, WallRecord, WallRest};
 
 /// An initial value problem: equations, initial state and duration.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +62,11 @@ pub struct TrajectoryRequest {
     pub rates: Rates,
     /// h and what changes it; `None` for an equation whose inertia depends on the position.
     pub energy: Option<EnergyWithPowers>,
+    /// The matrix of the coefficients of the accelerations, which is that of the masses where it is
+    /// symmetric; `None` for one coordinate.
+    pub mass: Option<Vec<Vec<Expr>>>,
+    /// The rigid walls.
+    pub walls: Vec<Wall>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
     /// Initial positions and velocities, in the order of the states.
@@ -94,6 +105,8 @@ pub struct Trajectory {
     pub integrator: Integrator,
     /// The balance of energy; `None` if there is no energy.
     pub balance: Option<EnergyBalance>,
+    /// The impacts on walls and the rests on them.
+    pub walls: WallRecord,
     pieces: Vec<TrajectorySegment>,
     on_section: OnSection,
     reason: PathEnd,
@@ -150,6 +163,33 @@ pub enum TrajectoryError {
     /// The mechanism has no accelerations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
+    /// A wall that is none.
+    #[error(transparent)]
+    Wall(#[from] WallError),
+    /// A start behind a wall.
+    #[error("the motion begins behind a wall: `{gap}` is {value:e} there and must not be negative")]
+    BehindWall {
+        /// The gap of the wall.
+        gap: Expr,
+        /// Its value at the start.
+        value: f64,
+    },
+    /// A wall in equations of first order.
+    #[error(
+        "the wall `{0} = 0` needs velocities, but the equations have coordinates of first order"
+    )]
+    WallWithoutVelocity(Expr),
+    /// A wall whose gap cannot be differentiated.
+    #[error("the gap `{0}` of a wall has no second rate along the motion")]
+    WallWithCorner(Expr),
+    /// A wall whose gap has no value.
+    #[error("the gap `{0}` of a wall: {1}")]
+    WallUndefined(Expr, EvaluationError),
+    /// A wall in coupled equations without a mass matrix.
+    #[error(
+        "the wall `{0} = 0` needs masses: the coefficients of the accelerations are no symmetric matrix, so that no momentum is known"
+    )]
+    WallWithoutMass(Expr),
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
@@ -206,12 +246,45 @@ impl TrajectoryRequest {
         powers.push(("dissipation".to_owned(), Expr::sum(lost)));
         powers.retain(|(_, power)| !power.is_zero());
         let energy = EnergyWithPowers { value: Expr::sum(energy), powers };
-        Ok(Self::new(
+        let request = Self::new(
             mechanism.coordinates.clone(),
             equations.left.clone(),
             equations.rates()?,
             Some(energy),
-        ))
+        );
+        Ok(Self { mass: Some(equations.mass.clone()), ..request })
+    }
+
+    /// The initial value problem of coupled equations, from rest at zero for 50 units of time, without
+    /// an account of energy.
+    ///
+    /// ```
+    /// # use lindstedt_verify as lindstedt;
+    /// use lindstedt::coupled::CoupledEquations;
+    /// use lindstedt::trajectory::TrajectoryRequest;
+    ///
+    /// let pair = CoupledEquations::parse("x'' + 2*x - y = 0; y'' + 2*y - x = 0")?;
+    /// let mut course = TrajectoryRequest::of_coupled(&pair);
+    /// course.begin("x".into(), 1.0)?;
+    /// course.begin("y".into(), -1.0)?;
+    /// let state = course.follow()?.states_at(10.0).ok_or("no state")?;
+    /// assert!((state[0] - (3.0_f64.sqrt() * 10.0).cos()).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_coupled(equations: &CoupledEquations) -> Self {
+        let lefts = equations.equations.iter().map(|(left, right)| left - right).collect();
+        let request =
+            Self::new(equations.coordinates.clone(), lefts, equations.rates.clone(), None);
+        Self { mass: Some(equations.matrix.clone()), ..request }
+    }
+
+    /// The same problem with rigid walls, whose work is accounted for where there is an energy.
+    #[must_use]
+    pub fn with_walls(mut self, walls: Vec<Wall>) -> Self {
+        if let (Some(energy), false) = (&mut self.energy, walls.is_empty()) {
+            energy.powers.push((WORK_OF_WALLS.to_owned(), Expr::zero()));
+        }
+        Self { walls, ..self }
     }
 
     /// The initial value problem of coordinates and velocities with these rates, from rest at zero for 50
@@ -232,6 +305,8 @@ impl TrajectoryRequest {
             equations,
             rates,
             energy,
+            mass: None,
+            walls: vec![],
             values: BTreeMap::new(),
             duration: 50.0,
             section: None,
@@ -267,8 +342,11 @@ impl TrajectoryRequest {
 
     /// The names without whose numbers nothing moves.
     fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
-        let section = self.section.iter().map(PoincareSection::expression);
-        let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
+        let section = self.section.iter().filter_map(PoincareSection::expression);
+        let walls = self.walls.iter().flat_map(|wall| [&wall.gap, &wall.restitution]);
+        let mass = self.mass.iter().flatten().flatten().filter(|_| !self.walls.is_empty());
+        let all = self.rates.right.iter().chain(section).chain(walls).chain(mass);
+        let all = all.flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
 
@@ -340,8 +418,7 @@ impl TrajectoryRequest {
     /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         let ready = self.ready(integrator)?;
-        let first = ready.solver.solve([0.0, self.duration], &ready.start(&self))?;
-        self.finish(&ready, first, integrator)
+        self.finish(&ready, None, integrator)
     }
 
     /// Follows several courses by their series, those that differ in numbers and starts alone side
@@ -361,13 +438,15 @@ impl TrajectoryRequest {
         };
         let all: Vec<_> = courses.iter().map(made_ready).collect();
         let duration = courses.first().map_or(0.0, |course| course.duration);
-        let motions = all.iter().flatten();
+        let with_walls = courses.iter().any(|course| !course.walls.is_empty());
+        let motions = all.iter().flatten().filter(|_| !with_walls);
         let motions =
             motions.map(|(ready, start)| (&ready.solver, [0.0, duration], start.as_slice()));
         let paths = solve_together(&motions.collect::<Vec<_>>());
         let mut paths = paths.into_iter();
         let mut first = |course: &Self, ready: &Ready| match paths.next() {
-            Some(path) => course.clone().finish(ready, path?, Integrator::Taylor),
+            _ if with_walls => course.clone().finish(ready, None, Integrator::Taylor),
+            Some(path) => course.clone().finish(ready, Some(path?), Integrator::Taylor),
             None => course.clone().follow_by(Integrator::Taylor),
         };
         let followed = |(course, ready): (Self, &Result<(Ready, Vec<f64>), TrajectoryError>)| {
@@ -380,29 +459,23 @@ impl TrajectoryRequest {
         courses.into_iter().zip(&all).map(followed).collect()
     }
 
-    /// A motion whose first stretch has been followed.
+    /// The whole motion; its first stretch is given if it has been followed.
     fn finish(
         self,
         ready: &Ready,
-        first: Path,
+        first: Option<Path>,
         integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
-        let equations = StateEquations {
-            states: &ready.states,
-            right: &ready.right,
-            values: &ready.values,
-            critical: &ready.critical,
-        };
-        let options = self.options(integrator);
-        let (pieces, reason) =
-            self.pieces(first, &ready.solver, &equations, &options, ready.recorded)?;
+        let walls = CompiledWalls::new(&self)?;
+        let motion = self.across_walls(walls.as_ref(), ready, first, integrator)?;
         let mut motion = Trajectory {
             course: self,
             integrator,
             balance: None,
-            pieces,
+            walls: motion.record,
+            pieces: motion.pieces,
             on_section: OnSection::default(),
-            reason,
+            reason: motion.reason,
         };
         motion.balance = motion.account();
         motion.on_section = motion.find_on_section()?;
@@ -432,6 +505,15 @@ impl TrajectoryRequest {
 
     /// Its equations, made ready to be followed by this integrator.
     fn ready(&self, integrator: Integrator) -> Result<Ready, TrajectoryError> {
+        self.ready_on(&[], integrator)
+    }
+
+    /// The equations of a motion that rests on these walls, made ready to be followed.
+    fn ready_on(
+        &self,
+        resting: &[usize],
+        integrator: Integrator,
+    ) -> Result<Ready, TrajectoryError> {
         let needed = self.parameters();
         let missing: Vec<Symbol> = self
             .parameters_of_motion()
@@ -445,8 +527,9 @@ impl TrajectoryRequest {
             return Err(TrajectoryError::Duration(self.duration));
         }
         self.check_start()?;
-        let mut states = self.rates.states.clone();
-        let mut right: Vec<Expr> = self
+        let on_walls = resting_equations(self, resting)?;
+        let mut states = on_walls.rates.states;
+        let mut right: Vec<Expr> = on_walls
             .rates
             .right
             .iter()
@@ -454,10 +537,11 @@ impl TrajectoryRequest {
             .collect::<Result<_, _>>()?;
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
         let energy = self.energy.as_ref().filter(|_| self.missing_for_energy().is_empty());
-        for (_, power) in energy.iter().flat_map(|energy| &energy.powers) {
+        for (name, power) in energy.iter().flat_map(|energy| &energy.powers) {
             let work = fresh("work", &taken);
             taken.push(work);
             states.push(work);
+            let power = if name == WORK_OF_WALLS { &on_walls.power } else { power };
             right.push(roots_across_corners(power, &self.values)?);
         }
         let values: BTreeMap<Symbol, f64> =
@@ -467,11 +551,15 @@ impl TrajectoryRequest {
             System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
         let moving = Rates { states, right };
         let section = self.section.as_ref();
-        let events = section.map_or(vec![], |section| section.events(&moving));
+        let mut events = section.map_or(vec![], |section| section.events(&moving));
+        let recorded = events.len();
+        let guards = on_walls.guards;
+        events.extend(guards.iter().map(|guard| Event::stop(guard.clone()).falling()));
         let Rates { states, right } = moving;
         Ok(Ready {
             solver: system.solver(&events, &self.options(integrator)),
-            recorded: events.len(),
+            recorded,
+            guards,
             states,
             right,
             values,
@@ -494,6 +582,8 @@ struct Ready {
     solver: Solver,
     /// The number of events of the section.
     recorded: usize,
+    /// Functions at whose fall through zero a stretch ends: the gap of each wall, or its force.
+    guards: Vec<Expr>,
 }
 
 impl Ready {
@@ -518,6 +608,7 @@ impl Ready {
             states: self.states.clone(),
             right: self.right.clone(),
             recorded: self.recorded,
+            guards: self.guards.clone(),
             solver: solver.with_critical_times(&critical),
             values,
             critical,

@@ -9,7 +9,10 @@ use super::number::{Map, named, texts};
 use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
 use crate::system::{Integrator, PathEnd};
-use crate::trajectory::{Crossing, PoincareSection, TrajectoryRequest, in_words};
+use crate::trajectory::{
+    Crossing, Impact, PoincareSection, Trajectory, TrajectoryRequest, WallRest, in_words,
+};
+use crate::wall::Wall;
 
 /// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
 /// are those of the values given.
@@ -47,6 +50,9 @@ pub struct MotionDocument {
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,
     /// on a belt or on another body.
     pub held: Vec<[f64; 2]>,
+    /// The walls with the impacts on them; left out without a wall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walls: Option<WallsDocument>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked, its energy is accounted for and the other
@@ -109,6 +115,92 @@ pub struct EnergyAccount {
     pub residual: f64,
 }
 
+/// Rigid walls, the impacts on them and the rests.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct WallsDocument {
+    /// The walls.
+    pub walls: Vec<WallDocument>,
+    /// The impacts in order; of an accumulation those before its sum.
+    pub impacts: Vec<ImpactDocument>,
+    /// The stretches of time on which the motion rests on a wall.
+    pub rests: Vec<WallRestDocument>,
+    /// The first time at which several walls were hit at once and the order of the impacts matters;
+    /// left out if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order_matters: Option<f64>,
+}
+
+/// A rigid wall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Wall"))]
+pub struct WallDocument {
+    /// The gap, zero at the wall and positive in front of it.
+    pub gap: String,
+    /// The coefficient of restitution.
+    pub restitution: String,
+}
+
+/// An impact on a wall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "WallImpact"))]
+pub struct ImpactDocument {
+    /// The time.
+    pub t: f64,
+    /// The wall, counted from 0.
+    pub wall: usize,
+    /// The speed at which the gap closes before the impact.
+    pub speed: f64,
+    /// The speed at which it opens after the impact; 0 for the one after which the rest of an
+    /// accumulation is summed.
+    pub departure: f64,
+    /// The energy that the impact takes; null where no energy is accounted for.
+    pub energy_lost: Option<f64>,
+}
+
+/// A stretch of time on which a motion rests on a wall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "WallRest"))]
+pub struct WallRestDocument {
+    /// The wall, counted from 0.
+    pub wall: usize,
+    /// When it begins.
+    pub from: f64,
+    /// When the wall no longer presses, or the motion ends.
+    pub until: f64,
+    /// Whether infinitely many impacts came before it.
+    pub after_chatter: bool,
+}
+
+impl WallsDocument {
+    fn new(motion: &Trajectory) -> Self {
+        let record = &motion.walls;
+        let impact = |impact: &Impact| ImpactDocument {
+            t: impact.time,
+            wall: impact.wall,
+            speed: impact.speed,
+            departure: impact.departure,
+            energy_lost: impact.loss,
+        };
+        let rest = |rest: &WallRest| WallRestDocument {
+            wall: rest.wall,
+            from: rest.from,
+            until: rest.until,
+            after_chatter: rest.after_chatter,
+        };
+        let wall = |wall: &Wall| WallDocument {
+            gap: wall.gap.to_string(),
+            restitution: wall.restitution.to_string(),
+        };
+        Self {
+            walls: motion.course.walls.iter().map(wall).collect(),
+            impacts: record.impacts.iter().map(impact).collect(),
+            rests: record.rests.iter().map(rest).collect(),
+            order_matters: record.order_matters,
+        }
+    }
+}
+
 /// The document of kind `motion`.
 ///
 /// ```
@@ -154,6 +246,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         difference: report.judge.map(|judge| motion.difference(judge)),
         known_until: report.known_until,
         held: motion.sticking_intervals().collect(),
+        walls: (!course.walls.is_empty()).then(|| WallsDocument::new(motion)),
         stopped: in_words(motion.reason()).to_owned(),
         complete: report.is_complete(),
     }
@@ -165,6 +258,7 @@ fn section_document(
     (crossings, touches): (&[Crossing], &[f64]),
 ) -> SectionDocument {
     let [every, rising] = match section {
+        PoincareSection::Impacts => [None, None],
         PoincareSection::Every(period) => [Some(period.to_string()), None],
         PoincareSection::Rising(expression) => [None, Some(expression.to_string())],
     };
@@ -215,6 +309,9 @@ pub struct SweptMotionDocument {
     pub extremes: Map<[f64; 2]>,
     /// The states on the section; null where none was asked for.
     pub section: Option<SectionDocument>,
+    /// The number of impacts on walls; left out without a wall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub impacts: Option<usize>,
     /// Why it ends where it does.
     pub stopped: String,
     /// Whether it was followed as long as asked.
@@ -236,6 +333,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .section
             .as_ref()
             .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
+        impacts: (!course.walls.is_empty()).then_some(motion.impacts),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == PathEnd::Reached,
     });

@@ -154,6 +154,9 @@ pub struct MotionPoint {
     pub crossings: Vec<(AnyNumber, Vec<AnyNumber>)>,
     /// The times at which it touches the section without crossing it.
     pub touches: Vec<AnyNumber>,
+    /// The number of impacts on walls.
+    #[serde(default)]
+    pub impacts: usize,
     /// The reason why it ended, in words.
     pub stopped: String,
 }
@@ -168,6 +171,7 @@ impl MotionPoint {
             extremes: motion.extremes.iter().map(|ends| ends.map(AnyNumber::from)).collect(),
             crossings: motion.crossings.iter().map(crossing).collect(),
             touches: numbers(&motion.touches),
+            impacts: motion.impacts,
             stopped: in_words(motion.reason).to_owned(),
         }
     }
@@ -197,6 +201,7 @@ impl MotionPoint {
                 .collect::<Option<_>>()?,
             crossings: self.crossings.iter().map(crossing).collect::<Option<_>>()?,
             touches: read_numbers(&self.touches)?,
+            impacts: self.impacts,
             reason: ENDS.into_iter().find(|end| in_words(*end) == self.stopped)?,
         })
     }

@@ -167,6 +167,46 @@ pub fn parse_equations(text: &str) -> Result<Vec<(Expr, Expr)>, ParseError> {
     Ok(equations)
 }
 
+/// Reads an inequality, such as `x < 1` or `-1 < x < 1`, and returns the expressions that are
+/// positive where it holds: `1 - x`, and for each further sign another one. `<=` is read as `<`.
+///
+/// # Errors
+/// See [`ParseError`]; also for a text without `<` or `>`.
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::expr::parse_inequality;
+///
+/// let [gap] = &parse_inequality("x > Z*sin(t)")?[..] else { panic!() };
+/// assert_eq!(gap.to_string(), "x - Z*sin(t)");
+/// assert_eq!(parse_inequality("-1 < x <= 1")?.len(), 2);
+/// assert!(parse_inequality("x = 1").is_err());
+/// # Ok::<(), lindstedt::expr::ParseError>(())
+/// ```
+pub fn parse_inequality(text: &str) -> Result<Vec<Expr>, ParseError> {
+    let is_sign = |letter: char| matches!(letter, '<' | '>' | '≤' | '≥');
+    if !text.contains(is_sign) {
+        let (message, help) = ("no `<` or `>`", "an inequality such as `x < 1` is expected");
+        return Err(ParseError::new(text, 0..text.len(), message, help));
+    }
+    let (mut sides, mut signs, mut rest) = (Vec::new(), Vec::new(), text);
+    loop {
+        let first = text.len() - rest.len();
+        let end = rest.find(is_sign).unwrap_or(rest.len());
+        let side = parse_expression(&rest[..end]).map_err(|error| error.within(text, first))?;
+        sides.push(side);
+        let Some(sign) = rest[end..].chars().next() else { break };
+        signs.push(matches!(sign, '<' | '≤'));
+        rest = &rest[end + sign.len_utf8()..];
+        rest = rest.strip_prefix('=').unwrap_or(rest);
+    }
+    let positive = sides.windows(2).zip(&signs).map(|(pair, less)| match less {
+        true => &pair[1] - &pair[0],
+        false => &pair[0] - &pair[1],
+    });
+    Ok(positive.collect())
+}
+
 /// Reads the two sides of an equation.
 fn sides(text: &str) -> Result<(Expr, Expr), ParseError> {
     let mut parser = Parser::new(text, true)?;

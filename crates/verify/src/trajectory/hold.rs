@@ -18,12 +18,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{PoincareSection, TrajectoryError, TrajectoryRequest, TrajectorySegment, surplus};
+use super::{
+    PoincareSection, Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment, surplus,
+};
 use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
-use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions};
+use crate::system::{Event, Integrator, Path, PathEnd, System, SystemOptions};
 
 /// Largest speed that counts as zero up to rounding, relative to speeds and positions of order one.
 const AT_REST: f64 = 1e-9;
@@ -44,18 +46,6 @@ const MOST_HOLDS: usize = 10_000;
 
 /// Number of consecutive segments of length zero after which the motion is stuck.
 const IDLE: usize = 8;
-
-/// First-order equations in numbers.
-pub(super) struct StateEquations<'a> {
-    /// Coordinates, velocities and works.
-    pub(super) states: &'a [Symbol],
-    /// The rate of each.
-    pub(super) right: &'a [Expr],
-    /// The value of every other symbol but the time.
-    pub(super) values: &'a BTreeMap<Symbol, f64>,
-    /// Times that no step crosses.
-    pub(super) critical: &'a [f64],
-}
 
 /// A surface u = 0 on which the rates jump.
 #[derive(Clone, Debug)]
@@ -109,50 +99,54 @@ impl Layout {
 
 impl TrajectoryRequest {
     /// The motion segment by segment, each by the equations as typed or with surfaces held by
-    /// friction, and the reason why it ends. The first segment, by the equations as typed, is
-    /// given.
+    /// friction, until a guard falls through zero or the motion ends; and the reason why. The first
+    /// segment, by the equations as typed, is given if it has been followed.
     pub(super) fn pieces(
         &self,
-        first: Path,
-        solver: &Solver,
-        equations: &StateEquations,
-        options: &SystemOptions,
-        recorded: usize,
+        equations: &Ready,
+        first: Option<Path>,
+        from: f64,
+        state: Vec<f64>,
+        integrator: Integrator,
     ) -> Result<(Vec<TrajectorySegment>, PathEnd), TrajectoryError> {
+        let options = self.options(integrator);
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
-        let (mut first, mut from, mut state) = (Some(first), 0.0, Vec::new());
+        let (mut first, mut from, mut state) = (first, from, state);
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
                 true => TrajectorySegment {
-                    recorded,
+                    recorded: equations.recorded,
                     layout: None,
                     from,
                     path: match first.take() {
                         Some(first) => first,
-                        None => solver.solve([from, self.duration], &state)?,
+                        None => equations.solver.solve([from, self.duration], &state)?,
                     },
                 },
-                false => match self.stretch(equations, &regimes, from, &mut state, options)? {
+                false => match self.stretch(equations, &regimes, from, &mut state, &options)? {
                     Some(piece) => piece,
                     None => break PathEnd::Sticks,
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            let (last, recorded) = (piece.states_at(end), piece.recorded);
+            let last = piece.states_at(end);
+            // The events before those of the surfaces.
+            let others = piece.recorded + equations.guards.len();
             holds += usize::from(piece.is_held());
             pieces.push(piece);
             let Some(last) = last else { break reason };
+            if matches!(reason, PathEnd::Event(event) if event < others) {
+                break reason;
+            }
             state = last;
             // Other surfaces can take over only if there are more frictions than needed.
             let hit = match reason {
-                PathEnd::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
+                PathEnd::Event(event) => hit(&regimes, event - others),
                 _ => None,
             };
             let released = match reason {
-                PathEnd::Event(event) => {
-                    hit.is_none() && released(&mut regimes, event.saturating_sub(recorded))
-                }
+                PathEnd::Event(event) => hit.is_none() && released(&mut regimes, event - others),
                 PathEnd::Sticks => false,
                 reason => break reason,
             };
@@ -179,7 +173,7 @@ impl TrajectoryRequest {
     /// cannot be formed.
     fn stretch(
         &self,
-        equations: &StateEquations,
+        equations: &Ready,
         regimes: &Regimes,
         from: f64,
         state: &mut [f64],
@@ -218,11 +212,14 @@ impl TrajectoryRequest {
             .transpose()?;
         let mut events = section.map_or(vec![], |section| section.events(&rates));
         let recorded = events.len();
+        for guard in &equations.guards {
+            events.push(Event::stop(guard.substitute_all(&sliding.fixed)?).falling());
+        }
         events.extend(sliding.events);
-        let Ok(system) = System::new(&names, Symbol::new("t"), &right, equations.values) else {
+        let Ok(system) = System::new(&names, Symbol::new("t"), &right, &equations.values) else {
             return Ok(None);
         };
-        let system = system.with_critical_times(equations.critical);
+        let system = system.with_critical_times(&equations.critical);
         let path = system.solve([from, self.duration], &start, &events, options);
         Ok(path.ok().map(|path| TrajectorySegment {
             recorded,
@@ -237,7 +234,7 @@ impl PoincareSection {
     /// This section with these expressions in place of some states.
     fn with_fixed_states(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         Ok(match self {
-            Self::Every(period) => Self::Every(period.clone()),
+            Self::Every(_) | Self::Impacts => self.clone(),
             Self::Rising(expression) => Self::Rising(expression.substitute_all(fixed)?),
         })
     }
@@ -268,7 +265,7 @@ fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
 }
 
 /// The values of all symbols.
-fn numbers_at(equations: &StateEquations, time: f64, state: &[f64]) -> BTreeMap<Symbol, f64> {
+fn numbers_at(equations: &Ready, time: f64, state: &[f64]) -> BTreeMap<Symbol, f64> {
     let mut numbers = equations.values.clone();
     numbers.insert(Symbol::new("t"), time);
     numbers.extend(equations.states.iter().copied().zip(state.iter().copied()));
@@ -276,8 +273,8 @@ fn numbers_at(equations: &StateEquations, time: f64, state: &[f64]) -> BTreeMap<
 }
 
 /// The velocities among the states: those whose name is that of another state with a prime.
-fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol> + use<'a> {
-    let states = equations.states;
+fn velocities(equations: &Ready) -> impl Iterator<Item = Symbol> {
+    let states = &equations.states;
     let is_velocity = move |name: &&Symbol| states.iter().any(|state| state.derivative() == **name);
     states.iter().filter(is_velocity).copied()
 }
@@ -286,7 +283,7 @@ fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol
 /// coefficient; `None` if the expression is not linear in the velocities, or contains none.
 fn leading_velocity(
     expression: &Expr,
-    equations: &StateEquations,
+    equations: &Ready,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<(Symbol, Expr)> {
     let mut leading: Option<(f64, Symbol, Expr)> = None;
@@ -306,7 +303,7 @@ fn leading_velocity(
 /// Solves u = 0 for its leading velocity.
 fn solved(
     u: &Expr,
-    equations: &StateEquations,
+    equations: &Ready,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Option<(Symbol, Expr)>, ExprError> {
     let Some((velocity, coefficient)) = leading_velocity(u, equations, numbers) else {
@@ -317,11 +314,7 @@ fn solved(
 }
 
 /// The surfaces on which a state lies, up to rounding, and across which the rates jump.
-fn surfaces(
-    equations: &StateEquations,
-    time: f64,
-    state: &[f64],
-) -> Result<Vec<Surface>, ExprError> {
+fn surfaces(equations: &Ready, time: f64, state: &[f64]) -> Result<Vec<Surface>, ExprError> {
     let numbers = numbers_at(equations, time, state);
     let size = 1.0 + state.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let corner = |part: &Expr| match part.node() {
@@ -381,7 +374,7 @@ fn surfaces(
 /// required friction is within its bound. On the surface that was just hit the friction is at its
 /// bound, unless others take over. Returns `None` if the modes cannot be determined.
 fn regimes_at(
-    equations: &StateEquations,
+    equations: &Ready,
     found: Vec<Surface>,
     time: f64,
     state: &[f64],
@@ -456,7 +449,7 @@ fn regimes_at(
 /// Gives equal shares to the frictions that the equations leave undetermined, because more of them
 /// are at rest than there are independent velocities. `false` if that is not possible.
 fn tie_frictions(
-    equations: &StateEquations,
+    equations: &Ready,
     regimes: &mut Regimes,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<bool, ExprError> {
@@ -531,7 +524,7 @@ struct SurfaceRates {
 
 impl SurfaceRates {
     fn new(
-        equations: &StateEquations,
+        equations: &Ready,
         regimes: &Regimes,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Option<Self>, ExprError> {
@@ -592,7 +585,7 @@ impl SurfaceRates {
     }
 
     /// The rate of an expression.
-    fn rate_of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
+    fn rate_of(&self, equations: &Ready, u: &Expr) -> Result<Expr, ExprError> {
         let mut parts = vec![u.differentiate(Symbol::new("t"))?];
         for (state, rate) in equations.states.iter().zip(&self.right) {
             parts.push(u.differentiate(*state)? * rate);
@@ -618,7 +611,7 @@ struct Sliding {
 }
 
 fn sliding(
-    equations: &StateEquations,
+    equations: &Ready,
     regimes: &Regimes,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Option<Sliding>, ExprError> {

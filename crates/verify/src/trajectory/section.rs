@@ -8,6 +8,7 @@
 //! t = T, 2 T, 3 T, ...                       of a motion that is driven with the period T
 //! s(q, q', t) = 0,  ds/dt > 0                of any motion
 //! s = 0 at the largest or the least s        touched, not crossed
+//! just before each impact                    of any motion with walls
 //! ```
 //!
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever
@@ -30,6 +31,8 @@ pub enum PoincareSection {
     Every(Expr),
     /// An expression that grows through zero: `x'`, `x - 0.1`.
     Rising(Expr),
+    /// Just before each impact on a wall.
+    Impacts,
 }
 
 /// A state on a section.
@@ -42,10 +45,11 @@ pub struct Crossing {
 }
 
 impl PoincareSection {
-    /// The letters in it.
-    pub fn expression(&self) -> &Expr {
+    /// Its period, or the expression that grows through zero; `None` at impacts.
+    pub fn expression(&self) -> Option<&Expr> {
         match self {
-            Self::Every(expression) | Self::Rising(expression) => expression,
+            Self::Every(expression) | Self::Rising(expression) => Some(expression),
+            Self::Impacts => None,
         }
     }
 
@@ -53,7 +57,7 @@ impl PoincareSection {
     /// at which it may touch zero. A rate that cannot be written is left out.
     pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
-            Self::Every(_) => vec![],
+            Self::Every(_) | Self::Impacts => vec![],
             Self::Rising(expression) => {
                 let rate = rate_along(expression, Symbol::new("t"), &rates.states, &rates.right);
                 let rate = rate.filter(|rate| !rate.is_zero());
@@ -119,6 +123,12 @@ impl Trajectory {
         let mut touched: Vec<[f64; 3]> = Vec::new();
         let times: Vec<f64> = match &course.section {
             None => vec![],
+            // A stretch ends with the state before its impact.
+            Some(PoincareSection::Impacts) => {
+                let mut times: Vec<f64> = self.walls.impacts.iter().map(|hit| hit.time).collect();
+                times.dedup();
+                times
+            }
             Some(PoincareSection::Rising(expression)) => {
                 let met = self.pieces.iter().flat_map(|piece| {
                     let own = |occurrence: &&EventCrossing| occurrence.event < piece.recorded;
@@ -193,6 +203,8 @@ impl Trajectory {
             let mut times = vec![from, end];
             for piece in self.pieces.iter().filter(|piece| piece.end() >= from) {
                 times.extend(piece.turning_times(count + index, from.max(piece.from)));
+                // At an impact a coordinate may turn back with a velocity on both sides.
+                times.extend((!self.course.walls.is_empty()).then(|| piece.end()));
             }
             let values = times.into_iter().filter_map(|time| self.state_at(time, index));
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], value| {

@@ -26,6 +26,8 @@ pub struct SweptMotion {
     pub crossings: Vec<Crossing>,
     /// The times from then on at which it touches the section without crossing it.
     pub touches: Vec<f64>,
+    /// The number of impacts on walls from then on.
+    pub impacts: usize,
     /// The reason why it ended.
     pub reason: PathEnd,
 }
@@ -61,7 +63,7 @@ pub fn sweep(
         // on which a motion may turn back, which looks at all of its turns.
         let keep_from = match course.section {
             Some(PoincareSection::Rising(_)) => f64::NEG_INFINITY,
-            Some(PoincareSection::Every(_)) | None => course.after,
+            Some(PoincareSection::Every(_) | PoincareSection::Impacts) | None => course.after,
         };
         let mut course = TrajectoryRequest { energy: None, keep_from, ..course.clone() };
         for (name, value) in names.iter().zip(values) {
@@ -102,6 +104,7 @@ pub fn sweep(
                 extremes: motion.extremes(),
                 crossings: motion.crossings().to_vec(),
                 touches: motion.touches().to_vec(),
+                impacts: motion.walls.impacts.iter().filter(|hit| hit.time >= course.after).count(),
                 reason: motion.reason(),
             });
         }

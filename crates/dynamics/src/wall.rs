@@ -1,0 +1,153 @@
+//! Rigid walls: one-sided constraints with a coefficient of restitution, in any equations of motion.
+//!
+//! ```text
+//! g(q, t) >= 0                                     the gap
+//! g' = n.q' + dg/dt,  n = dg/dq                    its rate
+//! q' -> q' - (1 + e) M^-1 n g'/(n.M^-1 n)          an impact: g' -> -e g', momentum kept along the wall
+//! q'' -> q'' + M^-1 n lambda,  lambda = -g''/(n.M^-1 n) >= 0      rest on the wall, until lambda = 0
+//! ```
+//!
+//! (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, chapters 5
+//! and 8; B. Brogliato, *Nonsmooth Mechanics*, 3rd ed., Springer 2016, chapter 4.)
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use crate::expr::{EvaluationError, Expr, ParseError, parse_inequality};
+use crate::symbol::Symbol;
+
+/// A rigid wall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wall {
+    /// The gap g in coordinates, time and parameters: positive in flight, zero at the wall.
+    pub gap: Expr,
+    /// The coefficient of restitution e in parameters: the speed after an impact over that before.
+    pub restitution: Expr,
+}
+
+/// The reason why a text is not a wall, or a wall has no impacts.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum WallError {
+    /// A text has a syntax error.
+    #[error(transparent)]
+    Parse(#[from] ParseError),
+    /// The coefficient of restitution has no value.
+    #[error("the coefficient of restitution `{0}`: {1}")]
+    Undefined(Expr, EvaluationError),
+    /// The coefficient of restitution is out of range.
+    #[error(
+        "the coefficient of restitution is {0}, but an impact takes energy or keeps it: it lies between 0 (all of it goes) and 1"
+    )]
+    Restitution(f64),
+    /// No coordinate occurs in a gap.
+    #[error("the wall `{gap} = 0` contains no coordinate: it needs one of {coordinates}")]
+    NoCoordinate {
+        /// The gap.
+        gap: Expr,
+        /// The names of the coordinates.
+        coordinates: String,
+    },
+    /// A velocity occurs in a gap.
+    #[error("the wall `{0} = 0` contains the velocity `{1}`: a wall has a position")]
+    Velocity(Expr, Symbol),
+}
+
+impl Wall {
+    /// Reads the side on which motions are allowed, `x < 1`, and the coefficient of restitution of
+    /// its wall; `-1 < x < 1` has two walls.
+    ///
+    /// # Errors
+    /// [`WallError::Parse`].
+    ///
+    /// ```
+    /// # use lindstedt_dynamics as lindstedt;
+    /// use lindstedt::wall::Wall;
+    ///
+    /// let table = &Wall::parse("x > Z*sin(w*t)", &"e".parse()?)?[0];
+    /// assert_eq!(table.gap.to_string(), "x - Z*sin(w*t)");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn parse(bound: &str, restitution: &Expr) -> Result<Vec<Self>, WallError> {
+        let gaps = parse_inequality(bound)?.into_iter();
+        Ok(gaps.map(|gap| Self { gap, restitution: restitution.clone() }).collect())
+    }
+
+    /// The value of the coefficient of restitution.
+    ///
+    /// # Errors
+    /// [`WallError`] if it has no value or is not between 0 and 1.
+    pub fn restitution_at(&self, values: &BTreeMap<Symbol, f64>) -> Result<f64, WallError> {
+        let value = self.restitution.evaluate(values);
+        let value = value.map_err(|error| WallError::Undefined(self.restitution.clone(), error))?;
+        match (0.0..=1.0).contains(&value) {
+            true => Ok(value),
+            false => Err(WallError::Restitution(value)),
+        }
+    }
+
+    /// Checks that the gap contains one of these coordinates and no velocity.
+    ///
+    /// # Errors
+    /// [`WallError`].
+    pub fn check(&self, coordinates: &[Symbol]) -> Result<(), WallError> {
+        let names = self.gap.symbols();
+        if let Some(velocity) = names.iter().find(|name| name.primes() > 0) {
+            return Err(WallError::Velocity(self.gap.clone(), *velocity));
+        }
+        if !names.iter().any(|name| coordinates.contains(name)) {
+            let coordinates: Vec<String> =
+                coordinates.iter().map(|name| format!("`{name}`")).collect();
+            return Err(WallError::NoCoordinate {
+                gap: self.gap.clone(),
+                coordinates: coordinates.join(", "),
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_is_read_with_the_side_on_which_motions_are_allowed() {
+        for (bound, gaps) in [
+            ("x < d", "d - x"),
+            ("x >= 0", "x"),
+            ("-1 < x < 1", "1 + x | 1 - x"),
+            ("x - y > L", "x - y - L"),
+            ("0 ≤ x", "x"),
+        ] {
+            let walls = Wall::parse(bound, &Expr::one()).expect(bound);
+            for (wall, gap) in walls.iter().zip(gaps.split(" | ")) {
+                let gap: Expr = gap.parse().unwrap();
+                assert!((&wall.gap - &gap).expand().unwrap().is_zero(), "{bound}: {}", wall.gap);
+            }
+            assert_eq!(walls.len(), gaps.split(" | ").count());
+        }
+    }
+
+    #[test]
+    fn bad_walls_say_why() {
+        let x = ["x".into()];
+        for (bound, restitution, words) in [
+            ("x = 1", "1", "no `<` or `>`"),
+            ("x < 1 y", "1", "1 y"),
+            ("d < 1", "1", "contains no coordinate"),
+            ("x' < 1", "1", "contains the velocity `x'`"),
+            ("x < 1", "1.5", "between 0"),
+            ("x < 1", "-1/2", "between 0"),
+            ("x < 1", "e", "`e`"),
+        ] {
+            let wall = Wall::parse(bound, &restitution.parse().unwrap());
+            let checked = wall.and_then(|walls| {
+                walls[0].check(&x).and_then(|()| walls[0].restitution_at(&BTreeMap::new()))
+            });
+            let error = checked.expect_err(bound).to_string();
+            assert!(error.contains(words), "{bound}: {error}");
+        }
+    }
+}

@@ -1,0 +1,606 @@
+//! Impacts on rigid walls, their accumulation, and rest on a wall.
+//!
+//! ```text
+//! flight:    q'' = f(q, q', t) until a gap g falls through zero
+//! impact:    q' -> q' - (1 + e) d g'/(n.d),  n = dg/dq,  d = M^-1 n         g' -> -e g'
+//! chatter:   impacts of speed v, e v, e^2 v, ... are over after v (1 + e + e^2 + ...) 2/|g''| = 2 v/(|g''| (1 - e))
+//! rest:      q'' = f + sum_i d_i lambda_i,  g_i'' = 0 for every wall i that bears, until a lambda_i falls through zero
+//! ```
+//!
+//! (B. Brogliato, *Nonsmooth Mechanics*, 3rd ed., Springer 2016, chapters 4 and 7, for the law of
+//! impact and the accumulation; F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral
+//! Contacts*, Wiley 1996, chapter 5, for the forces lambda.) Impacts at one time are taken one after
+//! another, in the order of the walls, until no gap closes; where the order matters, this is recorded.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment};
+use crate::expr::{CompiledList, Expr, ExprError};
+use crate::mechanics::{MechanicsError, Rates, linear};
+use crate::symbol::Symbol;
+use crate::system::{Integrator, Path, PathEnd, rate_along};
+use crate::wall::Wall;
+
+/// Largest gap that counts as zero up to rounding, relative to the positions in it.
+const ON_WALL: f64 = 1e-11;
+
+/// Largest speed towards a wall that counts as zero up to rounding, relative to the largest speed.
+const AT_REST: f64 = 1e-14;
+
+/// Largest height of a bounce, relative to the largest gap before, of which the accumulation is
+/// summed in closed form.
+const UNSEEN: f64 = 1e-13;
+
+/// Largest change of the force on a wall within an accumulation that is summed, relative to the
+/// force.
+const STEADY: f64 = 1e-8;
+
+/// Largest number of impacts at one time.
+const MOST_AT_ONE_TIME: usize = 10_000;
+
+/// Name of the work of walls in the account of energy.
+pub(super) const WORK_OF_WALLS: &str = "walls";
+
+/// An impact on a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// The time.
+    pub time: f64,
+    /// The index of the wall.
+    pub wall: usize,
+    /// The speed at which the gap closes before the impact.
+    pub speed: f64,
+    /// The speed at which it opens after the impact.
+    pub departure: f64,
+    /// The energy that the impact takes from the motion; `None` if there is no account of energy.
+    pub loss: Option<f64>,
+}
+
+/// A stretch of time on which a motion rests on a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallRest {
+    /// The index of the wall.
+    pub wall: usize,
+    /// The time at which it begins, after the sum of an accumulation of impacts.
+    pub from: f64,
+    /// The time at which the force of the wall has fallen to zero, or the motion ends.
+    pub until: f64,
+    /// Whether impacts accumulated before it.
+    pub after_chatter: bool,
+}
+
+/// The impacts and rests of a motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WallRecord {
+    /// The impacts, in order; of an accumulation those before its sum.
+    pub impacts: Vec<Impact>,
+    /// The rests on walls, in the order of their beginning.
+    pub rests: Vec<WallRest>,
+    /// The first time at which several walls were hit at once and the order of the impacts matters;
+    /// `None` if there is none.
+    pub order_matters: Option<f64>,
+}
+
+/// A wall with the expressions that impacts and rest need.
+#[derive(Clone, Debug)]
+struct WallEquations {
+    /// The gap g.
+    gap: Expr,
+    /// Its rate g'.
+    rate: Expr,
+    /// dg/dq for each coordinate.
+    normal: Vec<Expr>,
+    /// M^-1 n for each coordinate.
+    direction: Vec<Expr>,
+    /// g'' without the force of any wall.
+    free: Expr,
+}
+
+impl WallEquations {
+    fn new(course: &TrajectoryRequest, wall: &Wall) -> Result<Self, TrajectoryError> {
+        let coordinates = &course.coordinates;
+        wall.check(coordinates)?;
+        let second_order = course.rates.states.len() == 2 * coordinates.len();
+        if !second_order {
+            return Err(TrajectoryError::WallWithoutVelocity(wall.gap.clone()));
+        }
+        let along = |expression: &Expr| {
+            rate_along(expression, Symbol::new("t"), &course.rates.states, &course.rates.right)
+                .ok_or_else(|| TrajectoryError::WallWithCorner(wall.gap.clone()))
+        };
+        let normal: Vec<Expr> = coordinates
+            .iter()
+            .map(|name| wall.gap.differentiate(*name))
+            .collect::<Result<_, _>>()?;
+        let rate = along(&wall.gap)?;
+        Ok(Self {
+            gap: wall.gap.clone(),
+            free: along(&rate)?,
+            direction: direction(course, &normal, wall)?,
+            rate,
+            normal,
+        })
+    }
+
+    /// n_i . d_j, the acceleration of the gap of this wall by a unit force of another.
+    fn compliance(&self, other: &Self) -> Expr {
+        self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
+    }
+}
+
+/// M^-1 n.
+fn direction(
+    course: &TrajectoryRequest,
+    normal: &[Expr],
+    wall: &Wall,
+) -> Result<Vec<Expr>, TrajectoryError> {
+    let Some(mass) = &course.mass else {
+        return match normal.len() {
+            // The mass of one coordinate cancels in the impact.
+            1 => Ok(normal.to_vec()),
+            _ => Err(TrajectoryError::WallWithoutMass(wall.gap.clone())),
+        };
+    };
+    for (i, row) in mass.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate().take(i) {
+            if !(entry - &mass[j][i]).expand()?.is_zero() {
+                return Err(TrajectoryError::WallWithoutMass(wall.gap.clone()));
+            }
+        }
+    }
+    let singular = || MechanicsError::Singular(mass.iter().flatten().cloned().sum());
+    Ok(linear::solution(mass, normal, singular)?)
+}
+
+/// The walls of a course, ready for impacts.
+#[derive(Clone, Debug)]
+pub(super) struct CompiledWalls {
+    walls: Vec<WallEquations>,
+    restitution: Vec<f64>,
+    /// For each wall: g, g', g'' and g''' in flight, n, and M^-1 n.
+    functions: Vec<CompiledList>,
+    /// The energy; `None` if there is none.
+    energy: Option<CompiledList>,
+    /// The index among all states of the work of the walls; `None` if it is not accounted for.
+    work: Option<usize>,
+    /// The values of the parameters, in the order of the arguments.
+    numbers: Vec<f64>,
+    /// The numbers of coordinates and of states.
+    counts: [usize; 2],
+}
+
+/// The values of the functions of a wall at a state.
+struct AtWall {
+    gap: f64,
+    rate: f64,
+    free: f64,
+    jerk: f64,
+    normal: Vec<f64>,
+    direction: Vec<f64>,
+}
+
+impl CompiledWalls {
+    /// The walls of a course whose account of energy has these works behind its states.
+    pub(super) fn new(course: &TrajectoryRequest) -> Result<Option<Self>, TrajectoryError> {
+        if course.walls.is_empty() {
+            return Ok(None);
+        }
+        let walls = equations(course)?;
+        let states = &course.rates.states;
+        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t")).chain(states.clone()).collect();
+        let constant = course.values.iter().filter(|(name, _)| !moving.contains(name));
+        let (names, numbers): (Vec<Symbol>, Vec<f64>) =
+            constant.map(|(name, value)| (*name, *value)).unzip();
+        let arguments = [moving, names].concat();
+        let compiled = |wall: &WallEquations| {
+            let jerk = rate_along(&wall.free, Symbol::new("t"), states, &course.rates.right);
+            let mut all = vec![
+                wall.gap.clone(),
+                wall.rate.clone(),
+                wall.free.clone(),
+                jerk.unwrap_or_else(Expr::zero),
+            ];
+            all.extend(wall.normal.iter().chain(&wall.direction).cloned());
+            CompiledList::new(&all, &arguments)
+                .map_err(|error| TrajectoryError::WallUndefined(wall.gap.clone(), error))
+        };
+        let energy = course.energy.as_ref().filter(|_| course.missing_for_energy().is_empty());
+        let work = energy
+            .and_then(|energy| energy.powers.iter().position(|(name, _)| name == WORK_OF_WALLS));
+        Ok(Some(Self {
+            functions: walls.iter().map(compiled).collect::<Result<_, _>>()?,
+            walls,
+            restitution: course
+                .walls
+                .iter()
+                .map(|wall| wall.restitution_at(&course.values))
+                .collect::<Result<_, _>>()?,
+            energy: energy.and_then(|energy| {
+                CompiledList::new(std::slice::from_ref(&energy.value), &arguments).ok()
+            }),
+            work: work.map(|index| states.len() + index),
+            numbers,
+            counts: [course.coordinates.len(), states.len()],
+        }))
+    }
+
+    /// The values of a list of functions at a state.
+    fn values(&self, list: &CompiledList, size: usize, time: f64, state: &[f64]) -> Vec<f64> {
+        let [_, states] = self.counts;
+        let arguments = [&[time], &state[..states], &self.numbers].concat();
+        let mut values = vec![0.0; size];
+        list.call(&arguments, &mut vec![], &mut values);
+        values
+    }
+
+    fn at(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
+        let [coordinates, _] = self.counts;
+        let values = self.values(&self.functions[wall], 4 + 2 * coordinates, time, state);
+        AtWall {
+            gap: values[0],
+            rate: values[1],
+            free: values[2],
+            jerk: values[3],
+            normal: values[4..4 + coordinates].to_vec(),
+            direction: values[4 + coordinates..].to_vec(),
+        }
+    }
+
+    fn energy(&self, time: f64, state: &[f64]) -> Option<f64> {
+        let value = self.values(self.energy.as_ref()?, 1, time, state)[0];
+        value.is_finite().then_some(value)
+    }
+
+    /// Whether a motion is on a wall, up to rounding.
+    fn is_on(&self, at: &AtWall, state: &[f64]) -> bool {
+        let [coordinates, _] = self.counts;
+        let parts = at.normal.iter().zip(&state[..coordinates]).map(|(n, q)| (n * q).abs());
+        // Two parts that cancel leave their rounding; at a wall through the origin none does.
+        at.gap.abs() <= ON_WALL * parts.fold(0.0, f64::max)
+    }
+
+    /// The start of a motion on or in front of all walls, to rounding.
+    ///
+    /// # Errors
+    /// The first wall behind which it begins.
+    pub(super) fn check_start(&self, state: &[f64]) -> Result<(), TrajectoryError> {
+        for (index, wall) in self.walls.iter().enumerate() {
+            let at = self.at(index, 0.0, state);
+            if at.gap < 0.0 && !self.is_on(&at, state) {
+                return Err(TrajectoryError::BehindWall { gap: wall.gap.clone(), value: at.gap });
+            }
+            if at.gap.is_nan() || at.rate.is_nan() {
+                return Err(TrajectoryError::WallWithCorner(wall.gap.clone()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Carries out the impacts at a state, of which that on the wall `hit` is known, and returns the
+    /// walls on which the motion rests from there on. `resting` are those on which it rested before,
+    /// `largest` is the largest gap of each wall in the flight before.
+    pub(super) fn settle(
+        &self,
+        time: f64,
+        state: &mut [f64],
+        hit: Option<usize>,
+        resting: &[usize],
+        largest: &[f64],
+        record: &mut WallRecord,
+    ) -> Vec<usize> {
+        let [coordinates, states] = self.counts;
+        let mut touched: Vec<usize> = resting.to_vec();
+        let mut struck: Vec<usize> = Vec::new();
+        let mut chatter: BTreeMap<usize, f64> = BTreeMap::new();
+        for _ in 0..MOST_AT_ONE_TIME {
+            let speed =
+                state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            let closing = (0..self.walls.len()).find_map(|wall| {
+                let at = self.at(wall, time, state);
+                let on = hit == Some(wall) || touched.contains(&wall) || self.is_on(&at, state);
+                if on && !touched.contains(&wall) {
+                    touched.push(wall);
+                }
+                let size = at.normal.iter().fold(0.0_f64, |most, n| most.max(n.abs())) * speed;
+                (on && at.rate < -AT_REST * size).then_some((wall, at))
+            });
+            let Some((wall, at)) = closing else { break };
+            let before = self.energy(time, state);
+            let compliance: f64 = at.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
+            let mut departure = -self.restitution[wall] * at.rate;
+            let over = self.accumulation(wall, &at, departure, largest, !resting.is_empty());
+            if let Some(sum) = over {
+                departure = 0.0;
+                chatter.insert(wall, sum);
+            }
+            let change = (departure - at.rate) / compliance;
+            for (velocity, direction) in state[coordinates..states].iter_mut().zip(&at.direction) {
+                *velocity += change * direction;
+            }
+            let loss = before.zip(self.energy(time, state)).map(|(before, after)| before - after);
+            if let (Some(work), Some(loss)) = (self.work, loss) {
+                state[work] -= loss;
+            }
+            record.impacts.push(Impact { time, wall, speed: -at.rate, departure, loss });
+            if struck.iter().any(|other| *other != wall && self.couples(*other, &at, time, state)) {
+                record.order_matters.get_or_insert(time);
+            }
+            struck.push(wall);
+        }
+        // The state is put onto the walls that were hit, which rounding has left a little off.
+        for wall in struck.iter().chain(resting) {
+            self.project(*wall, time, state);
+        }
+        let bearing = self.bearing(time, state, &touched, |wall| {
+            chatter.contains_key(&wall) || resting.contains(&wall)
+        });
+        for wall in &bearing {
+            if !resting.contains(wall) {
+                let sum = chatter.get(wall).copied();
+                record.rests.push(WallRest {
+                    wall: *wall,
+                    from: time + sum.unwrap_or(0.0),
+                    until: f64::INFINITY,
+                    after_chatter: sum.is_some_and(|sum| sum > 0.0),
+                });
+            }
+        }
+        for rest in record.rests.iter_mut().filter(|rest| rest.until.is_infinite()) {
+            if !bearing.contains(&rest.wall) {
+                rest.until = time.max(rest.from);
+            }
+        }
+        bearing
+    }
+
+    /// Whether an impact on a wall changes the rate of the gap of another.
+    fn couples(&self, other: usize, at: &AtWall, time: f64, state: &[f64]) -> bool {
+        let other = self.at(other, time, state);
+        let coupling: f64 = other.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
+        coupling != 0.0
+    }
+
+    /// The time after which the impacts that follow one of this departure are over, if they cannot be
+    /// seen; `None` if they are followed one by one.
+    fn accumulation(
+        &self,
+        wall: usize,
+        at: &AtWall,
+        departure: f64,
+        largest: &[f64],
+        others_bear: bool,
+    ) -> Option<f64> {
+        let restitution = self.restitution[wall];
+        if restitution == 0.0 {
+            return Some(0.0);
+        }
+        let pull = -at.free;
+        if restitution >= 1.0 || pull <= 0.0 || others_bear {
+            return None;
+        }
+        let sum = 2.0 * departure / (pull * (1.0 - restitution));
+        let height = departure * departure / (2.0 * pull);
+        let seen = largest.get(wall).copied().unwrap_or(0.0);
+        (height <= UNSEEN * seen && at.jerk.abs() * sum <= STEADY * pull).then_some(sum)
+    }
+
+    /// Moves a state along M^-1 n onto a wall.
+    fn project(&self, wall: usize, time: f64, state: &mut [f64]) {
+        let [coordinates, _] = self.counts;
+        let at = self.at(wall, time, state);
+        let compliance: f64 = at.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
+        let shift = at.gap / compliance;
+        if shift.is_finite() {
+            for (position, direction) in state[..coordinates].iter_mut().zip(&at.direction) {
+                *position -= shift * direction;
+            }
+        }
+    }
+
+    /// The walls among those touched on which a motion rests: their gaps do not open, and their
+    /// forces press. The walls of `at_rest` have no rate but rounding.
+    fn bearing(
+        &self,
+        time: f64,
+        state: &[f64],
+        touched: &[usize],
+        at_rest: impl Fn(usize) -> bool,
+    ) -> Vec<usize> {
+        let [coordinates, states] = self.counts;
+        let speed = state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let mut bearing: Vec<(usize, AtWall)> = touched
+            .iter()
+            .map(|wall| (*wall, self.at(*wall, time, state)))
+            .filter(|(wall, at)| {
+                let size = at.normal.iter().fold(0.0_f64, |most, n| most.max(n.abs())) * speed;
+                at_rest(*wall) && at.rate.abs() <= 1e-9 * size || at.rate.abs() <= AT_REST * size
+            })
+            .collect();
+        bearing.sort_by_key(|(wall, _)| *wall);
+        // The wall that would pull most is left, until all press.
+        while !bearing.is_empty() {
+            let size = bearing.len();
+            let compliance = DMatrix::from_fn(size, size, |i, j| {
+                let (n, d) = (&bearing[i].1.normal, &bearing[j].1.direction);
+                n.iter().zip(d).map(|(n, d)| n * d).sum::<f64>()
+            });
+            let right = DVector::from_fn(size, |i, _| -bearing[i].1.free);
+            let forces = compliance.lu().solve(&right);
+            let Some(forces) = forces.filter(|forces| forces.iter().all(|force| force.is_finite()))
+            else {
+                bearing.pop();
+                continue;
+            };
+            let least = (0..size).min_by(|one, other| forces[*one].total_cmp(&forces[*other]));
+            match least {
+                Some(least) if forces[least] <= 0.0 => bearing.remove(least),
+                _ => break,
+            };
+        }
+        bearing.into_iter().map(|(wall, _)| wall).collect()
+    }
+
+    /// Raises the largest gap of each wall to those on these stretches, which are looked at in some
+    /// places.
+    fn note_largest(&self, stretch: &[TrajectorySegment], largest: &mut [f64]) {
+        const PLACES: u32 = 4;
+        for piece in stretch {
+            for place in 1..PLACES {
+                let share = f64::from(place) / f64::from(PLACES);
+                let time = piece.from + share * (piece.end() - piece.from);
+                let Some(state) = piece.states_at(time) else { continue };
+                for (largest, gap) in largest.iter_mut().zip(self.gaps(time, &state)) {
+                    *largest = largest.max(gap);
+                }
+            }
+        }
+    }
+
+    /// The gap of each wall at a state.
+    pub(super) fn gaps(&self, time: f64, state: &[f64]) -> Vec<f64> {
+        (0..self.walls.len()).map(|wall| self.at(wall, time, state).gap).collect()
+    }
+}
+
+/// A motion across impacts.
+pub(super) struct MotionWithWalls {
+    pub(super) pieces: Vec<TrajectorySegment>,
+    pub(super) reason: PathEnd,
+    pub(super) record: WallRecord,
+}
+
+impl TrajectoryRequest {
+    /// The motion from impact to impact. The flight from the start is given if it has been followed.
+    pub(super) fn across_walls(
+        &self,
+        walls: Option<&CompiledWalls>,
+        ready: &Ready,
+        first: Option<Path>,
+        integrator: Integrator,
+    ) -> Result<MotionWithWalls, TrajectoryError> {
+        let mut record = WallRecord::default();
+        let (mut pieces, mut first) = (Vec::new(), first);
+        let (mut from, mut state) = (0.0, ready.start(self));
+        let mut largest = Vec::new();
+        let mut resting: Vec<usize> = Vec::new();
+        if let Some(walls) = walls {
+            walls.check_start(&state)?;
+            resting = walls.settle(0.0, &mut state, None, &[], &[], &mut record);
+            largest = walls.gaps(0.0, &state);
+        }
+        let mut prepared: BTreeMap<Vec<usize>, Ready> = BTreeMap::new();
+        let (mut idle, mut steps) = (0, 0);
+        let reason = loop {
+            let ready = match resting.is_empty() {
+                true => ready,
+                false => {
+                    if !prepared.contains_key(&resting) {
+                        prepared.insert(resting.clone(), self.ready_on(&resting, integrator)?);
+                    }
+                    &prepared[&resting]
+                }
+            };
+            let (stretch, reason) = self.pieces(ready, first.take(), from, state, integrator)?;
+            steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
+            let end = stretch.last().map_or(from, TrajectorySegment::end);
+            let last = stretch.last().and_then(|piece| piece.states_at(end));
+            let recorded = stretch.last().map_or(0, |piece| piece.recorded);
+            if let Some(walls) = walls {
+                walls.note_largest(&stretch, &mut largest);
+            }
+            pieces.extend(stretch);
+            let (Some(walls), Some(last), PathEnd::Event(event)) = (walls, last, reason) else {
+                break reason;
+            };
+            idle = if end > from { 0 } else { idle + 1 };
+            if idle > IDLE {
+                break PathEnd::Sticks;
+            }
+            if steps >= self.step_limit {
+                break PathEnd::StepLimit;
+            }
+            (from, state) = (end, last);
+            let guard = event - recorded;
+            let hit = (!resting.contains(&guard)).then_some(guard);
+            resting = walls.settle(from, &mut state, hit, &resting, &largest, &mut record);
+        };
+        let end = pieces.last().map_or(0.0, TrajectorySegment::end);
+        for rest in record.rests.iter_mut().filter(|rest| rest.until.is_infinite()) {
+            rest.until = end.max(rest.from);
+        }
+        Ok(MotionWithWalls { pieces, reason, record })
+    }
+}
+
+/// Number of consecutive stretches of length zero after which the motion is stuck.
+const IDLE: usize = 8;
+
+fn equations(course: &TrajectoryRequest) -> Result<Vec<WallEquations>, TrajectoryError> {
+    course.walls.iter().map(|wall| WallEquations::new(course, wall)).collect()
+}
+
+/// The equations of a motion that rests on some walls.
+pub(super) struct RestingEquations {
+    /// The rates of all states.
+    pub(super) rates: Rates,
+    /// The power of the walls, which moving ones have.
+    pub(super) power: Expr,
+    /// The functions at whose fall through zero a flight or a rest ends, one for each wall: its gap,
+    /// or its force.
+    pub(super) guards: Vec<Expr>,
+}
+
+/// The equations of a motion that rests on these walls.
+///
+/// # Errors
+/// A wall that is none; forces that the equations do not determine.
+pub(super) fn resting_equations(
+    course: &TrajectoryRequest,
+    resting: &[usize],
+) -> Result<RestingEquations, TrajectoryError> {
+    let walls = equations(course)?;
+    let mut guards: Vec<Expr> = walls.iter().map(|wall| wall.gap.clone()).collect();
+    let mut rates = course.rates.clone();
+    let bearing: Vec<&WallEquations> = resting.iter().map(|index| &walls[*index]).collect();
+    let mut power = Vec::new();
+    if let [only] = bearing.as_slice()
+        && course.coordinates.len() == 1
+    {
+        // x'' = -(g'' - n f)/n, in which the force f of flight cancels.
+        let held = held_acceleration(course, only)?;
+        let force = Expr::divide(&(&held - &rates.right[1]), &only.direction[0])?;
+        guards[resting[0]] = force.clone();
+        power.push(&only.normal[0] * Expr::from(rates.states[1]) * force);
+        rates.right[1] = held;
+    } else if !bearing.is_empty() {
+        let matrix: Vec<Vec<Expr>> = bearing
+            .iter()
+            .map(|one| bearing.iter().map(|other| one.compliance(other)).collect())
+            .collect();
+        let right: Vec<Expr> = bearing.iter().map(|wall| -&wall.free).collect();
+        let singular = || MechanicsError::Singular(matrix.iter().flatten().cloned().sum());
+        let forces = linear::solution(&matrix, &right, singular)?;
+        let count = course.coordinates.len();
+        for ((index, wall), force) in resting.iter().zip(&bearing).zip(&forces) {
+            for (k, direction) in wall.direction.iter().enumerate() {
+                rates.right[count + k] = &rates.right[count + k] + &(direction * force);
+            }
+            let closing = wall.normal.iter().zip(&rates.states[count..]);
+            power.extend(closing.map(|(n, velocity)| n * Expr::from(*velocity) * force));
+            guards[*index] = force.clone();
+        }
+    }
+    Ok(RestingEquations { rates, power: Expr::sum(power), guards })
+}
+
+/// The acceleration of one coordinate that stays on a wall.
+fn held_acceleration(course: &TrajectoryRequest, wall: &WallEquations) -> Result<Expr, ExprError> {
+    let [position, velocity] = [course.rates.states[0], course.rates.states[1]];
+    let rest = Expr::sum([
+        wall.rate.differentiate(Symbol::new("t"))?,
+        wall.rate.differentiate(position)? * Expr::from(velocity),
+    ]);
+    Ok(-Expr::divide(&rest, &wall.normal[0])?)
+}

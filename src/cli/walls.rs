@@ -1,0 +1,73 @@
+//! `--wall` and `--restitution`: rigid walls of the command line or of a file.
+
+use clap::Args;
+
+use crate::expr::{Expr, expression_in_grammar};
+use crate::problem::Problem;
+use crate::wall::Wall;
+
+use super::Failure;
+use super::problem::expression;
+
+/// The options of a command that takes rigid walls.
+#[derive(Args, Clone, Default)]
+pub(super) struct WallArguments {
+    /// A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d",
+    /// "-1 < x < 1"); repeatable
+    #[arg(long, value_name = "x < d", allow_hyphen_values = true)]
+    pub(super) wall: Vec<String>,
+    /// The speed after an impact over that before, between 0 and 1: one for all walls, or one for
+    /// each
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    pub(super) restitution: Vec<String>,
+}
+
+impl WallArguments {
+    /// The walls: those of the command line, or else of the file; `--restitution` wins over the file.
+    ///
+    /// # Errors
+    /// A text that is no wall; a wall without a coefficient of restitution.
+    pub(super) fn walls(&self, problem: &Problem) -> Result<Vec<Wall>, Failure> {
+        let own: Vec<Expr> = self
+            .restitution
+            .iter()
+            .flat_map(|text| text.split(','))
+            .map(|text| {
+                expression(text)
+                    .map_err(|error| Failure::Usage(format!("--restitution {text}: {error}")))
+            })
+            .collect::<Result<_, _>>()?;
+        let bounds: Vec<(String, Option<Expr>)> = match self.wall.is_empty() {
+            true => problem.walls().map_err(|error| Failure::refused(&error, error.help()))?,
+            false => self.wall.iter().map(|bound| (bound.clone(), None)).collect(),
+        };
+        if bounds.is_empty() && !own.is_empty() {
+            return Err(Failure::Usage(
+                "--restitution belongs to a wall: give --wall \"x < 1\", or [[wall]] in the file"
+                    .to_owned(),
+            ));
+        }
+        if own.len() > 1 && own.len() != bounds.len() {
+            return Err(Failure::Usage(format!(
+                "{} values of --restitution for {} walls: give one for all, or one for each",
+                own.len(),
+                bounds.len()
+            )));
+        }
+        let mut walls = Vec::new();
+        for (index, (bound, of_file)) in bounds.into_iter().enumerate() {
+            let given = own.get(index).or_else(|| own.first()).cloned().or(of_file);
+            let Some(restitution) = given else {
+                return Err(Failure::Usage(format!(
+                    "the wall `{bound}` needs its coefficient of restitution: --restitution 0.8, say, or 1 for an impact without loss"
+                )));
+            };
+            let bound = expression_in_grammar(&bound);
+            let read = Wall::parse(&bound, &restitution);
+            walls.extend(
+                read.map_err(|error| Failure::because(format!("wall `{bound}`: {error}")))?,
+            );
+        }
+        Ok(walls)
+    }
+}

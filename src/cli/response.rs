@@ -22,6 +22,7 @@ use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
 use super::session;
+use super::walls::WallArguments;
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Steady states of driven, self-excited or free oscillators, of one coordinate or coupled: every
@@ -58,6 +59,8 @@ pub struct ResponseArguments {
     #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     #[command(flatten)]
+    walls: WallArguments,
+    #[command(flatten)]
     pub common: Common,
 }
 
@@ -87,6 +90,13 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         )));
     }
     let is_coupled = equations.oscillator().is_none();
+    let walls = arguments.walls.walls(&problem)?;
+    if !walls.is_empty() && (method != Method::HarmonicBalance || arguments.along.is_some()) {
+        return Err(Failure::Usage(
+            "--wall: motions with impacts are followed by shooting, in one parameter: leave out --method and --along"
+                .to_owned(),
+        ));
+    }
     if problem.resonance.is_some() && !(is_coupled && method == Method::MultipleScales) {
         return Err(Failure::because(
             "`resonance` belongs to --method multiple-scales of coupled equations: leave it out, or use `lindstedt derive`"
@@ -120,6 +130,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         of: of.map(|text| quantity(text, &equations)).transpose()?.flatten(),
         along,
         equations,
+        walls,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
         range,
@@ -406,6 +417,10 @@ fn refused(error: ResponseError) -> Failure {
         }.to_owned()),
         ResponseError::CoupledJump(_) => Some(
             "make one of them smooth: (2/pi)*atan(100*x') for sgn(x')".to_owned(),
+        ),
+        ResponseError::RestsOnWall => Some(
+            "`lindstedt simulate` with --wall follows it to rest and beyond; a larger coefficient of restitution or a stronger drive keeps it moving"
+                .to_owned(),
         ),
         ResponseError::NothingMoves { .. } => Some("a stronger drive overcomes it".to_owned()),
         ResponseError::Chatters(argument) => Some(format!(

@@ -13,6 +13,7 @@ use crate::trajectory::{
     in_words, sweep,
 };
 use crate::verify::Verdict;
+use crate::wall::WallError;
 
 use super::answer::{Answer, no_such};
 use super::derive::exact_values;
@@ -133,7 +134,7 @@ fn refused(error: TrajectoryError) -> Failure {
         TrajectoryError::Missing(names) => {
             Some(format!("{}, or [values] in the file", values_of(names)))
         }
-        TrajectoryError::WallWithoutMass(_) => Some(
+        TrajectoryError::Wall(WallError::WithoutMass(_)) => Some(
             "write each equation with its mass before the acceleration, m1*x'' + ... = 0"
                 .to_owned(),
         ),

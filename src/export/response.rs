@@ -355,13 +355,14 @@ fn two_parameters(response: &ResponseDiagram) -> Vec<(&'static str, Points, Curv
 }
 
 /// The marks of bifurcations.
-const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
+const MARKS: [(BifurcationKind, &str, CurveStyle); 7] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
     (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),
     (BifurcationKind::PeriodDoubling, "period doubling", CurveStyle::THIRD_MARKED_POINTS),
     (BifurcationKind::NeimarkSacker, "Neimark-Sacker", CurveStyle::FOURTH_MARKED_POINTS),
     (BifurcationKind::Hopf, "Hopf", CurveStyle::SECOND_MARKED_POINTS),
     (BifurcationKind::Centre, "centre", CurveStyle::THIRD_MARKED_POINTS),
+    (BifurcationKind::Grazing, "grazing", CurveStyle::FOURTH_MARKED_POINTS),
 ];
 
 /// The curves of a panel with their labels.

@@ -85,7 +85,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "duration") => &[Simulate, Materials, Trajectory, Optimize],
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
-        ("", "[[wall]]") => &[Trajectory],
+        ("", "[[wall]]") => &[Trajectory, Response],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }

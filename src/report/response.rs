@@ -5,6 +5,7 @@ mod coupled;
 
 use std::borrow::Cow;
 
+use super::trajectory::wall_in_words;
 use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
@@ -61,6 +62,9 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
         value,
         source: None,
     }));
+    let several = asked.walls.len() > 1;
+    let walls = asked.walls.iter().enumerate();
+    blocks.extend(walls.map(|(index, wall)| Block::Note(wall_in_words(index, wall, several))));
     let (name, [low, high]) = (asked.parameter, asked.range);
     if coupled::is_coupled(response) {
         blocks.extend(coupled::question(response));
@@ -241,6 +245,7 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
         )));
     }
     blocks.extend(sticking(response, branch));
+    blocks.extend(impacts(response, branch));
     let ends = branch.ends.iter().zip([branch.points.first(), branch.points.last()]);
     let ends = ends.filter_map(|(end, point)| end_in_words(response, *end, point?));
     blocks.extend(ends.map(Block::Sentence));
@@ -285,6 +290,35 @@ fn end_in_words(
             return None;
         }
     })
+}
+
+/// The numbers of impacts in a period along a branch.
+fn impacts(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
+    /// Largest number of listed parts.
+    const MOST: usize = 6;
+    if response.question.walls.is_empty() {
+        return None;
+    }
+    let name = response.question.parameter;
+    let stretches: Vec<String> = branch
+        .points
+        .chunk_by(|one, other| one.impacts == other.impacts)
+        .map(|stretch| {
+            let parameters = stretch.iter().map(|point| point.parameter);
+            let low = parameters.clone().fold(f64::INFINITY, f64::min);
+            let high = parameters.fold(f64::NEG_INFINITY, f64::max);
+            let count = match stretch[0].impacts {
+                0 => "none".to_owned(),
+                count => count.to_string(),
+            };
+            format!("{count} from {name} = {} to {}", significant(low, 4), significant(high, 4))
+        })
+        .collect();
+    let more = if stretches.len() > MOST { ", and so on" } else { "" };
+    Some(Block::Sentence(format!(
+        "Impacts in a period: {}{more}.",
+        stretches[..stretches.len().min(MOST)].join(", ")
+    )))
 }
 
 /// The parts of a branch on which dry friction holds the motion for a time.
@@ -351,6 +385,7 @@ pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
         BifurcationKind::NeimarkSacker => "Neimark-Sacker",
         BifurcationKind::Hopf => "Hopf",
         BifurcationKind::Centre => "centre",
+        BifurcationKind::Grazing => "grazing",
     }
 }
 
@@ -400,6 +435,9 @@ fn changes(response: &ResponseDiagram) -> Option<Vec<Block<'static>>> {
         BifurcationKind::NeimarkSacker => "At a Neimark-Sacker point a second frequency comes in.",
         BifurcationKind::Hopf => "At a Hopf point the motion is born from rest.",
         BifurcationKind::Centre => "At a centre motions of every amplitude repeat themselves.",
+        BifurcationKind::Grazing => {
+            "At a grazing the motion touches a wall: beyond it there is an impact more, or one less, in a period."
+        }
     };
     let mut kinds: Vec<BifurcationKind> = all.iter().map(|bifurcation| bifurcation.kind).collect();
     kinds.sort();

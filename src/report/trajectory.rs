@@ -233,7 +233,7 @@ fn on_walls<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
 }
 
 /// A wall in words.
-fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
+pub(super) fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
     let number = if several { format!(" {}", index + 1) } else { String::new() };
     format!("wall{number} at {} = 0, coefficient of restitution {}", wall.gap, wall.restitution)
 }

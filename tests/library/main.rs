@@ -24,6 +24,7 @@ mod hilltop;
 mod homotopy;
 mod hostile;
 mod impact_certificate;
+mod impact_response;
 mod inertia;
 mod judge;
 mod layers;

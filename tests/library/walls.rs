@@ -11,7 +11,7 @@ use lindstedt::system::{Integrator, PathEnd};
 use lindstedt::trajectory::{
     PoincareSection, Trajectory, TrajectoryError, TrajectoryRequest, sweep,
 };
-use lindstedt::wall::Wall;
+use lindstedt::wall::{Wall, WallError};
 
 /// A problem with walls, each with its coefficient of restitution.
 fn course(equations: &str, walls: &[(&str, &str)], values: &str) -> TrajectoryRequest {
@@ -121,7 +121,7 @@ fn bodies_that_meet_keep_their_momentum() {
     // said.
     let bad = course("x'' + 2*y'' = 0; y'' = 0", &[("x < y", "e")], "e=0.3");
     let error = begun(bad, &[("y", 1.0), ("x'", 1.0)], 2.0).follow().unwrap_err();
-    assert!(matches!(error, TrajectoryError::WallWithoutMass(_)), "{error}");
+    assert!(matches!(error, TrajectoryError::Wall(WallError::WithoutMass(_))), "{error}");
 }
 
 /// Newton's cradle: equal balls that touch hand the speed on, one after another.

@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use crate::expr::{EvaluationError, Expr, ParseError, parse_inequality};
+use crate::expr::{EvaluationError, Expr, ExprError, ParseError, parse_inequality};
+use crate::mechanics::{MechanicsError, linear};
 use crate::symbol::Symbol;
 
 /// A rigid wall.
@@ -52,6 +53,54 @@ pub enum WallError {
     /// A velocity occurs in a gap.
     #[error("the wall `{0} = 0` contains the velocity `{1}`: a wall has a position")]
     Velocity(Expr, Symbol),
+    /// A wall in coupled equations without a mass matrix.
+    #[error(
+        "the wall `{0} = 0` needs masses: the coefficients of the accelerations are no symmetric matrix, so that no momentum is known"
+    )]
+    WithoutMass(Expr),
+    /// The mass matrix is singular.
+    #[error(transparent)]
+    Mechanics(#[from] MechanicsError),
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+}
+
+/// The law of impact of a wall in equations of motion of second order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WallImpact {
+    /// The gap g in coordinates and time.
+    pub gap: Expr,
+    /// Its rate g' in coordinates, velocities and time.
+    pub rate: Expr,
+    /// n = dg/dq for each coordinate.
+    pub normal: Vec<Expr>,
+    /// d = M^-1 n for each coordinate: the change of the velocities by a unit of momentum of the wall.
+    pub direction: Vec<Expr>,
+}
+
+impl WallImpact {
+    /// n . d of two walls: the change of the rate of this gap by a unit of momentum of the other wall.
+    pub fn compliance(&self, other: &Self) -> Expr {
+        self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
+    }
+
+    /// The velocities after an impact, q' - (1 + e) d g'/(n.d), in the order of the coordinates.
+    ///
+    /// # Errors
+    /// A failed step of algebra.
+    pub fn velocities_after(
+        &self,
+        coordinates: &[Symbol],
+        restitution: &Expr,
+    ) -> Result<Vec<Expr>, ExprError> {
+        let momentum = (Expr::one() + restitution) * &self.rate;
+        let momentum = Expr::divide(&momentum, &self.compliance(self))?;
+        let after = |(name, direction): (&Symbol, &Expr)| {
+            Expr::from(name.derivative()) - direction * &momentum
+        };
+        Ok(coordinates.iter().zip(&self.direction).map(after).collect())
+    }
 }
 
 impl Wall {
@@ -85,6 +134,57 @@ impl Wall {
             true => Ok(value),
             false => Err(WallError::Restitution(value)),
         }
+    }
+
+    /// The law of impact in equations of these coordinates, with the matrix of the coefficients of the
+    /// accelerations; for one coordinate it may be left out, since its mass cancels.
+    ///
+    /// # Errors
+    /// [`WallError`] for a gap without a coordinate or with a velocity, or coefficients that are not a
+    /// mass matrix.
+    ///
+    /// ```
+    /// # use lindstedt_dynamics as lindstedt;
+    /// use lindstedt::wall::Wall;
+    ///
+    /// let table = &Wall::parse("x > Z*sin(w*t)", &"e".parse()?)?[0];
+    /// let impact = table.impact(&["x".into()], None)?;
+    /// let after = impact.velocities_after(&["x".into()], &table.restitution)?;
+    /// // The speed relative to the table is turned round.
+    /// let relative = (&after[0] - &"w*Z*cos(w*t)".parse()?).expand()?;
+    /// let expected = "-e*(x' - w*Z*cos(w*t))".parse::<lindstedt::expr::Expr>()?.expand()?;
+    /// assert!((relative - expected).expand()?.is_zero());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn impact(
+        &self,
+        coordinates: &[Symbol],
+        mass: Option<&[Vec<Expr>]>,
+    ) -> Result<WallImpact, WallError> {
+        self.check(coordinates)?;
+        let normal: Vec<Expr> = coordinates
+            .iter()
+            .map(|name| self.gap.differentiate(*name))
+            .collect::<Result<_, _>>()?;
+        let closing =
+            coordinates.iter().zip(&normal).map(|(name, n)| n * Expr::from(name.derivative()));
+        let rate = self.gap.differentiate(Symbol::new("t"))? + closing.sum::<Expr>();
+        let direction = match (mass, normal.len()) {
+            (None, 1) => normal.clone(),
+            (None, _) => return Err(WallError::WithoutMass(self.gap.clone())),
+            (Some(mass), _) => {
+                for (i, row) in mass.iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate().take(i) {
+                        if !(entry - &mass[j][i]).expand()?.is_zero() {
+                            return Err(WallError::WithoutMass(self.gap.clone()));
+                        }
+                    }
+                }
+                let singular = || MechanicsError::Singular(mass.iter().flatten().cloned().sum());
+                linear::solution(mass, &normal, singular)?
+            }
+        };
+        Ok(WallImpact { gap: self.gap.clone(), rate, normal, direction })
     }
 
     /// Checks that the gap contains one of these coordinates and no velocity.

@@ -185,11 +185,6 @@ pub enum TrajectoryError {
     /// A wall whose gap has no value.
     #[error("the gap `{0}` of a wall: {1}")]
     WallUndefined(Expr, EvaluationError),
-    /// A wall in coupled equations without a mass matrix.
-    #[error(
-        "the wall `{0} = 0` needs masses: the coefficients of the accelerations are no symmetric matrix, so that no momentum is known"
-    )]
-    WallWithoutMass(Expr),
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),

@@ -172,6 +172,12 @@ pub struct WallRestDocument {
     pub after_chatter: bool,
 }
 
+impl WallDocument {
+    pub(super) fn new(wall: &Wall) -> Self {
+        Self { gap: wall.gap.to_string(), restitution: wall.restitution.to_string() }
+    }
+}
+
 impl WallsDocument {
     fn new(motion: &Trajectory) -> Self {
         let record = &motion.walls;
@@ -188,12 +194,8 @@ impl WallsDocument {
             until: rest.until,
             after_chatter: rest.after_chatter,
         };
-        let wall = |wall: &Wall| WallDocument {
-            gap: wall.gap.to_string(),
-            restitution: wall.restitution.to_string(),
-        };
         Self {
-            walls: motion.course.walls.iter().map(wall).collect(),
+            walls: motion.course.walls.iter().map(WallDocument::new).collect(),
             impacts: record.impacts.iter().map(impact).collect(),
             rests: record.rests.iter().map(rest).collect(),
             order_matters: record.order_matters,

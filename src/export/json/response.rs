@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DocumentKind;
+use super::motion::WallDocument;
 use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::{listed_quantity, motion_frequency};
 use crate::response::slow::{SlowEquations, SlowResponse};
@@ -58,6 +59,12 @@ pub struct ResponseDocument {
     /// Of each point of a branch the part of a period in which dry friction holds it; empty for a
     /// branch that nothing holds.
     pub stuck: Vec<Vec<f64>>,
+    /// The walls; left out without one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub walls: Vec<WallDocument>,
+    /// Of each point of a branch the number of impacts in a period; left out without a wall.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub impacts: Vec<Vec<usize>>,
     /// Where branches change.
     pub bifurcations: Vec<response::Bifurcation>,
     /// The equilibria of coupled equations that nothing drives, a branch each. Left out where there
@@ -262,6 +269,10 @@ fn point(point: &response::SteadyMotion) -> ResponsePoint {
 }
 
 /// The part of a period that each point of a branch sticks; nothing for one that never does.
+fn impacts(branch: &response::Branch) -> Vec<usize> {
+    branch.points.iter().map(|point| point.impacts).collect()
+}
+
 fn stuck(branch: &response::Branch) -> Vec<f64> {
     match branch.points.iter().any(|point| point.stuck > 0.0) {
         true => branch.points.iter().map(|point| point.stuck).collect(),
@@ -312,6 +323,11 @@ pub fn response(response: &ResponseDiagram) -> ResponseDocument {
             .collect(),
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
+        walls: response.question.walls.iter().map(WallDocument::new).collect(),
+        impacts: match response.question.walls.is_empty() {
+            true => vec![],
+            false => response.branches.iter().map(impacts).collect(),
+        },
         bifurcations: response.bifurcations.clone(),
         equilibria: response.equilibria.clone(),
         along: asked.along.map(|(name, _)| name.to_string()),

@@ -6,6 +6,7 @@
 //! period doubling          det(M + 1) = 1 + tr M + det M changes its sign: a multiplier passes -1
 //! Neimark-Sacker           det M passes 1 while the multipliers are a complex pair: they leave the unit circle together
 //! Hopf                     the end of a branch of self-excited motions, where the amplitude is zero
+//! grazing                  the number of impacts in a period changes
 //! centre                   a crossing with motions of every amplitude at one value of the parameter
 //! ```
 //!
@@ -37,17 +38,20 @@ pub enum BifurcationKind {
     /// Motions of every amplitude exist here, because a free undamped motion has a commensurable
     /// period.
     Centre,
+    /// The motion touches a wall: on one side of it there is an impact more in a period.
+    Grazing,
 }
 
 impl BifurcationKind {
     /// Every kind.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Fold,
         Self::BranchPoint,
         Self::PeriodDoubling,
         Self::NeimarkSacker,
         Self::Hopf,
         Self::Centre,
+        Self::Grazing,
     ];
 
     /// Its name in documents: `period-doubling`.
@@ -59,6 +63,7 @@ impl BifurcationKind {
             Self::NeimarkSacker => "neimark-sacker",
             Self::Hopf => "hopf",
             Self::Centre => "centre",
+            Self::Grazing => "grazing",
         }
     }
 }
@@ -76,8 +81,8 @@ fn test(kind: BifurcationKind, node: &BranchNode, floquet: Option<Floquet>) -> O
         BifurcationKind::PeriodDoubling => 1.0 + trace + determinant,
         BifurcationKind::NeimarkSacker => determinant - 1.0,
         // One lies at the end of a branch, where continuation finds it; the other is a crossing of
-        // branches.
-        BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
+        // branches; walls are those of coupled equations.
+        BifurcationKind::Hopf | BifurcationKind::Centre | BifurcationKind::Grazing => f64::NAN,
     };
     value.is_finite().then_some(value)
 }

@@ -4,9 +4,10 @@ use thiserror::Error;
 
 use super::MOST_HARMONICS;
 use crate::decimal::decimal;
-use crate::expr::{EvaluationError, ExprError};
+use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::oscillator::OscillatorError;
 use crate::symbol::Symbol;
+use crate::wall::WallError;
 
 /// The reason why there is no response.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -153,6 +154,17 @@ pub enum ResponseError {
         "no motion was found, because the forces that hold it on `{0} = 0` and on other jumps at once are not determined"
     )]
     UndeterminedFriction(String),
+    /// No motion could be followed over a period because it comes to rest on a wall.
+    #[error("no motion was found that does not come to rest on a wall within a period")]
+    RestsOnWall,
+    /// A wall in equations of first order.
+    #[error(
+        "the wall `{0} = 0` needs velocities, but the equations have coordinates of first order"
+    )]
+    WallWithoutVelocity(Expr),
+    /// A wall that is none.
+    #[error(transparent)]
+    Wall(#[from] WallError),
     /// No family of free motions has frequencies in the range.
     #[error(
         "no nonlinear normal mode was found for frequencies from {} to {}: the linear modes have {}", decimal(.range[0]), decimal(.range[1]),

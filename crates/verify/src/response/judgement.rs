@@ -218,6 +218,7 @@ impl PreparedRequest<'_> {
             stable: floquet.map(|floquet| floquet.largest() < allowed),
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),
+            impacts: 0,
             error,
             coordinates: vec![],
             energy: None,

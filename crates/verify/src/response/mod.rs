@@ -64,6 +64,8 @@ pub mod stability;
 mod sticking;
 mod unfollowed;
 
+use std::collections::BTreeSet;
+
 use num_complex::Complex;
 
 use crate::coupled::CoupledEquations;
@@ -74,6 +76,7 @@ use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
+use crate::wall::Wall;
 
 pub use equations::{Equations, EquationsError};
 pub use error::{ResponseError, SeedSearch};
@@ -93,6 +96,8 @@ pub struct ResponseRequest {
     /// The quantity that is listed and drawn, in the coordinates of coupled equations; the first of
     /// them without it.
     pub of: Option<Expr>,
+    /// Rigid walls, of coupled equations, of which one coordinate may be an example.
+    pub walls: Vec<Wall>,
     /// Exact values of all parameters but the one that varies.
     pub values: Values,
     /// The parameter that varies.
@@ -141,6 +146,8 @@ pub struct SteadyMotion {
     pub multipliers: Option<[Complex<f64>; 2]>,
     /// The part of a period in which it sticks, held by dry friction.
     pub stuck: f64,
+    /// The number of impacts on walls in a period.
+    pub impacts: usize,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over
     /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if
     /// shooting found no motion near.
@@ -484,6 +491,12 @@ pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseEr
     let question = &question.with_second_value()?;
     match &question.equations {
         Equations::Coupled(equations) => coupled::respond(question, equations),
+        // Across impacts one coordinate is followed as several are.
+        Equations::One(_) if !question.walls.is_empty() => {
+            let equations = CoupledEquations::new(question.equations.sides())
+                .map_err(|error| ResponseError::Rates(error.to_string()))?;
+            coupled::respond(question, &equations)
+        }
         Equations::One(oscillator) => {
             let mut response = match respond_one(question, oscillator) {
                 Err(error @ ResponseError::NotFollowed { .. }) => {
@@ -634,6 +647,17 @@ impl ResponseRequest {
         Self { values, ..self.clone() }
     }
 
+    /// The names of the equations and the walls that need values, in alphabetical order.
+    pub fn parameters(&self) -> Vec<Symbol> {
+        let coordinates = self.equations.coordinates();
+        let of_walls = self.walls.iter().flat_map(|wall| [&wall.gap, &wall.restitution]);
+        let is_own = |name: &Symbol| coordinates.contains(&name.coordinate()) || name.name() == "t";
+        let of_walls = of_walls.flat_map(Expr::symbols).filter(|name| !is_own(name));
+        let all: BTreeSet<Symbol> =
+            self.equations.parameters().iter().copied().chain(of_walls).collect();
+        all.into_iter().collect()
+    }
+
     /// This request with the middle of its range as the value of the second parameter, if that has
     /// none.
     ///
@@ -641,7 +665,7 @@ impl ResponseRequest {
     /// A second parameter that is none of the equations or the first one, or a range out of order.
     fn with_second_value(&self) -> Result<Self, ResponseError> {
         let Some((name, [low, high])) = self.along else { return Ok(self.clone()) };
-        let known = self.equations.parameters();
+        let known = self.parameters();
         if !known.contains(&name) || name == self.parameter {
             let known = known.iter().copied().filter(|known| *known != self.parameter);
             return Err(ResponseError::NoParameter { name, known: known.collect() });
@@ -710,6 +734,7 @@ impl ResponseRequest {
             equations: Equations::parse(equation)?,
             of: None,
             along: None,
+            walls: vec![],
             values: values.parse()?,
             parameter: Symbol::new(parameter),
             range,

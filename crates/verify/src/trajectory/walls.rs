@@ -21,7 +21,7 @@ use crate::expr::{CompiledList, Expr, ExprError};
 use crate::mechanics::{MechanicsError, Rates, linear};
 use crate::symbol::Symbol;
 use crate::system::{Integrator, Path, PathEnd, rate_along};
-use crate::wall::Wall;
+use crate::wall::{Wall, WallImpact};
 
 /// Largest gap that counts as zero up to rounding, relative to the positions in it.
 const ON_WALL: f64 = 1e-11;
@@ -86,72 +86,22 @@ pub struct WallRecord {
 /// A wall with the expressions that impacts and rest need.
 #[derive(Clone, Debug)]
 struct WallEquations {
-    /// The gap g.
-    gap: Expr,
-    /// Its rate g'.
-    rate: Expr,
-    /// dg/dq for each coordinate.
-    normal: Vec<Expr>,
-    /// M^-1 n for each coordinate.
-    direction: Vec<Expr>,
+    impact: WallImpact,
     /// g'' without the force of any wall.
     free: Expr,
 }
 
 impl WallEquations {
     fn new(course: &TrajectoryRequest, wall: &Wall) -> Result<Self, TrajectoryError> {
-        let coordinates = &course.coordinates;
-        wall.check(coordinates)?;
-        let second_order = course.rates.states.len() == 2 * coordinates.len();
-        if !second_order {
+        if course.rates.states.len() != 2 * course.coordinates.len() {
             return Err(TrajectoryError::WallWithoutVelocity(wall.gap.clone()));
         }
-        let along = |expression: &Expr| {
-            rate_along(expression, Symbol::new("t"), &course.rates.states, &course.rates.right)
-                .ok_or_else(|| TrajectoryError::WallWithCorner(wall.gap.clone()))
-        };
-        let normal: Vec<Expr> = coordinates
-            .iter()
-            .map(|name| wall.gap.differentiate(*name))
-            .collect::<Result<_, _>>()?;
-        let rate = along(&wall.gap)?;
-        Ok(Self {
-            gap: wall.gap.clone(),
-            free: along(&rate)?,
-            direction: direction(course, &normal, wall)?,
-            rate,
-            normal,
-        })
+        let impact = wall.impact(&course.coordinates, course.mass.as_deref())?;
+        let Rates { states, right } = &course.rates;
+        let free = rate_along(&impact.rate, Symbol::new("t"), states, right);
+        let free = free.ok_or_else(|| TrajectoryError::WallWithCorner(wall.gap.clone()))?;
+        Ok(Self { impact, free })
     }
-
-    /// n_i . d_j, the acceleration of the gap of this wall by a unit force of another.
-    fn compliance(&self, other: &Self) -> Expr {
-        self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
-    }
-}
-
-/// M^-1 n.
-fn direction(
-    course: &TrajectoryRequest,
-    normal: &[Expr],
-    wall: &Wall,
-) -> Result<Vec<Expr>, TrajectoryError> {
-    let Some(mass) = &course.mass else {
-        return match normal.len() {
-            // The mass of one coordinate cancels in the impact.
-            1 => Ok(normal.to_vec()),
-            _ => Err(TrajectoryError::WallWithoutMass(wall.gap.clone())),
-        };
-    };
-    for (i, row) in mass.iter().enumerate() {
-        for (j, entry) in row.iter().enumerate().take(i) {
-            if !(entry - &mass[j][i]).expand()?.is_zero() {
-                return Err(TrajectoryError::WallWithoutMass(wall.gap.clone()));
-            }
-        }
-    }
-    let singular = || MechanicsError::Singular(mass.iter().flatten().cloned().sum());
-    Ok(linear::solution(mass, normal, singular)?)
 }
 
 /// The walls of a course, ready for impacts.
@@ -197,14 +147,14 @@ impl CompiledWalls {
         let compiled = |wall: &WallEquations| {
             let jerk = rate_along(&wall.free, Symbol::new("t"), states, &course.rates.right);
             let mut all = vec![
-                wall.gap.clone(),
-                wall.rate.clone(),
+                wall.impact.gap.clone(),
+                wall.impact.rate.clone(),
                 wall.free.clone(),
                 jerk.unwrap_or_else(Expr::zero),
             ];
-            all.extend(wall.normal.iter().chain(&wall.direction).cloned());
+            all.extend(wall.impact.normal.iter().chain(&wall.impact.direction).cloned());
             CompiledList::new(&all, &arguments)
-                .map_err(|error| TrajectoryError::WallUndefined(wall.gap.clone(), error))
+                .map_err(|error| TrajectoryError::WallUndefined(wall.impact.gap.clone(), error))
         };
         let energy = course.energy.as_ref().filter(|_| course.missing_for_energy().is_empty());
         let work = energy
@@ -269,10 +219,11 @@ impl CompiledWalls {
         for (index, wall) in self.walls.iter().enumerate() {
             let at = self.at(index, 0.0, state);
             if at.gap < 0.0 && !self.is_on(&at, state) {
-                return Err(TrajectoryError::BehindWall { gap: wall.gap.clone(), value: at.gap });
+                let gap = wall.impact.gap.clone();
+                return Err(TrajectoryError::BehindWall { gap, value: at.gap });
             }
             if at.gap.is_nan() || at.rate.is_nan() {
-                return Err(TrajectoryError::WallWithCorner(wall.gap.clone()));
+                return Err(TrajectoryError::WallWithCorner(wall.impact.gap.clone()));
             }
         }
         Ok(())
@@ -561,7 +512,7 @@ pub(super) fn resting_equations(
     resting: &[usize],
 ) -> Result<RestingEquations, TrajectoryError> {
     let walls = equations(course)?;
-    let mut guards: Vec<Expr> = walls.iter().map(|wall| wall.gap.clone()).collect();
+    let mut guards: Vec<Expr> = walls.iter().map(|wall| wall.impact.gap.clone()).collect();
     let mut rates = course.rates.clone();
     let bearing: Vec<&WallEquations> = resting.iter().map(|index| &walls[*index]).collect();
     let mut power = Vec::new();
@@ -570,24 +521,24 @@ pub(super) fn resting_equations(
     {
         // x'' = -(g'' - n f)/n, in which the force f of flight cancels.
         let held = held_acceleration(course, only)?;
-        let force = Expr::divide(&(&held - &rates.right[1]), &only.direction[0])?;
+        let force = Expr::divide(&(&held - &rates.right[1]), &only.impact.direction[0])?;
         guards[resting[0]] = force.clone();
-        power.push(&only.normal[0] * Expr::from(rates.states[1]) * force);
+        power.push(&only.impact.normal[0] * Expr::from(rates.states[1]) * force);
         rates.right[1] = held;
     } else if !bearing.is_empty() {
         let matrix: Vec<Vec<Expr>> = bearing
             .iter()
-            .map(|one| bearing.iter().map(|other| one.compliance(other)).collect())
+            .map(|one| bearing.iter().map(|other| one.impact.compliance(&other.impact)).collect())
             .collect();
         let right: Vec<Expr> = bearing.iter().map(|wall| -&wall.free).collect();
         let singular = || MechanicsError::Singular(matrix.iter().flatten().cloned().sum());
         let forces = linear::solution(&matrix, &right, singular)?;
         let count = course.coordinates.len();
         for ((index, wall), force) in resting.iter().zip(&bearing).zip(&forces) {
-            for (k, direction) in wall.direction.iter().enumerate() {
+            for (k, direction) in wall.impact.direction.iter().enumerate() {
                 rates.right[count + k] = &rates.right[count + k] + &(direction * force);
             }
-            let closing = wall.normal.iter().zip(&rates.states[count..]);
+            let closing = wall.impact.normal.iter().zip(&rates.states[count..]);
             power.extend(closing.map(|(n, velocity)| n * Expr::from(*velocity) * force));
             guards[*index] = force.clone();
         }
@@ -599,8 +550,8 @@ pub(super) fn resting_equations(
 fn held_acceleration(course: &TrajectoryRequest, wall: &WallEquations) -> Result<Expr, ExprError> {
     let [position, velocity] = [course.rates.states[0], course.rates.states[1]];
     let rest = Expr::sum([
-        wall.rate.differentiate(Symbol::new("t"))?,
-        wall.rate.differentiate(position)? * Expr::from(velocity),
+        wall.impact.rate.differentiate(Symbol::new("t"))?,
+        wall.impact.rate.differentiate(position)? * Expr::from(velocity),
     ]);
-    Ok(-Expr::divide(&rest, &wall.normal[0])?)
+    Ok(-Expr::divide(&rest, &wall.impact.normal[0])?)
 }

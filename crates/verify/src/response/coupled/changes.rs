@@ -5,6 +5,7 @@
 //! branch point       the determinant of the bordered equations changes its sign, dp does not
 //! period doubling    det(M + 1) changes its sign: a multiplier passes -1
 //! Neimark-Sacker     a complex pair of multipliers passes the unit circle
+//! grazing            the number of impacts in a period changes: the multipliers jump there
 //! ```
 //!
 //! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapter 10.)
@@ -91,7 +92,7 @@ fn test(problem: &CoupledProblem, kind: BifurcationKind, orbit: &Orbit) -> f64 {
         BifurcationKind::NeimarkSacker => {
             pair_outside(&problem.multipliers(orbit).unwrap_or_default())
         }
-        BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
+        BifurcationKind::Hopf | BifurcationKind::Centre | BifurcationKind::Grazing => f64::NAN,
     }
 }
 
@@ -104,6 +105,11 @@ pub(super) fn changes_between(
 ) -> Vec<(BifurcationKind, Orbit)> {
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
     let mut found: Vec<(BifurcationKind, Orbit)> = Vec::new();
+    // Across a grazing the multipliers jump, and pass nothing.
+    if from.kept.impacts != to.kept.impacts {
+        let at = grazing_between(orbits, from, to);
+        return at.map(|orbit| (BifurcationKind::Grazing, orbit)).into_iter().collect();
+    }
     for kind in [BranchPoint, Fold, PeriodDoubling, NeimarkSacker] {
         let Some(orbit) = change_between(problem, orbits, kind, [from, to]) else { continue };
         // A branch that begins at a crossing turns back there without a fold of its own.
@@ -114,6 +120,24 @@ pub(super) fn changes_between(
         }
     }
     found
+}
+
+/// The orbit between two others at which the number of impacts in a period changes.
+fn grazing_between(orbits: &Orbits, from: &Orbit, to: &Orbit) -> Option<Orbit> {
+    const HALVINGS: u32 = 40;
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut nearest = from.clone();
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let orbit = orbits.between(from, to, middle);
+        match orbit {
+            Some(orbit) if orbit.kept.impacts == from.kept.impacts => {
+                (low, nearest) = (middle, orbit);
+            }
+            _ => high = middle,
+        }
+    }
+    Some(nearest)
 }
 
 /// The orbit of a bifurcation of this kind between two neighbouring orbits.

@@ -17,7 +17,7 @@ use std::cell::{Cell, RefCell};
 use nalgebra::{DMatrix, DVector};
 
 use super::sliding::{self, SlidingRun, SlidingStop};
-use super::surfaces::JumpSurfaces;
+use super::surfaces::{FlowWall, JumpSurfaces};
 use crate::expr::{CompiledList, Expr};
 use crate::numeric::ode::{IntegrationOptions, Point, end_values};
 use crate::response::ResponseError;
@@ -79,13 +79,15 @@ pub(super) struct FlowImage {
     pub(super) travel: Vec<f64>,
     /// The part of the time in which dry friction holds something.
     pub(super) stuck: f64,
+    /// The number of impacts on walls.
+    pub(super) impacts: usize,
     /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
     /// the time; independent of each other.
     pub(super) places: Vec<Vec<f64>>,
 }
 
 impl Flow {
-    /// Compiles the right sides in the states, the time and the parameter.
+    /// Compiles the right sides and the walls in the states, the time and the parameter.
     ///
     /// # Errors
     /// [`ResponseError`] for a derivative that cannot be written, or another name.
@@ -94,6 +96,7 @@ impl Flow {
         time: Symbol,
         right: &[Expr],
         parameter: Symbol,
+        walls: &[FlowWall],
     ) -> Result<Self, ResponseError> {
         let arguments: Vec<Symbol> = states.iter().copied().chain([time, parameter]).collect();
         let (mut slopes, mut by_parameter) = (Vec::new(), Vec::new());
@@ -123,15 +126,23 @@ impl Flow {
             varied: CompiledList::new(&varied, &arguments)?,
             slopes,
             by_parameter,
-            jumps: JumpSurfaces::new(states, time, right, parameter)?,
+            jumps: JumpSurfaces::new(states, time, right, parameter, walls)?,
             stopped: Cell::new(None),
             evaluations: Cell::new(0),
         })
     }
 
-    /// Whether the right sides jump.
+    /// Whether the right sides jump, or the states on a wall.
     pub(super) fn jumps(&self) -> bool {
         self.jumps.is_some()
+    }
+
+    /// The state mirrored in every wall behind which it is, so that a motion can begin there.
+    pub(super) fn in_front_of_walls(&self, state: Vec<f64>, parameter: f64) -> Vec<f64> {
+        match &self.jumps {
+            Some(jumps) => sliding::in_front_of_walls(jumps, state, parameter),
+            None => state,
+        }
     }
 
     /// Whether a state is on a surface across which the right sides jump, at time zero.
@@ -155,8 +166,13 @@ impl Flow {
             SlidingStop::Chatter(index) | SlidingStop::Undetermined(index) => {
                 Some((stop, arguments.get(index)?.clone()))
             }
-            SlidingStop::NoValue => None,
+            SlidingStop::NoValue | SlidingStop::RestsOnWall => None,
         }
+    }
+
+    /// Whether the last motion that was not followed came to rest on a wall.
+    pub(super) fn rested_on_wall(&self) -> bool {
+        self.stopped.get() == Some(SlidingStop::RestsOnWall)
     }
 
     /// The motion across jumps between two times; `None` if it cannot be followed.
@@ -296,6 +312,7 @@ impl Flow {
             let [low, high] = &run.bounds;
             return Some(FlowImage {
                 stuck: run.stuck / length,
+                impacts: run.impacts,
                 places: jumps.places_on(&run.throughout),
                 ..image_of(n, &run.values, sizes, low, high)
             });
@@ -356,6 +373,7 @@ fn image_of(n: usize, end: &[f64], sizes: &[f64], low: &[f64], high: &[f64]) -> 
         by_parameter: DVector::from_iterator(n, (0..n).map(|i| varied(i, n))),
         travel: low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).collect(),
         stuck: 0.0,
+        impacts: 0,
         places: vec![],
     }
 }
@@ -369,7 +387,7 @@ mod tests {
     fn a_linear_flow_has_its_closed_form() {
         let names: Vec<Symbol> = vec!["x".into(), "y".into()];
         let right = ["p*x + y", "-2*y"].map(|text| text.parse::<Expr>().expect(text));
-        let flow = Flow::new(&names, "t".into(), &right, "p".into()).expect("a flow");
+        let flow = Flow::new(&names, "t".into(), &right, "p".into(), &[]).expect("a flow");
         let exact = |p: f64, t: f64| ((3.0 + p) * (p * t).exp() - (-2.0 * t).exp()) / (2.0 + p);
         let (p, t) = (0.3, 1.7);
         let image = flow.image(&[1.0, 1.0], t, p, &[1.0, 3.0]).expect("an end");

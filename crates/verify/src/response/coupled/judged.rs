@@ -97,7 +97,8 @@ impl CoupledProblem<'_> {
                 duration,
                 step_limit: STEP_LIMIT,
                 interrupt: self.question.interrupt,
-                ..TrajectoryRequest::of_rates(coordinates, rates)
+                mass: Some(self.mass.clone()),
+                ..TrajectoryRequest::of_rates(coordinates, rates).with_walls(self.walls.clone())
             };
             let motion = course.follow_by(Integrator::Taylor).ok()?;
             return motion.is_complete().then(|| OrbitPath::Events(Box::new(motion)));
@@ -308,6 +309,7 @@ impl CoupledProblem<'_> {
             stable,
             multipliers: two,
             stuck: orbit.kept.stuck,
+            impacts: orbit.kept.impacts,
             error: path.as_ref().and_then(|path| self.error(orbit, path, period, scale)),
             coordinates,
             energy: self.energy.as_ref().map(|(energy, rest)| energy.over(rest, start)),

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::flow::{Flow, FlowImage};
-use super::surfaces::largest;
+use super::surfaces::{FlowWall, largest};
 use crate::coupled::{CoupledEquations, Energy};
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::orbit_branch::{OrbitEquations, OrbitPoint, PeriodImage};
@@ -27,6 +27,7 @@ use crate::response::driven::{drive_frequency, in_phase};
 use crate::response::{ResponseError, ResponseRequest};
 use crate::symbol::{Symbol, fresh};
 use crate::system::{Solver, System, SystemOptions};
+use crate::wall::Wall;
 
 /// The travel of each state of an orbit: half of the way from its lowest to its highest value.
 pub(super) type Travel = Vec<f64>;
@@ -39,6 +40,8 @@ pub(super) struct Course {
     pub(super) monodromy: DMatrix<f64>,
     /// The part of the period in which dry friction holds something.
     pub(super) stuck: f64,
+    /// The number of impacts on walls in the period.
+    pub(super) impacts: usize,
     /// The factors of the states of sums that stay what they are, because dry friction holds them all the
     /// time: of such a motion there is one for each place where it holds them.
     pub(super) places: Vec<Vec<f64>>,
@@ -104,6 +107,9 @@ pub(super) struct CoupledProblem<'a> {
     pub(super) series: Solver,
     /// Whether no corner occurs, such as `abs` or `max`.
     pub(super) smooth: bool,
+    /// The walls, with numbers for all parameters but one, and the mass matrix of their impacts.
+    pub(super) walls: Vec<Wall>,
+    pub(super) mass: Vec<Vec<Expr>>,
     /// Whether a motion backward in time is a motion, so that nothing damps.
     pub(super) undamped: bool,
     /// The quantity that is listed, in the coordinates.
@@ -132,28 +138,34 @@ impl<'a> CoupledProblem<'a> {
         let rates = &equations.rates;
         let driven = rates.right.iter().any(|rate| rate.contains(time));
         let velocities = &rates.states[equations.coordinates.len()..];
-        let undamped = is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
+        // An impact takes energy, or else the motions are not those of a smooth system.
+        let undamped = question.walls.is_empty()
+            && is_reversible(&rates.right, equations.coordinates.len(), velocities)?;
         let free = undamped && !driven;
-        let parameter = question.parameter;
+        let (parameter, parameters) = (question.parameter, question.parameters());
         // Free motions have a frequency for each energy, which is what varies.
-        let of_frequency =
-            free && parameter.name() == "omega" && !equations.parameters.contains(&parameter);
+        let of_frequency = free && parameter.name() == "omega" && !parameters.contains(&parameter);
         match of_frequency {
-            true => question.check_values_but(&equations.parameters, None)?,
+            true => question.check_values_but(&parameters, None)?,
             false if free => return Err(ResponseError::FreeParameter(parameter)),
-            false => question.check_values_but(&equations.parameters, Some(parameter))?,
+            false => question.check_values_but(&parameters, Some(parameter))?,
         }
         if !driven && question.periods != 1 {
             return Err(ResponseError::NoPeriods(question.periods));
         }
-        let values: BTreeMap<Symbol, Expr> = question.values.split(&equations.parameters).0;
+        let values: BTreeMap<Symbol, Expr> = question.values.split(&parameters).0;
         let right: Vec<Expr> = rates
             .right
             .iter()
             .map(|rate| rate.substitute_all(&values))
             .collect::<Result<_, _>>()?;
         let states = rates.states.clone();
-        let in_time = Flow::new(&states, time, &right, parameter)?;
+        let (walls, mass) = with_numbers(question, equations, &values)?;
+        let flow_walls: Vec<FlowWall> = walls
+            .iter()
+            .map(|wall| flow_wall(wall, &mass, &states, &equations.coordinates))
+            .collect::<Result<_, _>>()?;
+        let in_time = Flow::new(&states, time, &right, parameter, &flow_walls)?;
         let numbers = [(parameter, ANY)].into();
         let series = System::new(&states, time, &right, &numbers)
             .map_err(|error| ResponseError::Rates(error.to_string()))?
@@ -164,7 +176,7 @@ impl<'a> CoupledProblem<'a> {
                 let frequency = drive_frequency(&right, &states)?;
                 let periods = Expr::from(i64::try_from(question.periods).unwrap_or(1));
                 let base = Expr::divide(&frequency, &periods)?;
-                let flow = flow_in_phase(&names, &states, &right, &base, parameter)?;
+                let flow = flow_in_phase(&names, &states, (&right, &flow_walls), &base, parameter)?;
                 let base = CompiledFunction::new(&base, &[parameter])?;
                 (Kind::Driven(Drive { frequency, base }), Some(flow))
             }
@@ -178,7 +190,8 @@ impl<'a> CoupledProblem<'a> {
                 let mut rates: Vec<Expr> = right.iter().enumerate().map(damped).collect();
                 rates.push(Expr::zero());
                 let all: Vec<Symbol> = states.iter().copied().chain([damping]).collect();
-                let flow = flow_in_phase(&names, &all, &rates, &Expr::from(parameter), parameter)?;
+                let flow =
+                    flow_in_phase(&names, &all, (&rates, &[]), &Expr::from(parameter), parameter)?;
                 (Kind::Free, Some(flow))
             }
             (false, false) => (Kind::SelfExcited, None),
@@ -204,6 +217,8 @@ impl<'a> CoupledProblem<'a> {
             shown: CompiledFunction::new(&shown, &equations.coordinates)?,
             states,
             right,
+            walls,
+            mass,
             in_time,
             in_phase,
             series,
@@ -384,9 +399,9 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel, stuck, places } =
+        let FlowImage { end, by_start, by_parameter, travel, stuck, impacts, places } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), stuck, places };
+        let path = Course { travel, monodromy: by_start.clone(), stuck, impacts, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -410,6 +425,7 @@ impl<'a> CoupledProblem<'a> {
             travel: image.travel,
             monodromy: image.by_start.clone(),
             stuck: image.stuck,
+            impacts: image.impacts,
             places: image.places,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
@@ -436,7 +452,7 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck, places } =
+        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck, impacts, places } =
             self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
@@ -445,7 +461,7 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck, places };
+        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck, impacts, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -487,7 +503,13 @@ impl<'a> CoupledProblem<'a> {
         // On the way back the velocities are the negative ones.
         let travel = |(i, travel): (usize, &f64)| if i < m { *travel } else { 2.0 * travel };
         let travel = half.travel[..n].iter().enumerate().map(travel).collect();
-        let path = Course { travel, monodromy, stuck: half.stuck, places: half.places };
+        let path = Course {
+            travel,
+            monodromy,
+            stuck: half.stuck,
+            impacts: 2 * half.impacts,
+            places: half.places,
+        };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 }
@@ -524,11 +546,51 @@ fn at_places(
     image
 }
 
-/// The right sides in the phase of a motion of frequency `base`.
+/// The walls of a request and the mass matrix, with numbers for all parameters but one.
+fn with_numbers(
+    question: &ResponseRequest,
+    equations: &CoupledEquations,
+    values: &BTreeMap<Symbol, Expr>,
+) -> Result<(Vec<Wall>, Vec<Vec<Expr>>), ResponseError> {
+    let wall = |wall: &Wall| -> Result<Wall, ResponseError> {
+        Ok(Wall {
+            gap: wall.gap.substitute_all(values)?,
+            restitution: wall.restitution.substitute_all(values)?,
+        })
+    };
+    for wall in &question.walls {
+        let mut numbers: BTreeMap<Symbol, f64> = question.values.numbers();
+        for end in question.range {
+            numbers.insert(question.parameter, end);
+            wall.restitution_at(&numbers)?;
+        }
+    }
+    let row = |row: &Vec<Expr>| row.iter().map(|entry| entry.substitute_all(values)).collect();
+    let mass = equations.matrix.iter().map(row).collect::<Result<_, _>>()?;
+    Ok((question.walls.iter().map(wall).collect::<Result<_, _>>()?, mass))
+}
+
+/// A wall with the states after an impact.
+fn flow_wall(
+    wall: &Wall,
+    mass: &[Vec<Expr>],
+    states: &[Symbol],
+    coordinates: &[Symbol],
+) -> Result<FlowWall, ResponseError> {
+    if states.len() != 2 * coordinates.len() {
+        return Err(ResponseError::WallWithoutVelocity(wall.gap.clone()));
+    }
+    let impact = wall.impact(coordinates, Some(mass))?;
+    let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
+    let positions = coordinates.iter().copied().map(Expr::from);
+    Ok(FlowWall { gap: impact.gap, after: positions.chain(velocities).collect() })
+}
+
+/// The right sides and walls in the phase of a motion of frequency `base`.
 pub(super) fn flow_in_phase(
     names: &[Symbol],
     states: &[Symbol],
-    right: &[Expr],
+    (right, walls): (&[Expr], &[FlowWall]),
     base: &Expr,
     parameter: Symbol,
 ) -> Result<Flow, ResponseError> {
@@ -538,7 +600,13 @@ pub(super) fn flow_in_phase(
         Ok(Expr::divide(&in_phase(rate, Symbol::new("t"), &moment)?, base)?)
     };
     let right: Vec<Expr> = right.iter().map(rate).collect::<Result<_, _>>()?;
-    Flow::new(states, phase, &right, parameter)
+    let moved = |expression: &Expr| in_phase(expression, Symbol::new("t"), &moment);
+    let wall = |wall: &FlowWall| -> Result<FlowWall, ResponseError> {
+        let after = wall.after.iter().map(moved).collect::<Result<_, _>>()?;
+        Ok(FlowWall { gap: moved(&wall.gap)?, after })
+    };
+    let walls: Vec<FlowWall> = walls.iter().map(wall).collect::<Result<_, _>>()?;
+    Flow::new(states, phase, &right, parameter, &walls)
 }
 
 /// Whether a motion passed backward in time is a motion as well: the accelerations do not change

@@ -1,6 +1,7 @@
-//! Motions across jumps of the rates, from event to event, with their variations.
+//! Motions across jumps of the rates and impacts on walls, from event to event, with their variations.
 //!
 //! ```text
+//! impact      g falls through zero: y -> R(y),     behind: z -> R_y z + R_p + (f_behind - R_y f_before - R_t) (g_y z + g_p)/(dg/dt)_before
 //! crossing    u_i changes its sign, and s_i with it
 //! sticking    du_i/dt leads back to u_i = 0 from both sides: s_i solves du_i/dt = 0, |s_i| <= 1, until it leaves these bounds
 //! variations  z' = f_y z + f_p,    behind an event:  z + (f_behind - f_before) (u_y z + u_p)/(du_i/dt)_before
@@ -20,7 +21,7 @@ use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::surfaces::JumpSurfaces;
+use super::surfaces::{JumpSurfaces, WallMap};
 use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, integrate_first_order,
 };
@@ -54,6 +55,8 @@ pub(super) enum SlidingStop {
     Undetermined(usize),
     /// A rate has no value, or a step vanishes.
     NoValue,
+    /// Impacts accumulate, and the motion rests on a wall.
+    RestsOnWall,
 }
 
 /// A run from a start.
@@ -68,6 +71,8 @@ pub(super) struct SlidingRun {
     pub(super) stuck: f64,
     /// The surfaces on which it sticks all the time, but for a moment at the start.
     pub(super) throughout: Vec<usize>,
+    /// The number of impacts on walls.
+    pub(super) impacts: usize,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
 }
@@ -79,6 +84,8 @@ enum Meeting {
     Reached(usize),
     /// The side of this surface, on which it sticks, reaches this bound.
     Released(usize, f64),
+    /// The motion has reached this wall.
+    Struck(usize),
 }
 
 /// The surfaces on which a motion sticks.
@@ -145,6 +152,11 @@ struct Run<'a> {
     /// The surfaces on which it sticks.
     held: Held,
     bounds: RefCell<[Vec<f64>; 2]>,
+    /// The number of impacts, and of the last ones that followed each other at once.
+    impacts: usize,
+    at_once: usize,
+    /// The time of the last impact.
+    struck: f64,
     evaluations: Cell<u64>,
 }
 
@@ -168,6 +180,7 @@ pub(super) fn follow(
         ..*options
     };
     let mut stuck = 0.0;
+    run.check_walls()?;
     run.begin()?;
     let mut throughout: Option<Vec<usize>> = None;
     for _ in 0..MOST_EVENTS {
@@ -189,11 +202,13 @@ pub(super) fn follow(
                     bounds: run.bounds.into_inner(),
                     stuck,
                     throughout: throughout.unwrap_or_default(),
+                    impacts: run.impacts,
                     evaluations: run.evaluations.get(),
                 });
             }
             Some(Meeting::Reached(index)) => run.meet(index)?,
             Some(Meeting::Released(index, side)) => run.release(index, side)?,
+            Some(Meeting::Struck(wall)) => run.strike(wall, to - from)?,
         }
     }
     let nearest = (0..run.sides.len()).min_by(|one, other| {
@@ -201,6 +216,32 @@ pub(super) fn follow(
         height(*one).total_cmp(&height(*other))
     });
     Err(SlidingStop::Chatter(nearest.unwrap_or(0)))
+}
+
+/// The state mirrored in every wall behind which it is, at time zero.
+pub(super) fn in_front_of_walls(
+    surfaces: &JumpSurfaces,
+    mut state: Vec<f64>,
+    parameter: f64,
+) -> Vec<f64> {
+    let n = surfaces.states;
+    for wall in &surfaces.walls {
+        let arguments: Vec<f64> = state
+            .iter()
+            .copied()
+            .chain([0.0, parameter])
+            .chain(surfaces.arguments.iter().map(|_| 1.0))
+            .collect();
+        let gap = wall.gap.call(&arguments);
+        if gap < 0.0 {
+            let normal = wall.normal.at(&arguments);
+            let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
+            for (k, value) in state.iter_mut().enumerate() {
+                *value -= 2.0 * gap * normal[(0, k)] / square;
+            }
+        }
+    }
+    state
 }
 
 /// Whether a state is on a surface, to rounding.
@@ -296,6 +337,9 @@ impl<'a> Run<'a> {
             sides: vec![1.0; surfaces.arguments.len()],
             held: Held::default(),
             bounds: RefCell::new([start.to_vec(), start.to_vec()]),
+            impacts: 0,
+            at_once: 0,
+            struck: f64::NEG_INFINITY,
             evaluations: Cell::new(0),
         }
     }
@@ -591,6 +635,16 @@ impl<'a> Run<'a> {
                 meetings.push(Meeting::Reached(index));
             }
         }
+        for (index, wall) in surfaces.walls.iter().enumerate() {
+            let unseen = UNSEEN * run.size_of_gap(index);
+            let gap = move |point: &Point<Vec<f64>>| {
+                let arguments = &mut *memory.borrow_mut();
+                run.set_arguments(point.t, &point.y, arguments);
+                wall.gap.call(arguments) + unseen
+            };
+            events.push(Event::new(gap, Action::Stop).falling());
+            meetings.push(Meeting::Struck(index));
+        }
         let begin = Point { t: run.time, y: run.values.clone() };
         let path = integrate_first_order(rates, begin, to, &events, options)
             .map_err(|_| SlidingStop::NoValue)?;
@@ -696,6 +750,82 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
+    /// The gap of a wall where every state changes by a unit of its size.
+    fn size_of_gap(&self, wall: usize) -> f64 {
+        let normal = self.surfaces.walls[wall].normal.at(&self.here());
+        (0..self.surfaces.states).map(|k| (normal[(0, k)] * self.sizes[k]).abs()).sum()
+    }
+
+    /// Checks that the motion does not begin behind a wall.
+    fn check_walls(&self) -> Result<(), SlidingStop> {
+        let arguments = self.here();
+        let is_behind = |(index, wall): (usize, &WallMap)| {
+            let gap = wall.gap.call(&arguments);
+            gap.is_nan() || gap < -AT_REST * self.size_of_gap(index)
+        };
+        match self.surfaces.walls.iter().enumerate().any(is_behind) {
+            true => Err(SlidingStop::NoValue),
+            false => Ok(()),
+        }
+    }
+
+    /// Carries out the impact on a wall, with the saltation matrix of the variations.
+    fn strike(&mut self, wall: usize, duration: f64) -> Result<(), SlidingStop> {
+        /// Part of a run below which an impact follows the one before at once.
+        const AT_ONCE: f64 = 1e-7;
+        const MOST_AT_ONCE: usize = 3;
+        self.refresh()?;
+        let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
+        let arguments = self.here();
+        let map = &self.surfaces.walls[wall];
+        let (normal, after) = (map.normal.at(&arguments), map.after.at(&arguments));
+        let rates = self.surfaces.rates.at(&arguments);
+        let before = DVector::from_fn(n, |i, _| rates[(i, 0)]);
+        let speed: f64 =
+            (0..n).map(|k| normal[(0, k)] * before[k]).sum::<f64>() + normal[(0, n + 1)];
+        // A gap that has turned to rounding opens again.
+        if speed >= 0.0 {
+            return Ok(());
+        }
+        self.at_once =
+            if self.time - self.struck < AT_ONCE * duration { self.at_once + 1 } else { 0 };
+        if self.at_once > MOST_AT_ONCE {
+            return Err(SlidingStop::RestsOnWall);
+        }
+        (self.struck, self.impacts) = (self.time, self.impacts + 1);
+        // Onto the wall, from which the event is a rounding away, and away from it.
+        let gap = map.gap.call(&arguments);
+        let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
+        let variations = self.values.clone();
+        for i in 0..n {
+            self.values[i] = (after[(i, 0)] - gap * normal[(0, i)] / square) / self.sizes[i];
+        }
+        self.begin()?;
+        let Some(unit) = self.unit else { return Ok(()) };
+        let rates = self.surfaces.rates.at(&self.here());
+        // R_y f + R_t - f behind.
+        let lost = DVector::from_fn(n, |i, _| {
+            let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * before[k]).sum();
+            carried + after[(i, n + 2)] - rates[(i, 0)]
+        });
+        for column in 0..width {
+            let own = |k: usize| variations[n + k * width + column] * self.sizes[k];
+            let by_parameter = if column == n { unit } else { 0.0 };
+            let height: f64 = (0..n).map(|k| normal[(0, k)] * own(k)).sum::<f64>()
+                + by_parameter * normal[(0, n)];
+            let varied: Vec<f64> = (0..n)
+                .map(|i| {
+                    let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * own(k)).sum();
+                    carried + by_parameter * after[(i, 1 + n)] - lost[i] * height / speed
+                })
+                .collect();
+            for (i, varied) in varied.into_iter().enumerate() {
+                self.values[n + i * width + column] = varied / self.sizes[i];
+            }
+        }
+        if self.held.is_empty() { Ok(()) } else { self.lose_normals() }
+    }
+
     /// Leaves a surface to a side, unless others on which it sticks too can take over.
     fn release(&mut self, index: usize, side: f64) -> Result<(), SlidingStop> {
         if !self.held.tied.is_empty() {
@@ -792,7 +922,7 @@ mod tests {
     fn followed(rates: [&str; 2], start: [f64; 4], time: f64) -> Result<SlidingRun, SlidingStop> {
         let states: Vec<Symbol> = ["x", "y", "x'", "y'"].map(Symbol::new).into();
         let right = ["x'", "y'", rates[0], rates[1]].map(|text| text.parse::<Expr>().expect(text));
-        let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into());
+        let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into(), &[]);
         let surfaces = surfaces.expect("surfaces").expect("jumps");
         let options = IntegrationOptions::with_tolerance(1e-12);
         follow(&surfaces, &start, [0.0, time], 1.0, &[1.0; 4], Some(1.0), &options)
@@ -811,7 +941,7 @@ mod tests {
                 let states: Vec<Symbol> = ["x", "y", "x'", "y'"].map(Symbol::new).into();
                 let right = ["x'", "y'", rates[0], rates[1]];
                 let right = right.map(|text| text.parse::<Expr>().expect(text));
-                let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into());
+                let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into(), &[]);
                 let surfaces = surfaces.expect("surfaces").expect("jumps");
                 let options = IntegrationOptions::with_tolerance(1e-12);
                 let run = follow(&surfaces, &start, [0.0, 9.0], p, &[1.0; 4], Some(1.0), &options);

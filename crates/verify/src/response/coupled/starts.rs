@@ -78,7 +78,7 @@ impl CoupledProblem<'_> {
             let each = one.iter().zip(other).zip(&sizes);
             each.map(|((one, other), size)| ((one - other) / size).abs()).fold(0.0, f64::max)
         };
-        let mut past: Vec<Vec<f64>> = vec![start];
+        let mut past: Vec<Vec<f64>> = vec![self.in_front_of_walls(start, parameter)];
         for _ in 0..most {
             let last = past.last()?;
             let next = self.after(last, [0.0, TAU], parameter, scale)?;
@@ -92,6 +92,11 @@ impl CoupledProblem<'_> {
         let state = past.pop()?;
         let spread = past.iter().map(|before| apart(before, &state)).fold(0.0, f64::max);
         Some(Settled { state, periods: None, spread })
+    }
+
+    /// The state mirrored in every wall behind which it is at the beginning of a period.
+    fn in_front_of_walls(&self, state: Vec<f64>, parameter: f64) -> Vec<f64> {
+        self.in_phase.as_ref().unwrap_or(&self.in_time).in_front_of_walls(state, parameter)
     }
 
     /// A state of random directions, of a size between a part of that of the largest motion and
@@ -164,7 +169,10 @@ impl CoupledProblem<'_> {
             }
             advance();
         }
-        let rest = |parameter: f64| Start { parameter, unknowns: vec![0.0; n] };
+        let rest = |parameter: f64| Start {
+            parameter,
+            unknowns: self.in_front_of_walls(vec![0.0; n], parameter),
+        };
         for parameter in self.values(values) {
             self.follow_from(&rest(parameter), &mut known);
             advance();
@@ -190,6 +198,9 @@ impl CoupledProblem<'_> {
         }
         if self.rests.get() {
             return ResponseError::NothingMoves { parameter, range: self.question.range };
+        }
+        if self.in_phase.iter().chain([&self.in_time]).any(Flow::rested_on_wall) {
+            return ResponseError::RestsOnWall;
         }
         let stopped = self.in_phase.iter().chain([&self.in_time]).find_map(Flow::stopped);
         match stopped {

@@ -64,7 +64,27 @@ impl Table {
     }
 }
 
-/// Rates with the surfaces across which they jump, compiled. The arguments of all functions are the
+/// A rigid wall in the time of a flow.
+#[derive(Clone, Debug)]
+pub(super) struct FlowWall {
+    /// The gap in the states, the time and the parameter.
+    pub(super) gap: Expr,
+    /// All states after an impact.
+    pub(super) after: Vec<Expr>,
+}
+
+/// A rigid wall, compiled; the arguments are those of the rates.
+#[derive(Clone, Debug)]
+pub(super) struct WallMap {
+    /// The gap g.
+    pub(super) gap: CompiledFunction,
+    /// g_y, g_p, g_t in one row.
+    pub(super) normal: Table,
+    /// The states R after an impact, R_y, R_p, R_t, a row for each state.
+    pub(super) after: Table,
+}
+
+/// Rates with the surfaces across which they jump and the walls on which states do, compiled. The arguments of all functions are the
 /// states, the time, the parameter, then the side of each surface.
 #[derive(Clone, Debug)]
 pub(super) struct JumpSurfaces {
@@ -89,11 +109,13 @@ pub(super) struct JumpSurfaces {
     pub(super) rises: Table,
     /// g_y, then g_p.
     pub(super) varied_rises: Table,
+    /// The rigid walls.
+    pub(super) walls: Vec<WallMap>,
 }
 
 impl JumpSurfaces {
     /// Finds the surfaces of right sides in the states, the time and the parameter; `None` if nothing
-    /// jumps.
+    /// jumps, neither a rate nor a state.
     ///
     /// # Errors
     /// [`ResponseError::CoupledJump`] for a product of jumps that a motion can both stay on;
@@ -103,6 +125,7 @@ impl JumpSurfaces {
         time: Symbol,
         right: &[Expr],
         parameter: Symbol,
+        walls: &[FlowWall],
     ) -> Result<Option<Self>, ResponseError> {
         let known: Vec<Symbol> = states.iter().copied().chain([time, parameter]).collect();
         let stem = fresh_stem("side", &known);
@@ -114,7 +137,7 @@ impl JumpSurfaces {
             }
         }
         let count = sides.arguments.len();
-        if count == 0 {
+        if count == 0 && walls.is_empty() {
             return Ok(None);
         }
         let names: Vec<Symbol> = (0..count).map(|index| sides.name(index)).collect();
@@ -177,8 +200,17 @@ impl JumpSurfaces {
             let rows: Vec<Vec<Expr>> = rows.iter().map(row).collect::<Result<_, _>>()?;
             Table::new(&rows, &all)
         };
+        let by_all: Vec<Symbol> = states.iter().copied().chain([parameter, time]).collect();
+        let wall = |wall: &FlowWall| -> Result<WallMap, ResponseError> {
+            Ok(WallMap {
+                gap: CompiledFunction::new(&wall.gap, &all)?,
+                normal: table(std::slice::from_ref(&wall.gap), false, &[&by_all])?,
+                after: table(&wall.after, true, &[&by_all])?,
+            })
+        };
         Ok(Some(Self {
             states: states.len(),
+            walls: walls.iter().map(wall).collect::<Result<_, _>>()?,
             heights: sides
                 .arguments
                 .iter()
@@ -345,7 +377,7 @@ mod tests {
         let states: Vec<Symbol> = ["x", "y", "x'", "y'"].map(Symbol::new).into();
         let velocities = ["x'", "y'"];
         let right = velocities.iter().chain(rates).map(|text| text.parse().expect("a rate"));
-        JumpSurfaces::new(&states, "t".into(), &right.collect::<Vec<Expr>>(), "v".into())
+        JumpSurfaces::new(&states, "t".into(), &right.collect::<Vec<Expr>>(), "v".into(), &[])
     }
 
     #[test]

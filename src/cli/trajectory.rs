@@ -43,12 +43,23 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
             (motion, Some(judge))
         }
     };
+    let known_until = motion.known_until();
     let report = TrajectoryReport {
         motion: &motion,
         judge: judge.as_ref(),
         samples: &asked.sample,
-        known_until: motion.known_until(),
+        known_until,
+        lyapunov: match asked.lyapunov || known_until.is_some() {
+            true => motion.lyapunov_exponent(),
+            false => None,
+        },
     };
+    if asked.lyapunov && report.lyapunov.is_none() {
+        return Err(Failure::because(
+            "no Lyapunov exponent: the motion ends early, or motions nearby fall together with it, as where friction holds it\n  help: leave out --lyapunov"
+                .to_owned(),
+        ));
+    }
     let answer = Answer {
         document: &report::trajectory(&report),
         width: width(common.output.as_deref()),

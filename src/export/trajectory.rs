@@ -33,7 +33,7 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x'".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[0.0], known_until: None };
+/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[0.0], known_until: None, lyapunov: None };
 /// assert_eq!(lindstedt::export::trajectory::csv(&report), "t,x,x'\n0,0,1\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -66,7 +66,7 @@ pub fn csv(report: &TrajectoryReport) -> String {
 /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None };
+/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None, lyapunov: None };
 /// assert!(lindstedt::export::trajectory::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

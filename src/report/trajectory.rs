@@ -9,8 +9,8 @@ use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Crossing, DISPLACEMENT, Impact, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest,
-    WallRecord, WallRest, in_words,
+    Crossing, DISPLACEMENT, Impact, LyapunovExponent, PoincareSection, SweptMotion, Trajectory,
+    TrajectoryRequest, WallRecord, WallRest, in_words,
 };
 use crate::wall::Wall;
 
@@ -42,6 +42,8 @@ pub struct TrajectoryReport<'a> {
     /// The time until which the motion is known to six digits, if that is not its end
     /// ([`Trajectory::known_until`]).
     pub known_until: Option<f64>,
+    /// The largest Lyapunov exponent, if it was asked for.
+    pub lyapunov: Option<LyapunovExponent>,
 }
 
 /// The reason not to trust a motion that was followed to its end.
@@ -108,7 +110,7 @@ impl TrajectoryReport<'_> {
 /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0], known_until: None };
+/// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0], known_until: None, lyapunov: None };
 /// let text = lindstedt::export::text::document(&lindstedt::report::trajectory(&report), 120);
 /// assert!(text.contains("0.540302"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -382,6 +384,17 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         };
         let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere{beyond}");
         facts.push(("six digits hold", format!("until t = {}, {why}", decimal(known))));
+    }
+    if let Some(LyapunovExponent { value, error, from }) = report.lyapunov {
+        facts.push((
+            "Lyapunov exponent",
+            format!(
+                "{} with a standard error of {}, the largest, from t = {} on",
+                significant(value, 3),
+                significant(error, 2),
+                decimal(from)
+            ),
+        ));
     }
     if let Some(judge) = report.judge {
         let apart = significant(motion.difference(judge), 2);

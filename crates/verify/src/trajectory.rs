@@ -40,7 +40,7 @@ use crate::system::{
 use crate::wall::{Wall, WallError};
 
 pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
-pub use sensitivity::DISPLACEMENT;
+pub use sensitivity::{DISPLACEMENT, LyapunovExponent};
 pub use sweep::{SweptMotion, sweep};
 
 use hold::Layout;
@@ -462,7 +462,8 @@ impl TrajectoryRequest {
         integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
         let walls = CompiledWalls::new(&self)?;
-        let motion = self.across_walls(walls.as_ref(), ready, first, integrator)?;
+        let motion =
+            self.across_walls(walls.as_ref(), ready, first, (0.0, ready.start(&self)), integrator)?;
         let mut motion = Trajectory {
             course: self,
             integrator,

@@ -47,6 +47,10 @@ pub struct MotionDocument {
     /// 1e-12 of it leads elsewhere. Left out where they are known to the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_until: Option<f64>,
+    /// The largest Lyapunov exponent. Left out where the states are known to the end and it was not asked
+    /// for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lyapunov: Option<LyapunovDocument>,
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,
     /// on a belt or on another body.
     pub held: Vec<[f64; 2]>,
@@ -113,6 +117,18 @@ pub struct EnergyAccount {
     pub works: Map<f64>,
     /// The largest part not accounted for at any time, over the largest energy.
     pub residual: f64,
+}
+
+/// The largest Lyapunov exponent of a motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "LyapunovExponent"))]
+pub struct LyapunovDocument {
+    /// The exponent, per unit of time.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// The time from which on the motion counts.
+    pub from: f64,
 }
 
 /// Rigid walls, the impacts on them and the rests.
@@ -213,7 +229,7 @@ impl WallsDocument {
 /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
-/// let document = lindstedt::export::json::motion(&TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None });
+/// let document = lindstedt::export::json::motion(&TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None, lyapunov: None });
 /// assert!(document.complete && document.samples.len() == 21);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -247,6 +263,11 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),
         known_until: report.known_until,
+        lyapunov: report.lyapunov.map(|exponent| LyapunovDocument {
+            value: exponent.value,
+            standard_error: exponent.error,
+            from: exponent.from,
+        }),
         held: motion.sticking_intervals().collect(),
         walls: (!course.walls.is_empty()).then(|| WallsDocument::new(motion)),
         stopped: in_words(motion.reason()).to_owned(),

@@ -8,9 +8,17 @@
 //!
 //! For a chaotic motion this time is short: `d` grows like `exp(lambda t)` with the largest
 //! exponent of Lyapunov (G. Benettin, L. Galgani, J.-M. Strelcyn, *Phys. Rev. A* 14 (1976) 2338,
-//! who follow two motions side by side).
+//! who follow two motions side by side):
+//!
+//! ```text
+//! lambda = <ln(d(t_k + tau)/d_0)>/tau        z begins anew at every t_k, at the distance d_0 in the direction that it had
+//! ```
+//!
+//! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
+//! standard error is that of the means of ten parts of the motion.
 
-use super::{ACCOUNTS, Trajectory};
+use super::walls::CompiledWalls;
+use super::{ACCOUNTS, Trajectory, TrajectoryRequest};
 use crate::system::PathEnd;
 
 /// The relative displacement of the start: larger than rounding, and so small that differences grow
@@ -27,7 +35,99 @@ const BEGINNING: u32 = 100;
 /// The relative error at which the sixth digit is lost.
 const SIX_DIGITS: f64 = 1e-6;
 
+/// The largest Lyapunov exponent of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LyapunovExponent {
+    /// The exponent, per unit of time: positive where motions nearby part from each other.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+    /// The time from which on the motion counts.
+    pub from: f64,
+}
+
 impl Trajectory {
+    /// The largest Lyapunov exponent, from the second quarter of the motion on, or from the time `after`
+    /// of the course. The cost is that of the motion. `None` if it ends early, or if a motion nearby
+    /// cannot be followed or falls together with this one.
+    ///
+    /// ```
+    /// # use lindstedt_verify as lindstedt;
+    /// use lindstedt::Oscillator;
+    /// use lindstedt::trajectory::TrajectoryRequest;
+    ///
+    /// // Of x'' + c x' + x = 0 it is -c/2.
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 0.2*x' + x = 0")?);
+    /// course.begin("x".into(), 1.0)?;
+    /// let exponent = course.follow()?.lyapunov_exponent().ok_or("an exponent")?;
+    /// assert!((exponent.value + 0.1).abs() < 1e-2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn lyapunov_exponent(&self) -> Option<LyapunovExponent> {
+        const INTERVALS: u32 = 400;
+        const PARTS: usize = 10;
+        /// Distance at which the second motion begins, relative to the sizes of the states.
+        const APART: f64 = 1e-8;
+        if !self.is_complete() {
+            return None;
+        }
+        let quarter = 0.25 * self.end();
+        let from = if self.course.after > 0.0 { self.course.after } else { quarter };
+        let step = (self.end() - from) / f64::from(INTERVALS);
+        let time = |index: u32| from + step * f64::from(index);
+        let reference: Vec<Vec<f64>> =
+            (0..=INTERVALS).map(|index| self.states_at(time(index))).collect::<Option<_>>()?;
+        let count = self.course.rates.states.len();
+        let mut sizes = vec![0.0_f64; count];
+        for state in &reference {
+            for (size, value) in sizes.iter_mut().zip(state) {
+                *size = size.max(value.abs());
+            }
+        }
+        let course = TrajectoryRequest { energy: None, section: None, ..self.course.clone() };
+        let ready = course.ready(self.integrator).ok()?;
+        let walls = CompiledWalls::new(&course).ok()?;
+        let mut away: Vec<f64> = sizes.iter().map(|size| APART * size).collect();
+        let mut growths = Vec::new();
+        for (index, pair) in reference.windows(2).enumerate() {
+            let [begin, end] = pair else { continue };
+            let [now, then] = [index as u32, index as u32 + 1].map(time);
+            let leg = TrajectoryRequest { duration: then, ..course.clone() };
+            let displaced = |sign: f64| {
+                let start = begin.iter().zip(&away).map(|(value, away)| value + sign * away);
+                let start = (now, start.collect());
+                let motion = leg.across_walls(walls.as_ref(), &ready, None, start, self.integrator);
+                let motion = motion.ok().filter(|motion| motion.reason == PathEnd::Reached)?;
+                motion.pieces.last()?.states_at(then).map(|state| (state, sign))
+            };
+            // A start behind a wall is mirrored.
+            let (state, sign) = displaced(1.0).or_else(|| displaced(-1.0))?;
+            let apart: Vec<f64> =
+                state.iter().zip(end).map(|(one, other)| sign * (one - other)).collect();
+            let size = |apart: &[f64]| {
+                let parts = apart.iter().zip(&sizes).filter(|(_, size)| **size > 0.0);
+                parts.map(|(apart, size)| (apart / size).powi(2)).sum::<f64>().sqrt()
+            };
+            let (before, after) = (size(&away), size(&apart));
+            if !(after > 0.0 && after.is_finite()) {
+                return None;
+            }
+            growths.push((after / before).ln() / step);
+            away = apart.iter().map(|apart| apart * (APART / after)).collect();
+        }
+        // The first part turns the displacement into the direction that grows.
+        let means: Vec<f64> = growths
+            .chunks(growths.len().div_ceil(PARTS + 1))
+            .skip(1)
+            .map(|part| part.iter().sum::<f64>() / part.len() as f64)
+            .collect();
+        let number = means.len() as f64;
+        let value = means.iter().sum::<f64>() / number;
+        let square: f64 = means.iter().map(|mean| (mean - value).powi(2)).sum();
+        let error = (square / (number * (number - 1.0))).sqrt();
+        (value.is_finite() && error.is_finite()).then_some(LyapunovExponent { value, error, from })
+    }
+
     /// The time until which the states are known to six digits of their sizes, among two thousand
     /// instants of the motion; later, a start with the relative displacement [`DISPLACEMENT`] leads
     /// elsewhere. `None` if they are known to the end. The cost is that of the motion.

@@ -215,9 +215,9 @@ impl CompiledWalls {
     ///
     /// # Errors
     /// The first wall behind which it begins.
-    pub(super) fn check_start(&self, state: &[f64]) -> Result<(), TrajectoryError> {
+    pub(super) fn check_start(&self, time: f64, state: &[f64]) -> Result<(), TrajectoryError> {
         for (index, wall) in self.walls.iter().enumerate() {
-            let at = self.at(index, 0.0, state);
+            let at = self.at(index, time, state);
             if at.gap < 0.0 && !self.is_on(&at, state) {
                 let gap = wall.impact.gap.clone();
                 return Err(TrajectoryError::BehindWall { gap, value: at.gap });
@@ -423,23 +423,25 @@ pub(super) struct MotionWithWalls {
 }
 
 impl TrajectoryRequest {
-    /// The motion from impact to impact. The flight from the start is given if it has been followed.
+    /// The motion from impact to impact, from a time and the state there. The flight from there is given
+    /// if it has been followed.
     pub(super) fn across_walls(
         &self,
         walls: Option<&CompiledWalls>,
         ready: &Ready,
         first: Option<Path>,
+        (from, start): (f64, Vec<f64>),
         integrator: Integrator,
     ) -> Result<MotionWithWalls, TrajectoryError> {
         let mut record = WallRecord::default();
         let (mut pieces, mut first) = (Vec::new(), first);
-        let (mut from, mut state) = (0.0, ready.start(self));
+        let (mut from, mut state) = (from, start);
         let mut largest = Vec::new();
         let mut resting: Vec<usize> = Vec::new();
         if let Some(walls) = walls {
-            walls.check_start(&state)?;
-            resting = walls.settle(0.0, &mut state, None, &[], &[], &mut record);
-            largest = walls.gaps(0.0, &state);
+            walls.check_start(from, &state)?;
+            resting = walls.settle(from, &mut state, None, &[], &[], &mut record);
+            largest = walls.gaps(from, &state);
         }
         let mut prepared: BTreeMap<Vec<usize>, Ready> = BTreeMap::new();
         let (mut idle, mut steps) = (0, 0);

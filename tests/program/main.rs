@@ -21,6 +21,7 @@ mod responses;
 mod shards;
 mod simulate_cli;
 mod unread;
+mod walls;
 mod words;
 
 /// A time limit of less than a nanosecond: it is up before the work begins, on however busy a machine.

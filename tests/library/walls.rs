@@ -53,7 +53,9 @@ fn states(motion: &Trajectory, time: f64) -> Vec<f64> {
 #[test]
 fn a_ball_comes_to_rest_after_infinitely_many_impacts() {
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-        for (g, h, e) in [(1.0, 1.0, 0.8), (9.81, 0.3, 0.5), (9.81, 1e-6, 0.9), (1e3, 5.0, 0.0)] {
+        for (g, h, e) in
+            [(1.0_f64, 1.0_f64, 0.8_f64), (9.81, 0.3, 0.5), (9.81, 1e-6, 0.9), (1e3, 5.0, 0.0)]
+        {
             let course = course("x'' + g = 0", &[("x > 0", "e")], &format!("g={g} e={e}"));
             let fall = (2.0 * h / g).sqrt();
             let rest = fall * (1.0 + e) / (1.0 - e);

@@ -48,7 +48,7 @@ pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
-use walls::{CompiledWalls, WORK_OF_WALLS, resting_equations};
+use walls::{CompiledWalls, WORK_OF_WALLS, WallRun, resting_equations};
 pub use walls::{Impact, WallRecord, WallRest};
 
 /// An initial value problem: equations, initial state and duration.
@@ -413,7 +413,10 @@ impl TrajectoryRequest {
     /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         let ready = self.ready(integrator)?;
-        self.finish(&ready, None, integrator)
+        let mut run = WallRun::new(&self, &ready, (0.0, ready.start(&self)), integrator)?;
+        run.complete()?;
+        let ended = run.finish();
+        self.motion(ended, integrator)
     }
 
     /// Follows several courses by their series, those that differ in numbers and starts alone side
@@ -424,7 +427,10 @@ impl TrajectoryRequest {
     ) -> Vec<Result<Trajectory, TrajectoryError>> {
         let made_ready = |course: &Self| {
             let adapted = match ready {
-                Some(ready) => course.check_start().map(|()| ready.with_numbers(course))?,
+                Some(ready) => {
+                    course.check_start()?;
+                    ready.with_numbers(course)
+                }
                 None => None,
             };
             let ready = adapted.map_or_else(|| course.ready(Integrator::Taylor), Ok)?;
@@ -432,46 +438,67 @@ impl TrajectoryRequest {
             Ok::<_, TrajectoryError>((ready, start))
         };
         let all: Vec<_> = courses.iter().map(made_ready).collect();
-        let duration = courses.first().map_or(0.0, |course| course.duration);
-        let with_walls = courses.iter().any(|course| !course.walls.is_empty());
-        let motions = all.iter().flatten().filter(|_| !with_walls);
-        let motions =
-            motions.map(|(ready, start)| (&ready.solver, [0.0, duration], start.as_slice()));
-        let paths = solve_together(&motions.collect::<Vec<_>>());
-        let mut paths = paths.into_iter();
-        let mut first = |course: &Self, ready: &Ready| match paths.next() {
-            _ if with_walls => course.clone().finish(ready, None, Integrator::Taylor),
-            Some(path) => course.clone().finish(ready, Some(path?), Integrator::Taylor),
-            None => course.clone().follow_by(Integrator::Taylor),
-        };
-        let followed = |(course, ready): (Self, &Result<(Ready, Vec<f64>), TrajectoryError>)| {
-            let first = match ready {
-                Ok((ready, _)) => first(&course, ready),
-                Err(error) => Err(error.clone()),
+        let mut runs: Vec<Result<WallRun, TrajectoryError>> = courses
+            .iter()
+            .zip(&all)
+            .map(|(course, ready)| {
+                let (ready, start) = ready.as_ref().map_err(Clone::clone)?;
+                WallRun::new(course, ready, (0.0, start.clone()), Integrator::Taylor)
+            })
+            .collect();
+        // Each round goes on to the next impact of every motion.
+        loop {
+            let is_going = |run: &mut Result<WallRun, _>| {
+                run.as_mut().is_ok_and(|run| !run.has_ended() && run.next_flight().is_ok())
             };
+            let going: Vec<bool> = runs.iter_mut().map(is_going).collect();
+            let flights = runs.iter_mut().zip(&going).filter(|(_, going)| **going);
+            let flights: Vec<_> =
+                flights.filter_map(|(run, _)| run.as_mut().ok()?.next_flight().ok()).collect();
+            if flights.is_empty() {
+                break;
+            }
+            let mut paths = solve_together(&flights).into_iter();
+            for (run, _) in runs.iter_mut().zip(&going).filter(|(_, going)| **going) {
+                let path = paths.next().map(|path| path.map_err(TrajectoryError::from));
+                let advanced = match (run.as_mut(), path) {
+                    (Ok(run), Some(Ok(path))) => run.advance(Some(path)),
+                    (Ok(_), Some(Err(error))) => Err(error),
+                    _ => Ok(()),
+                };
+                if let Err(error) = advanced {
+                    *run = Err(error);
+                }
+            }
+        }
+        let ended = |run: Result<WallRun, TrajectoryError>| {
+            run.and_then(|mut run| {
+                run.complete()?;
+                Ok(run.finish())
+            })
+        };
+        let ended: Vec<_> = runs.into_iter().map(ended).collect();
+        let followed = |(course, ended): (Self, Result<_, TrajectoryError>)| {
+            let first = ended.and_then(|ended| course.clone().motion(ended, Integrator::Taylor));
             course.or_by_evaluation(first)
         };
-        courses.into_iter().zip(&all).map(followed).collect()
+        courses.into_iter().zip(ended).map(followed).collect()
     }
 
-    /// The whole motion; its first stretch is given if it has been followed.
-    fn finish(
+    /// The motion of pieces that have been followed.
+    fn motion(
         self,
-        ready: &Ready,
-        first: Option<Path>,
+        (pieces, reason, walls): (Vec<TrajectorySegment>, PathEnd, WallRecord),
         integrator: Integrator,
     ) -> Result<Trajectory, TrajectoryError> {
-        let walls = CompiledWalls::new(&self)?;
-        let motion =
-            self.across_walls(walls.as_ref(), ready, first, (0.0, ready.start(&self)), integrator)?;
         let mut motion = Trajectory {
             course: self,
             integrator,
             balance: None,
-            walls: motion.record,
-            pieces: motion.pieces,
+            walls,
+            pieces,
             on_section: OnSection::default(),
-            reason: motion.reason,
+            reason,
         };
         motion.balance = motion.account();
         motion.on_section = motion.find_on_section()?;
@@ -556,6 +583,7 @@ impl TrajectoryRequest {
             solver: system.solver(&events, &self.options(integrator)),
             recorded,
             guards,
+            walls: if resting.is_empty() { CompiledWalls::new(self)? } else { None },
             states,
             right,
             values,
@@ -580,6 +608,8 @@ struct Ready {
     recorded: usize,
     /// Functions at whose fall through zero a stretch ends: the gap of each wall, or its force.
     guards: Vec<Expr>,
+    /// The walls, of a flight.
+    walls: Option<CompiledWalls>,
 }
 
 impl Ready {
@@ -605,6 +635,7 @@ impl Ready {
             right: self.right.clone(),
             recorded: self.recorded,
             guards: self.guards.clone(),
+            walls: self.walls.as_ref().map(|walls| walls.with_numbers(course)).transpose().ok()?,
             solver: solver.with_critical_times(&critical),
             values,
             critical,

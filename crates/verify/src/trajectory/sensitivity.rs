@@ -17,7 +17,7 @@
 //! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
 //! standard error is that of the means of ten parts of the motion.
 
-use super::walls::CompiledWalls;
+use super::walls::WallRun;
 use super::{ACCOUNTS, Trajectory, TrajectoryRequest};
 use crate::system::PathEnd;
 
@@ -86,7 +86,6 @@ impl Trajectory {
         }
         let course = TrajectoryRequest { energy: None, section: None, ..self.course.clone() };
         let ready = course.ready(self.integrator).ok()?;
-        let walls = CompiledWalls::new(&course).ok()?;
         let mut away: Vec<f64> = sizes.iter().map(|size| APART * size).collect();
         let mut growths = Vec::new();
         for (index, pair) in reference.windows(2).enumerate() {
@@ -96,9 +95,11 @@ impl Trajectory {
             let displaced = |sign: f64| {
                 let start = begin.iter().zip(&away).map(|(value, away)| value + sign * away);
                 let start = (now, start.collect());
-                let motion = leg.across_walls(walls.as_ref(), &ready, None, start, self.integrator);
-                let motion = motion.ok().filter(|motion| motion.reason == PathEnd::Reached)?;
-                motion.pieces.last()?.states_at(then).map(|state| (state, sign))
+                let mut run = WallRun::new(&leg, &ready, start, self.integrator).ok()?;
+                run.complete().ok()?;
+                let (pieces, reason, _) = run.finish();
+                let state = pieces.last()?.states_at(then)?;
+                (reason == PathEnd::Reached).then_some((state, sign))
             };
             // A start behind a wall is mirrored.
             let (state, sign) = displaced(1.0).or_else(|| displaced(-1.0))?;

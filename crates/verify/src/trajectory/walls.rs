@@ -20,7 +20,7 @@ use super::{Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment};
 use crate::expr::{CompiledList, Expr, ExprError};
 use crate::mechanics::{MechanicsError, Rates, linear};
 use crate::symbol::Symbol;
-use crate::system::{Integrator, Path, PathEnd, rate_along};
+use crate::system::{Integrator, Path, PathEnd, Solver, rate_along};
 use crate::wall::{Wall, WallImpact};
 
 /// Largest gap that counts as zero up to rounding, relative to the positions in it.
@@ -115,7 +115,8 @@ pub(super) struct CompiledWalls {
     energy: Option<CompiledList>,
     /// The index among all states of the work of the walls; `None` if it is not accounted for.
     work: Option<usize>,
-    /// The values of the parameters, in the order of the arguments.
+    /// The parameters, in the order of the arguments, and their values.
+    names: Vec<Symbol>,
     numbers: Vec<f64>,
     /// The numbers of coordinates and of states.
     counts: [usize; 2],
@@ -143,7 +144,7 @@ impl CompiledWalls {
         let constant = course.values.iter().filter(|(name, _)| !moving.contains(name));
         let (names, numbers): (Vec<Symbol>, Vec<f64>) =
             constant.map(|(name, value)| (*name, *value)).unzip();
-        let arguments = [moving, names].concat();
+        let arguments = [moving, names.clone()].concat();
         let compiled = |wall: &WallEquations| {
             let jerk = rate_along(&wall.free, Symbol::new("t"), states, &course.rates.right);
             let mut all = vec![
@@ -162,18 +163,25 @@ impl CompiledWalls {
         Ok(Some(Self {
             functions: walls.iter().map(compiled).collect::<Result<_, _>>()?,
             walls,
-            restitution: course
-                .walls
-                .iter()
-                .map(|wall| wall.restitution_at(&course.values))
-                .collect::<Result<_, _>>()?,
+            restitution: restitutions(course)?,
             energy: energy.and_then(|energy| {
                 CompiledList::new(std::slice::from_ref(&energy.value), &arguments).ok()
             }),
             work: work.map(|index| states.len() + index),
+            names,
             numbers,
             counts: [course.coordinates.len(), states.len()],
         }))
+    }
+
+    /// These walls with the numbers of a course that differs in its numbers alone.
+    pub(super) fn with_numbers(&self, course: &TrajectoryRequest) -> Result<Self, TrajectoryError> {
+        let numbers = self.names.iter().map(|name| course.values.get(name).copied());
+        Ok(Self {
+            numbers: numbers.map(|number| number.unwrap_or(f64::NAN)).collect(),
+            restitution: restitutions(course)?,
+            ..self.clone()
+        })
     }
 
     /// The values of a list of functions at a state.
@@ -415,80 +423,161 @@ impl CompiledWalls {
     }
 }
 
-/// A motion across impacts.
-pub(super) struct MotionWithWalls {
+/// A motion that is followed from impact to impact.
+pub(super) struct WallRun<'a> {
+    course: &'a TrajectoryRequest,
+    /// The equations of flight, with the walls.
+    flight: &'a Ready,
+    integrator: Integrator,
+    /// The equations of rest on walls, by their indices.
+    rest: BTreeMap<Vec<usize>, Ready>,
+    from: f64,
+    state: Vec<f64>,
+    resting: Vec<usize>,
+    /// The largest gap of each wall so far.
+    largest: Vec<f64>,
+    /// Number of stretches of length zero in a row.
+    idle: usize,
+    steps: usize,
+    /// The reason why it has ended; `None` while it goes on.
+    reason: Option<PathEnd>,
     pub(super) pieces: Vec<TrajectorySegment>,
-    pub(super) reason: PathEnd,
-    pub(super) record: WallRecord,
+    record: WallRecord,
 }
 
-impl TrajectoryRequest {
-    /// The motion from impact to impact, from a time and the state there. The flight from there is given
-    /// if it has been followed.
-    pub(super) fn across_walls(
-        &self,
-        walls: Option<&CompiledWalls>,
-        ready: &Ready,
-        first: Option<Path>,
-        (from, start): (f64, Vec<f64>),
+impl<'a> WallRun<'a> {
+    /// Begins a motion at a time, with the state there.
+    ///
+    /// # Errors
+    /// A start behind a wall.
+    pub(super) fn new(
+        course: &'a TrajectoryRequest,
+        flight: &'a Ready,
+        (from, mut state): (f64, Vec<f64>),
         integrator: Integrator,
-    ) -> Result<MotionWithWalls, TrajectoryError> {
+    ) -> Result<Self, TrajectoryError> {
         let mut record = WallRecord::default();
-        let (mut pieces, mut first) = (Vec::new(), first);
-        let (mut from, mut state) = (from, start);
-        let mut largest = Vec::new();
-        let mut resting: Vec<usize> = Vec::new();
-        if let Some(walls) = walls {
+        let (mut resting, mut largest) = (vec![], vec![]);
+        if let Some(walls) = &flight.walls {
             walls.check_start(from, &state)?;
             resting = walls.settle(from, &mut state, None, &[], &[], &mut record);
             largest = walls.gaps(from, &state);
         }
-        let mut prepared: BTreeMap<Vec<usize>, Ready> = BTreeMap::new();
-        let (mut idle, mut steps) = (0, 0);
-        let reason = loop {
-            let ready = match resting.is_empty() {
-                true => ready,
-                false => {
-                    if !prepared.contains_key(&resting) {
-                        prepared.insert(resting.clone(), self.ready_on(&resting, integrator)?);
-                    }
-                    &prepared[&resting]
-                }
-            };
-            let (stretch, reason) = self.pieces(ready, first.take(), from, state, integrator)?;
-            steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
-            let end = stretch.last().map_or(from, TrajectorySegment::end);
-            let last = stretch.last().and_then(|piece| piece.states_at(end));
-            let recorded = stretch.last().map_or(0, |piece| piece.recorded);
-            if let Some(walls) = walls {
-                walls.note_largest(&stretch, &mut largest);
-            }
-            pieces.extend(stretch);
-            let (Some(walls), Some(last), PathEnd::Event(event)) = (walls, last, reason) else {
-                break reason;
-            };
-            idle = if end > from { 0 } else { idle + 1 };
-            if idle > IDLE {
-                break PathEnd::Sticks;
-            }
-            if steps >= self.step_limit {
-                break PathEnd::StepLimit;
-            }
-            (from, state) = (end, last);
-            let guard = event - recorded;
-            let hit = (!resting.contains(&guard)).then_some(guard);
-            resting = walls.settle(from, &mut state, hit, &resting, &largest, &mut record);
+        Ok(Self {
+            course,
+            flight,
+            integrator,
+            rest: BTreeMap::new(),
+            from,
+            state,
+            resting,
+            largest,
+            idle: 0,
+            steps: 0,
+            reason: None,
+            pieces: vec![],
+            record,
+        })
+    }
+
+    /// Whether it has ended.
+    pub(super) fn has_ended(&self) -> bool {
+        self.reason.is_some()
+    }
+
+    /// The next integration: from where it is to the end, or to the next impact or release.
+    ///
+    /// # Errors
+    /// Equations of rest that cannot be formed.
+    pub(super) fn next_flight(&mut self) -> Result<(&Solver, [f64; 2], &[f64]), TrajectoryError> {
+        self.prepare()?;
+        let solver = &self.equations().solver;
+        Ok((solver, [self.from, self.course.duration], &self.state))
+    }
+
+    /// Prepares the equations of the walls on which it rests.
+    fn prepare(&mut self) -> Result<(), TrajectoryError> {
+        if !self.resting.is_empty() && !self.rest.contains_key(&self.resting) {
+            let ready = self.course.ready_on(&self.resting, self.integrator)?;
+            self.rest.insert(self.resting.clone(), ready);
+        }
+        Ok(())
+    }
+
+    /// The equations of flight, or of rest on walls.
+    fn equations(&self) -> &Ready {
+        self.rest.get(&self.resting).unwrap_or(self.flight)
+    }
+
+    /// Goes on to the next impact or release, or to the end; the path of the next integration is given
+    /// if it has been followed.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`].
+    pub(super) fn advance(&mut self, path: Option<Path>) -> Result<(), TrajectoryError> {
+        self.prepare()?;
+        let state = std::mem::take(&mut self.state);
+        let (stretch, reason) =
+            self.course.pieces(self.equations(), path, self.from, state, self.integrator)?;
+        self.steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
+        let end = stretch.last().map_or(self.from, TrajectorySegment::end);
+        let last = stretch.last().and_then(|piece| piece.states_at(end));
+        let recorded = stretch.last().map_or(0, |piece| piece.recorded);
+        let flight = self.flight;
+        if let Some(walls) = &flight.walls {
+            walls.note_largest(&stretch, &mut self.largest);
+        }
+        self.pieces.extend(stretch);
+        let (Some(walls), Some(last), PathEnd::Event(event)) = (&flight.walls, last, reason) else {
+            self.reason = Some(reason);
+            return Ok(());
         };
+        self.idle = if end > self.from { 0 } else { self.idle + 1 };
+        if self.idle > IDLE || self.steps >= self.course.step_limit {
+            let stuck = self.idle > IDLE;
+            self.reason = Some(if stuck { PathEnd::Sticks } else { PathEnd::StepLimit });
+            return Ok(());
+        }
+        (self.from, self.state) = (end, last);
+        let guard = event - recorded;
+        let hit = (!self.resting.contains(&guard)).then_some(guard);
+        let largest = &self.largest;
+        let record = &mut self.record;
+        self.resting =
+            walls.settle(self.from, &mut self.state, hit, &self.resting, largest, record);
+        Ok(())
+    }
+
+    /// Goes on to the end.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`].
+    pub(super) fn complete(&mut self) -> Result<(), TrajectoryError> {
+        while !self.has_ended() {
+            self.advance(None)?;
+        }
+        Ok(())
+    }
+
+    /// The pieces, the reason why it ended, and the impacts.
+    pub(super) fn finish(self) -> (Vec<TrajectorySegment>, PathEnd, WallRecord) {
+        let Self { pieces, mut record, .. } = self;
         let end = pieces.last().map_or(0.0, TrajectorySegment::end);
         for rest in record.rests.iter_mut().filter(|rest| rest.until.is_infinite()) {
             rest.until = end.max(rest.from);
         }
-        Ok(MotionWithWalls { pieces, reason, record })
+        (pieces, self.reason.unwrap_or(PathEnd::Interrupted), record)
     }
 }
 
 /// Number of consecutive stretches of length zero after which the motion is stuck.
 const IDLE: usize = 8;
+
+/// The coefficient of restitution of each wall.
+fn restitutions(course: &TrajectoryRequest) -> Result<Vec<f64>, TrajectoryError> {
+    let values = &course.values;
+    Ok(course.walls.iter().map(|wall| wall.restitution_at(values)).collect::<Result<_, _>>()?)
+}
 
 fn equations(course: &TrajectoryRequest) -> Result<Vec<WallEquations>, TrajectoryError> {
     course.walls.iter().map(|wall| WallEquations::new(course, wall)).collect()

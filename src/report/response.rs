@@ -269,6 +269,9 @@ fn end_in_words(
         BranchEnd::Held => {
             format!("It comes to rest at {place}: beyond, friction bears what drives it.")
         }
+        BranchEnd::Grazing => format!(
+            "It grazes a wall at {place}: beyond, a period has an impact less or more, and the map of a period has a root there."
+        ),
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use lindstedt::coupled::CoupledEquations;
 use lindstedt::response::bifurcation::BifurcationKind;
+use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{Equations, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::verify::Verdict;
 use lindstedt::wall::Wall;
@@ -118,6 +119,7 @@ fn a_branch_grazes_where_the_free_motion_reaches_the_wall() {
     let free = found.branches.iter().flat_map(|branch| &branch.points);
     let largest = free.filter(|point| point.impacts == 0).map(|point| point.parameter);
     let largest = largest.fold(0.0, f64::max);
+    assert!(found.branches.iter().any(|branch| branch.ends.contains(&BranchEnd::Grazing)));
     assert!(largest <= grazing + 1e-9 && largest > 0.9 * grazing, "{largest} {grazing}");
     for change in &found.bifurcations {
         if change.kind == BifurcationKind::Grazing && change.peak < 1.001 {
@@ -126,12 +128,35 @@ fn a_branch_grazes_where_the_free_motion_reaches_the_wall() {
     }
 }
 
+/// Branches on both sides of a grazing are found: below it the free motion, above it the fold at which the
+/// two motions with an impact meet, the root of the discriminant of their quadratic.
+#[test]
+fn both_sides_of_a_grazing_are_listed() {
+    let asked = question("x'' + x'/10 + x = F*cos(t)", &[("x < 1", "4/5")], ("F", [0.05, 1.2]), "");
+    let found = respond(&asked).expect("a response");
+    let points = || found.branches.iter().flat_map(|branch| &branch.points);
+    let free = points().filter(|point| point.impacts == 0);
+    let [least, most] = free.fold([f64::MAX, 0.0], |[least, most], point| {
+        [point.parameter.min(least), point.parameter.max(most)]
+    });
+    assert!(least == 0.05 && most > 0.0999 && most < 0.1 + 1e-9, "{least} {most}");
+    let closed = Closed { c: 0.1, k: 1.0, w: 1.0, d: 1.0, e: 0.8, periods: 1.0 };
+    let (mut low, mut high) = (0.05, 0.2);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if closed.speeds(middle).is_empty() { low = middle } else { high = middle }
+    }
+    let fold = found.bifurcations.iter().find(|change| change.kind == BifurcationKind::Fold);
+    let fold = fold.expect("a fold");
+    assert!((fold.parameter - low).abs() < 1e-7, "{} {low}", fold.parameter);
+}
+
 /// Two bodies that meet: every steady motion agrees with its own series, and its verdict passes.
 #[test]
 fn coupled_bodies_with_a_wall_between_them_are_followed() {
     let asked = question(
         "x'' + x'/10 + 2*x - y = cos(w*t); y'' + y'/10 + 2*y - x = 0",
-        &[("x - y < 0.7", "1/2")],
+        &[("x - y < 0.3", "1/2")],
         ("w", [0.8, 1.2]),
         "",
     );

@@ -85,6 +85,8 @@ pub enum BranchEnd {
     Unbounded,
     /// No step leads on, however small.
     Lost,
+    /// The motion touches a wall, and a motion with an impact less or more begins.
+    Grazing,
     /// The largest number of points was reached.
     Points,
     /// The harmonics that are kept do not suffice for the motions beyond.

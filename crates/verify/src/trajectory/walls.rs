@@ -83,6 +83,17 @@ pub struct WallRecord {
     pub order_matters: Option<f64>,
 }
 
+/// The event after which a motion goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum WallEvent {
+    /// It begins.
+    Start,
+    /// The gap of this wall has fallen to zero.
+    Hit(usize),
+    /// The force of this wall has fallen to zero.
+    Released(usize),
+}
+
 /// A wall with the expressions that impacts and rest need.
 #[derive(Clone, Debug)]
 struct WallEquations {
@@ -237,14 +248,14 @@ impl CompiledWalls {
         Ok(())
     }
 
-    /// Carries out the impacts at a state, of which that on the wall `hit` is known, and returns the
-    /// walls on which the motion rests from there on. `resting` are those on which it rested before,
-    /// `largest` is the largest gap of each wall in the flight before.
-    pub(super) fn settle(
+    /// Carries out the impacts at a state after this event, and returns the walls on which the motion
+    /// rests from there on. `resting` are those on which it rested before, `largest` is the largest gap
+    /// of each wall in the flight before.
+    fn settle(
         &self,
         time: f64,
         state: &mut [f64],
-        hit: Option<usize>,
+        event: WallEvent,
         resting: &[usize],
         largest: &[f64],
         record: &mut WallRecord,
@@ -258,7 +269,9 @@ impl CompiledWalls {
                 state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             let closing = (0..self.walls.len()).find_map(|wall| {
                 let at = self.at(wall, time, state);
-                let on = hit == Some(wall) || touched.contains(&wall) || self.is_on(&at, state);
+                let on = event == WallEvent::Hit(wall)
+                    || touched.contains(&wall)
+                    || self.is_on(&at, state);
                 if on && !touched.contains(&wall) {
                     touched.push(wall);
                 }
@@ -292,6 +305,8 @@ impl CompiledWalls {
         for wall in struck.iter().chain(resting) {
             self.project(*wall, time, state);
         }
+        // The force of a wall that was released is zero, up to rounding.
+        touched.retain(|wall| event != WallEvent::Released(*wall));
         let bearing = self.bearing(time, state, &touched, |wall| {
             chatter.contains_key(&wall) || resting.contains(&wall)
         });
@@ -460,7 +475,7 @@ impl<'a> WallRun<'a> {
         let (mut resting, mut largest) = (vec![], vec![]);
         if let Some(walls) = &flight.walls {
             walls.check_start(from, &state)?;
-            resting = walls.settle(from, &mut state, None, &[], &[], &mut record);
+            resting = walls.settle(from, &mut state, WallEvent::Start, &[], &[], &mut record);
             largest = walls.gaps(from, &state);
         }
         Ok(Self {
@@ -540,11 +555,14 @@ impl<'a> WallRun<'a> {
         }
         (self.from, self.state) = (end, last);
         let guard = event - recorded;
-        let hit = (!self.resting.contains(&guard)).then_some(guard);
+        let event = match self.resting.contains(&guard) {
+            true => WallEvent::Released(guard),
+            false => WallEvent::Hit(guard),
+        };
         let largest = &self.largest;
         let record = &mut self.record;
         self.resting =
-            walls.settle(self.from, &mut self.state, hit, &self.resting, largest, record);
+            walls.settle(self.from, &mut self.state, event, &self.resting, largest, record);
         Ok(())
     }
 

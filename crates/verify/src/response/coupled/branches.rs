@@ -353,10 +353,18 @@ impl CoupledProblem<'_> {
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
+        // A motion without impacts ends where it touches a wall, one with a slow impact where it loses it.
+        const SLOW: f64 = 0.1;
+        let grazes = |side: usize| {
+            let course = last[side].map(|orbit| &orbit.kept);
+            !self.walls.is_empty()
+                && course.is_some_and(|course| course.impacts == 0 || course.slowest < SLOW)
+        };
         let ends = [0, 1].map(|side| match ends[side] {
             OrbitBranchEnd::Range => BranchEnd::Range,
             OrbitBranchEnd::Closed => BranchEnd::Closed,
             OrbitBranchEnd::Joined => BranchEnd::Crossing,
+            OrbitBranchEnd::Lost if grazes(side) => BranchEnd::Grazing,
             OrbitBranchEnd::Lost => BranchEnd::Lost,
             OrbitBranchEnd::Points => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
@@ -383,6 +391,30 @@ impl CoupledProblem<'_> {
         let near_one = |value: &Complex<f64>| (value - Complex::from(1.0)).norm() < NEAR_ONE;
         orbit.kept.stuck > NEARLY_ALL
             && self.multipliers(orbit).is_some_and(|all| all.iter().any(near_one))
+    }
+
+    /// Follows the branches on the other side of the grazing at which known ones end, where there is an
+    /// impact less or more.
+    pub(super) fn follow_beyond_grazings(&self, known: &mut Known) {
+        /// Distances from a grazing at which motions are looked for, in parts of the range.
+        const BESIDE: [f64; 4] = [1e-4, -1e-4, 4e-3, -4e-3];
+        let [low, high] = self.question.range;
+        let mut index = 0;
+        while index < known.branches.len() {
+            let branch = known.branches[index].clone();
+            let ends = [branch.orbits.first(), branch.orbits.last()].into_iter().zip(branch.ends);
+            for (orbit, _) in ends.filter(|(_, end)| *end == BranchEnd::Grazing) {
+                let Some(orbit) = orbit else { continue };
+                for part in BESIDE {
+                    let parameter = orbit.parameter() + part * (high - low);
+                    if (low..=high).contains(&parameter) {
+                        let unknowns = orbit.start().to_vec();
+                        self.follow_from(&Start { parameter, unknowns }, known);
+                    }
+                }
+            }
+            index += 1;
+        }
     }
 
     /// Follows the branches that cross known ones, until there are no more.

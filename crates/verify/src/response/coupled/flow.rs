@@ -81,6 +81,8 @@ pub(super) struct FlowImage {
     pub(super) stuck: f64,
     /// The number of impacts on walls.
     pub(super) impacts: usize,
+    /// The least speed of an impact, in the sizes of the states over the time; infinite if there is none.
+    pub(super) slowest: f64,
     /// The factors c of the states of sums c y that stay what they are because dry friction holds them all
     /// the time; independent of each other.
     pub(super) places: Vec<Vec<f64>>,
@@ -313,6 +315,7 @@ impl Flow {
             return Some(FlowImage {
                 stuck: run.stuck / length,
                 impacts: run.impacts,
+                slowest: run.slowest,
                 places: jumps.places_on(&run.throughout),
                 ..image_of(n, &run.values, sizes, low, high)
             });
@@ -374,6 +377,7 @@ fn image_of(n: usize, end: &[f64], sizes: &[f64], low: &[f64], high: &[f64]) -> 
         travel: low.iter().zip(high).map(|(low, high)| 0.5 * (high - low)).collect(),
         stuck: 0.0,
         impacts: 0,
+        slowest: f64::INFINITY,
         places: vec![],
     }
 }

@@ -42,6 +42,8 @@ pub(super) struct Course {
     pub(super) stuck: f64,
     /// The number of impacts on walls in the period.
     pub(super) impacts: usize,
+    /// The least speed of an impact, in the sizes of the states over the period; infinite if there is none.
+    pub(super) slowest: f64,
     /// The factors of the states of sums that stay what they are, because dry friction holds them all the
     /// time: of such a motion there is one for each place where it holds them.
     pub(super) places: Vec<Vec<f64>>,
@@ -399,9 +401,9 @@ impl<'a> CoupledProblem<'a> {
         scale: &[f64],
     ) -> Option<PeriodImage<Course>> {
         let sizes = self.sizes_of_start(start, scale);
-        let FlowImage { end, by_start, by_parameter, travel, stuck, impacts, places } =
+        let FlowImage { end, by_start, by_parameter, travel, stuck, impacts, slowest, places } =
             self.in_phase.as_ref()?.image(start, TAU, parameter, &sizes)?;
-        let path = Course { travel, monodromy: by_start.clone(), stuck, impacts, places };
+        let path = Course { travel, monodromy: by_start.clone(), stuck, impacts, slowest, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -426,6 +428,7 @@ impl<'a> CoupledProblem<'a> {
             monodromy: image.by_start.clone(),
             stuck: image.stuck,
             impacts: image.impacts,
+            slowest: image.slowest,
             places: image.places,
         };
         let mut by_start = image.by_start.resize(n + 1, n + 1, 0.0);
@@ -452,8 +455,16 @@ impl<'a> CoupledProblem<'a> {
         let n = self.states.len();
         let mut sizes = self.sizes_of_start(&start[..n], scale);
         sizes.push(omega);
-        let FlowImage { mut end, mut by_start, by_parameter, travel, stuck, impacts, places } =
-            self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
+        let FlowImage {
+            mut end,
+            mut by_start,
+            by_parameter,
+            travel,
+            stuck,
+            impacts,
+            slowest,
+            places,
+        } = self.in_phase.as_ref()?.image(start, TAU, omega, &sizes)?;
         // The damping stays what it is; its row holds the rate that is to be zero.
         let velocity = state + self.coordinates;
         end[n] = start[n] + start[velocity] / size;
@@ -461,7 +472,8 @@ impl<'a> CoupledProblem<'a> {
             by_start[(n, column)] = if column == velocity { 1.0 / size } else { 0.0 };
         }
         let monodromy = by_start.view((0, 0), (n, n)).into_owned();
-        let path = Course { travel: travel[..n].to_vec(), monodromy, stuck, impacts, places };
+        let path =
+            Course { travel: travel[..n].to_vec(), monodromy, stuck, impacts, slowest, places };
         Some(PeriodImage { end, by_start, by_parameter, path })
     }
 
@@ -508,6 +520,7 @@ impl<'a> CoupledProblem<'a> {
             monodromy,
             stuck: half.stuck,
             impacts: 2 * half.impacts,
+            slowest: half.slowest,
             places: half.places,
         };
         Some(PeriodImage { end, by_start, by_parameter, path })

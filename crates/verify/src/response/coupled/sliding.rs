@@ -73,6 +73,9 @@ pub(super) struct SlidingRun {
     pub(super) throughout: Vec<usize>,
     /// The number of impacts on walls.
     pub(super) impacts: usize,
+    /// The least speed of an impact, in the sizes of the states over the duration; infinite if there is
+    /// none.
+    pub(super) slowest: f64,
     /// Evaluations of the rates.
     pub(super) evaluations: u64,
 }
@@ -155,8 +158,9 @@ struct Run<'a> {
     /// The number of impacts, and of the last ones that followed each other at once.
     impacts: usize,
     at_once: usize,
-    /// The time of the last impact.
+    /// The time of the last impact, and the least speed of an impact.
     struck: f64,
+    slowest: f64,
     evaluations: Cell<u64>,
 }
 
@@ -203,6 +207,7 @@ pub(super) fn follow(
                     stuck,
                     throughout: throughout.unwrap_or_default(),
                     impacts: run.impacts,
+                    slowest: run.slowest,
                     evaluations: run.evaluations.get(),
                 });
             }
@@ -340,6 +345,7 @@ impl<'a> Run<'a> {
             impacts: 0,
             at_once: 0,
             struck: f64::NEG_INFINITY,
+            slowest: f64::INFINITY,
             evaluations: Cell::new(0),
         }
     }
@@ -793,6 +799,7 @@ impl<'a> Run<'a> {
             return Err(SlidingStop::RestsOnWall);
         }
         (self.struck, self.impacts) = (self.time, self.impacts + 1);
+        self.slowest = self.slowest.min(-speed * duration / self.size_of_gap(wall));
         // Onto the wall, from which the event is a rounding away, and away from it.
         let gap = map.gap.call(&arguments);
         let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();

@@ -186,6 +186,7 @@ impl CoupledProblem<'_> {
             }
             advance();
         }
+        self.follow_beyond_grazings(&mut known);
         self.follow_crossings(&mut known);
         known
     }

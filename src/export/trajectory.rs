@@ -4,11 +4,11 @@
 use super::csv::{end, line};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
-use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
+use crate::report::{section_in_words, wall_in_words};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory};
+use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest};
 
 /// Number of points of a table or a curve if no samples are requested.
 const POINTS: u32 = 2000;
@@ -78,10 +78,16 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         return on_section(motion, section);
     }
     let whole = TrajectoryReport { samples: &[], ..*report };
-    let states: Vec<(f64, Vec<f64>)> = times(&whole)
+    let mut states: Vec<(f64, Vec<f64>)> = times(&whole)
         .into_iter()
         .filter_map(|time| Some((time, motion.states_at(time)?)))
         .collect();
+    // A velocity jumps at an impact: both sides of it are drawn.
+    for impact in &motion.walls.impacts {
+        let sides = [motion.states_at(impact.time), motion.states_after(impact.time)];
+        states.extend(sides.into_iter().flatten().map(|state| (impact.time, state)));
+    }
+    states.sort_by(|one, other| one.0.total_cmp(&other.0));
     let in_time: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();
@@ -96,9 +102,16 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         panels.push(panel("Motion", ["time t", &name[0]], line(in_time), vec![]));
         panels.push(panel("Phase plane", [&name[0], &name[1]], line(plane), vec![]));
     }
-    let equations: Vec<String> =
-        course.equations.iter().map(|left| format!("{left} = 0")).collect();
-    figure(&panels, &format!("{}.", equations.join(", ")))
+    figure(&panels, &format!("{}.", equations_in_words(course)))
+}
+
+/// The equations and the walls of a problem, in words.
+fn equations_in_words(course: &TrajectoryRequest) -> String {
+    let equations = course.equations.iter().map(|left| format!("{left} = 0"));
+    let several = course.walls.len() > 1;
+    let walls = course.walls.iter().enumerate();
+    let walls = walls.map(|(index, wall)| wall_in_words(index, wall, several));
+    equations.chain(walls).collect::<Vec<String>>().join(", ")
 }
 
 /// The states on a section: each coordinate with its velocity.
@@ -107,19 +120,25 @@ fn on_section(motion: &Trajectory, section: &PoincareSection) -> Result<String, 
     let count = course.coordinates.len();
     let names: Vec<[String; 2]> =
         course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
+    // At impacts the places are those of the walls: velocities are drawn over the time.
+    let at_impacts = *section == PoincareSection::Impacts;
     let point = |index: usize| {
-        move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index])
+        move |crossing: &Crossing| {
+            let across = if at_impacts { crossing.time } else { crossing.state[index] };
+            (across, crossing.state[count + index])
+        }
     };
     let points: Vec<Points> =
         (0..count).map(|index| motion.crossings().iter().map(point(index)).collect()).collect();
     let panels: Vec<Panel> = names
         .iter()
         .zip(&points)
-        .map(|(name, points)| dots("Poincaré section", [&name[0], &name[1]], points))
+        .map(|(name, points)| match at_impacts {
+            true => dots("Velocity before each impact", ["time t", &name[1]], points),
+            false => dots("Poincaré section", [&name[0], &name[1]], points),
+        })
         .collect();
-    let equations: Vec<String> =
-        course.equations.iter().map(|left| format!("{left} = 0")).collect();
-    figure(&panels, &format!("{}. {}", equations.join(", "), section_in_words(section)))
+    figure(&panels, &format!("{}. {}", equations_in_words(course), section_in_words(section)))
 }
 
 fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> Panel<'a> {
@@ -165,15 +184,19 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
     let varied = sweep.names.first().map_or("", |name| name.name());
-    let points: Vec<Points> = (0..course.coordinates.len())
+    let count = course.coordinates.len();
+    // At impacts the places are those of the walls: velocities are drawn.
+    let at_impacts = course.section == Some(PoincareSection::Impacts);
+    let points: Vec<Points> = (0..count)
         .map(|index| {
+            let shown = if at_impacts { count + index } else { index };
             let of = |motion: &SweptMotion| -> Points {
                 let value = motion.values.first().copied().unwrap_or(f64::NAN);
                 match course.section.is_some() {
                     true => motion
                         .crossings
                         .iter()
-                        .map(|crossing| (value, crossing.state[index]))
+                        .map(|crossing| (value, crossing.state[shown]))
                         .collect(),
                     false => {
                         motion.extremes[index].iter().map(|extreme| (value, *extreme)).collect()
@@ -183,8 +206,10 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
             sweep.motions.iter().flat_map(of).collect()
         })
         .collect();
-    let names: Vec<String> = course.coordinates.iter().map(ToString::to_string).collect();
+    let name = |name: &Symbol| if at_impacts { format!("{name}′") } else { name.to_string() };
+    let names: Vec<String> = course.coordinates.iter().map(name).collect();
     let title = match course.section.is_some() {
+        true if at_impacts => "Velocity before each impact",
         true => "States on the section",
         false => "Least and greatest values",
     };
@@ -193,12 +218,11 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
         .zip(&points)
         .map(|(name, points)| dots(title, [varied, name], points))
         .collect();
-    let equations: Vec<String> =
-        course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let equations = equations_in_words(course);
     let section = course.section.as_ref().map(|section| format!(". {}", section_in_words(section)));
     let after = match course.after > 0.0 {
         true => format!(", from t = {} to {}", decimal(course.after), decimal(course.duration)),
         false => format!(", to t = {}", decimal(course.duration)),
     };
-    figure(&panels, &format!("{}{}{after}", equations.join(", "), section.unwrap_or_default()))
+    figure(&panels, &format!("{equations}{}{after}", section.unwrap_or_default()))
 }

@@ -55,8 +55,8 @@ pub use response::{bifurcation_in_words, response};
 pub use slow_equations::{SlowReport, slow_equations};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
-pub(crate) use trajectory::section_in_words;
 pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
+pub(crate) use trajectory::{section_in_words, wall_in_words};
 
 use std::borrow::Cow;
 

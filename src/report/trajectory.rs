@@ -235,7 +235,7 @@ fn on_walls<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
 }
 
 /// A wall in words.
-pub(super) fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
+pub(crate) fn wall_in_words(index: usize, wall: &Wall, several: bool) -> String {
     let number = if several { format!(" {}", index + 1) } else { String::new() };
     format!("wall{number} at {} = 0, coefficient of restitution {}", wall.gap, wall.restitution)
 }

@@ -825,6 +825,15 @@ impl Trajectory {
         Some(state)
     }
 
+    /// Coordinates, then velocities just behind a time, which differ from those of
+    /// [`Trajectory::states_at`] at an impact; `None` outside of the motion.
+    pub fn states_after(&self, time: f64) -> Option<Vec<f64>> {
+        let place = self.pieces.partition_point(|piece| piece.end() <= time);
+        let mut state = self.pieces.get(place)?.states_at(time)?;
+        state.truncate(self.course.rates.states.len());
+        Some(state)
+    }
+
     /// The largest difference of any coordinate from another motion of the same course, over the
     /// size of that coordinate.
     pub fn difference(&self, other: &Self) -> f64 {

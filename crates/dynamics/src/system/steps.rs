@@ -147,12 +147,6 @@ impl TaylorSteps {
         self.steps.last().map(|step| step.start)
     }
 
-    /// The polynomials of the last step, state by state; none before the first.
-    pub(super) fn last(&self) -> impl Iterator<Item = &[f64]> {
-        let first = self.steps.last().map_or(0, |step| step.first);
-        self.coefficients[first..].chunks_exact(self.order + 1).take(self.states)
-    }
-
     /// Adds a step that begins at this time, with the length, the point and the polynomials of its
     /// states, and with that of the time unless it is the variable.
     pub(super) fn push<'a>(

@@ -16,6 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{roots, sign_at_start, value};
 use super::roots::{Equations, Root, corner_roots, equations_on_side};
+use super::spare_memory::SpareMemory;
 use super::step_length::{Allowance, StepBounds};
 use super::{Event, System};
 use crate::expr::Expr;
@@ -46,6 +47,8 @@ pub(super) struct Expansions {
     tolerance: f64,
     pub(super) roots: Arc<[Root]>,
     known: Arc<Mutex<BTreeMap<Vec<bool>, SystemSeries>>>,
+    /// The memory of the steps of paths that are gone.
+    pub(super) memory: SpareMemory,
 }
 
 impl Expansions {
@@ -66,7 +69,8 @@ impl Expansions {
             true => [(vec![], as_written)].into(),
             false => BTreeMap::new(),
         };
-        Ok(Self { tolerance, roots, known: Arc::new(Mutex::new(known)) })
+        let memory = SpareMemory::default();
+        Ok(Self { tolerance, roots, known: Arc::new(Mutex::new(known)), memory })
     }
 
     /// Returns the recurrences where the arguments of the roots have these signs; `None` if they

@@ -289,7 +289,7 @@ impl<'a> TaylorRun<'a> {
             time: 0.0,
             values: variables(&expansion),
             signs: vec![0.0; events.len()],
-            steps: TaylorSteps::new(values.len(), expansions.order()),
+            steps: TaylorSteps::new(values.len(), expansions.order(), &expansions.memory),
             occurrences: vec![],
             stuck: 0,
             met: None,

@@ -94,6 +94,10 @@ pub(super) struct Program {
     /// Places of the series with higher orders, and of those that are only a number.
     changing: Vec<usize>,
     numbers: Vec<usize>,
+    /// Those of the series with higher orders that are not zero beyond any order, and the order
+    /// beyond which all others are.
+    endless: Vec<usize>,
+    longest: usize,
     /// The place of the slope of each variable, if it is needed.
     slopes: Vec<Option<usize>>,
     /// The places of the arguments whose signs choose between formulas.
@@ -112,6 +116,8 @@ impl Program {
             values: vec![],
             changing: vec![],
             numbers: vec![],
+            endless: vec![],
+            longest: 0,
             slopes: vec![],
             corners: vec![],
             named: vec![],
@@ -207,6 +213,12 @@ impl Program {
         }
         self.changing.retain(|place| needed[*place]);
         self.numbers.retain(|place| needed[*place]);
+        let ends = |place: &usize| self.degrees[*place].is_some();
+        let changing = self.changing.iter().copied();
+        let (polynomials, endless): (Vec<usize>, Vec<usize>) = changing.partition(ends);
+        let degrees = polynomials.into_iter().filter_map(|place| self.degrees[place]);
+        self.longest = degrees.max().unwrap_or(0);
+        self.endless = endless;
     }
 }
 
@@ -458,7 +470,10 @@ impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
         let mut inverse = f64::INFINITY;
         for order in 0..length {
             let numbers: &[usize] = if order == 0 { &program.numbers } else { &[] };
-            for &place in numbers.iter().chain(&program.changing) {
+            // Beyond its degree a polynomial stays zero.
+            let changing =
+                if order > program.longest { &program.endless } else { &program.changing };
+            for &place in numbers.iter().chain(changing) {
                 compute(program, (sides, series), place, (order, inverse));
             }
             if order + 1 == length {

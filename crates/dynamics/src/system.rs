@@ -29,6 +29,7 @@ mod narrow;
 mod polynomial;
 mod roots;
 mod runge_kutta;
+mod spare_memory;
 mod step_length;
 mod steps;
 mod taylor;

@@ -16,7 +16,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{roots, sign_at_start, value};
 use super::roots::{Equations, Root, corner_roots, equations_on_side};
-use super::step_length::Allowance;
+use super::spare_memory::SpareMemory;
+use super::step_length::{Allowance, StepBounds};
 use super::{Event, System};
 use crate::expr::Expr;
 use crate::numeric::ode::root::find_root;
@@ -46,6 +47,8 @@ pub(super) struct Expansions {
     tolerance: f64,
     pub(super) roots: Arc<[Root]>,
     known: Arc<Mutex<BTreeMap<Vec<bool>, SystemSeries>>>,
+    /// The memory of the steps of paths that are gone.
+    pub(super) memory: SpareMemory,
 }
 
 impl Expansions {
@@ -66,7 +69,8 @@ impl Expansions {
             true => [(vec![], as_written)].into(),
             false => BTreeMap::new(),
         };
-        Ok(Self { tolerance, roots, known: Arc::new(Mutex::new(known)) })
+        let memory = SpareMemory::default();
+        Ok(Self { tolerance, roots, known: Arc::new(Mutex::new(known)), memory })
     }
 
     /// Returns the recurrences where the arguments of the roots have these signs; `None` if they
@@ -122,6 +126,10 @@ pub(super) struct SystemSeries {
     narrow: Vec<FunctionGrowth>,
     /// The longest step within the bounds of states, events and corners.
     pub(super) longest_step: f64,
+    /// Whether all coefficients of states, events and corners are known to be finite.
+    has_values: bool,
+    /// Whether the series were computed on the tape itself, not taken from a lane.
+    is_own: bool,
     /// Bounds of the last terms of states, events and corners.
     of_steps: Allowance,
     /// Bounds of the last terms of the arguments of narrow functions.
@@ -157,6 +165,8 @@ impl SystemSeries {
             outputs,
             narrow: equations.narrow.iter().map(|(_, kind)| *kind).collect(),
             longest_step: f64::NAN,
+            has_values: false,
+            is_own: true,
             of_steps: Allowance::new(tolerance, order),
             of_arguments: Allowance::new(CLOSELY, order),
         })
@@ -276,27 +286,39 @@ impl SystemSeries {
     /// Computes all coefficients about the present point.
     pub(super) fn compute(&mut self) {
         self.tape.expand(&self.outputs[..self.states]);
-        [self.longest_step] = self.longest_steps(&self.tape);
+        let StepBounds { longest: [longest], has_values: [has_values] } = self.bounds(&self.tape);
+        (self.longest_step, self.has_values, self.is_own) = (longest, has_values, true);
     }
 
-    /// Takes the series that were computed in a lane, with the longest step along them.
+    /// Whether the series are those of the lane from which they were last taken.
+    pub(super) fn is_of_lane(&self) -> bool {
+        !self.is_own
+    }
+
+    /// Takes the series that were computed in a lane, with the bounds of the step along them.
     pub(super) fn take_from<const L: usize>(
         &mut self,
         tape: &Tape<L>,
         lane: usize,
-        longest_step: f64,
+        bounds: &StepBounds<L>,
     ) {
         let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
         tape.copy_lane_to(lane, places, &mut self.tape);
-        self.longest_step = longest_step;
+        (self.longest_step, self.has_values) = (bounds.longest[lane], bounds.has_values[lane]);
+        self.is_own = false;
     }
 
-    /// Returns the longest step within the bounds of every state, event and argument of a corner,
-    /// for each lane of a tape of these recurrences.
-    pub(super) fn longest_steps<const L: usize>(&self, tape: &Tape<L>) -> [f64; L] {
+    /// Returns the bounds that every state, event and argument of a corner sets to a step, for each
+    /// lane of a tape of these recurrences.
+    pub(super) fn bounds<const L: usize>(&self, tape: &Tape<L>) -> StepBounds<L> {
         let events = &self.outputs[self.states..][..self.events];
         let places = (0..self.states).chain(events.iter().chain(tape.corner_places()).copied());
-        self.of_steps.longest_steps(tape, places)
+        self.of_steps.bounds(tape, places)
+    }
+
+    /// The number of variables: the states, and that of the series.
+    pub(super) fn variables(&self) -> usize {
+        self.states + 1
     }
 
     /// The places of the rates.
@@ -326,6 +348,9 @@ impl SystemSeries {
     /// Checks that states and corners have series; the errors are those of
     /// [`Self::switch_corners`].
     fn check(&self) -> Result<(), usize> {
+        if self.has_values {
+            return Ok(());
+        }
         let is_defined = |series: &[f64]| series.iter().all(|value| value.is_finite());
         if let Some(state) = (0..self.states).find(|&state| !is_defined(self.state(state))) {
             return Err(state);
@@ -349,6 +374,15 @@ impl SystemSeries {
         self.state(state).get(1).copied().unwrap_or(0.0)
     }
 
+    /// Returns the first event whose series is not finite; `None` if there is none.
+    pub(super) fn undefined_event(&self) -> Option<usize> {
+        if self.has_values {
+            return None;
+        }
+        let is_defined = |event: usize| self.event(event).iter().all(|value| value.is_finite());
+        (0..self.events).find(|event| !is_defined(*event))
+    }
+
     /// The series of an event.
     pub(super) fn event(&self, event: usize) -> &[f64] {
         self.tape.series(self.outputs[self.states + event])
@@ -365,7 +399,7 @@ impl SystemSeries {
                 continue;
             }
             // The series of the argument is valid only within its own step length.
-            let [valid] = self.of_arguments.longest_steps(&self.tape, [*output].into_iter());
+            let [valid] = self.of_arguments.bounds(&self.tape, [*output].into_iter()).longest;
             length = length.min(valid);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;

@@ -9,6 +9,16 @@ use crate::series::tape::Tape;
 /// Number of last terms of a series that are examined: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
+/// The bounds that some series set to a step, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepBounds<const L: usize> {
+    /// The longest step; infinity if nothing bounds it.
+    pub(super) longest: [f64; L],
+    /// Whether the sum of all coefficients is finite, and so every one of them. The sum of finite
+    /// ones may overflow.
+    pub(super) has_values: [bool; L],
+}
+
 /// Bounds of the last terms of a series, relative to its largest term of lower order on the step:
 ///
 /// ```text
@@ -39,40 +49,48 @@ impl Allowance {
         }
     }
 
-    /// Returns the longest step on which the series at these places are within their bounds, for
-    /// each lane; infinity if nothing bounds it. A series without a value bounds nothing.
+    /// Returns the longest step on which the series at these places are within their bounds, and
+    /// whether these have values, for each lane. A series without a value bounds nothing.
     ///
     /// Some hundred subtractions, multiplications and comparisons for each series.
-    pub(super) fn longest_steps<const L: usize>(
+    pub(super) fn bounds<const L: usize>(
         &self,
         tape: &Tape<L>,
         places: impl Iterator<Item = usize>,
-    ) -> [f64; L] {
+    ) -> StepBounds<L> {
         struct Shorten<'a, const L: usize> {
             allowance: &'a Allowance,
             series: &'a [[f64; L]],
             least: &'a mut [f64; L],
+            total: &'a mut [f64; L],
         }
         impl<const L: usize> WithSimd for Shorten<'_, L> {
             type Output = ();
 
             #[inline(always)]
             fn with_simd<S: Simd>(self, _: S) {
-                self.allowance.shorten(self.series, self.least);
+                self.allowance.shorten(self.series, self.least, self.total);
             }
         }
-        let mut least = [f64::INFINITY; L];
+        let (mut least, mut total) = ([f64::INFINITY; L], [0.0; L]);
         let arch = Arch::new();
         for place in places {
             let series = tape.lanes(place);
-            arch.dispatch(Shorten { allowance: self, series, least: &mut least });
+            let (least, total) = (&mut least, &mut total);
+            arch.dispatch(Shorten { allowance: self, series, least, total });
         }
-        least.map(f64::exp2)
+        StepBounds { longest: least.map(f64::exp2), has_values: total.map(f64::is_finite) }
     }
 
-    /// Reduces the logarithms of the steps to what a series allows.
+    /// Reduces the logarithms of the steps to what a series allows, and adds its coefficients to the
+    /// total.
     #[inline(always)]
-    fn shorten<const L: usize>(&self, series: &[[f64; L]], least: &mut [f64; L]) {
+    fn shorten<const L: usize>(
+        &self,
+        series: &[[f64; L]],
+        least: &mut [f64; L],
+        total: &mut [f64; L],
+    ) {
         const MOST: usize = 32;
         let mut lower = [[0.0; L]; MOST];
         let lower = &mut lower[..self.first];
@@ -105,6 +123,7 @@ impl Allowance {
         for lane in 0..L {
             let bounds = sum[lane].is_finite() && shortest[lane] < least[lane];
             least[lane] = if bounds { shortest[lane] } else { least[lane] };
+            total[lane] += sum[lane];
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::numeric::ode::root::find_root;
 
 use super::expansion::SystemSeries;
 use super::polynomial::{roots, sign_at_start, value, values};
+use super::spare_memory::{SpareMemory, SparingList};
 
 /// The steps of a path.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ pub(super) struct TaylorSteps {
     /// The number of steps, the first ones, whose coefficients are no longer kept.
     without_series: usize,
     /// The coefficients of `s^0, s^1, ...`, step by step and state by state.
-    coefficients: Vec<f64>,
+    coefficients: SparingList,
     /// The points of expansion, step by step.
     points: Vec<f64>,
     /// The recurrences that compute missing coefficients once more; `None` if all are kept.
@@ -65,14 +66,14 @@ struct SideRecurrences {
 
 impl TaylorSteps {
     /// An empty list of steps for this many states, to this order.
-    pub(super) fn new(states: usize, order: usize) -> Self {
+    pub(super) fn new(states: usize, order: usize, memory: &SpareMemory) -> Self {
         Self {
             states,
             order,
             forgotten: 0,
             steps: vec![],
             without_series: 0,
-            coefficients: vec![],
+            coefficients: memory.list(),
             points: vec![],
             recurrences: None,
         }
@@ -81,8 +82,8 @@ impl TaylorSteps {
     /// A single step of length zero in these states.
     pub(super) fn at_rest(values: Vec<f64>) -> Self {
         let step = TaylorStep { start: 0.0, length: 0.0, first: 0, point: 0 };
-        let states = values.len();
-        Self { steps: vec![step], coefficients: values, ..Self::new(states, 0) }
+        let empty = Self::new(values.len(), 0, &SpareMemory::default());
+        Self { steps: vec![step], coefficients: values.into(), ..empty }
     }
 
     /// The number of steps, including those that are no longer kept.
@@ -147,12 +148,6 @@ impl TaylorSteps {
         self.steps.last().map(|step| step.start)
     }
 
-    /// The polynomials of the last step, state by state; none before the first.
-    pub(super) fn last(&self) -> impl Iterator<Item = &[f64]> {
-        let first = self.steps.last().map_or(0, |step| step.first);
-        self.coefficients[first..].chunks_exact(self.order + 1).take(self.states)
-    }
-
     /// Adds a step that begins at this time, with the length, the point and the polynomials of its
     /// states, and with that of the time unless it is the variable.
     pub(super) fn push<'a>(
@@ -172,7 +167,9 @@ impl TaylorSteps {
         let ExpansionPoint { root_signs, sides, values } = point;
         [root_signs, sides, values].into_iter().for_each(|own| self.points.extend_from_slice(own));
         states.for_each(|series| self.coefficients.extend_from_slice(series));
-        self.coefficients.extend(time_since_start(time));
+        if time.is_some() {
+            self.coefficients.extend(time_since_start(time));
+        }
     }
 
     /// Removes the last step; returns its start.

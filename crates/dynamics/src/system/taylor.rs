@@ -18,7 +18,7 @@ use super::{
     Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
     end_of_range, is_vanishing, within_range, without_value,
 };
-use crate::series::tape::Tape;
+use crate::series::tape::{SeriesSums, Tape};
 
 /// Returns the length of the first step by series, and the largest absolute value of every state on
 /// it, up to the end of the run or the next corner; `None` if there is no series.
@@ -56,8 +56,90 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
             return Ok(run.finish(reason));
         }
         run.expansion.compute();
-        if let Some(reason) = run.step()? {
+        let end = match run.prepare()? {
+            Prepared::Step(step) => {
+                run.sum_alone(step.length);
+                run.advance(&step)
+            }
+            Prepared::TakenBack => None,
+            Prepared::Ended(reason) => Some(reason),
+        };
+        if let Some(reason) = end {
             return Ok(run.finish(reason));
+        }
+    }
+}
+
+/// Recurrences for several motions side by side.
+struct Lanes {
+    series: SystemSeries,
+    tape: Tape<LANES>,
+    /// The run whose numbers each lane has.
+    holders: [Option<usize>; LANES],
+    sums: Vec<SeriesSums<LANES>>,
+}
+
+impl Lanes {
+    fn new(series: &SystemSeries) -> Self {
+        Self {
+            series: series.clone(),
+            tape: series.tape.side_by_side(),
+            holders: [None; LANES],
+            sums: vec![],
+        }
+    }
+
+    /// Computes the series of these runs, each about its own point.
+    fn expand(&mut self, lanes: &[usize], runs: &mut [TaylorRun]) {
+        for (lane, index) in lanes.iter().enumerate() {
+            let own = &runs[*index].expansion.tape;
+            match self.holders[lane] == Some(*index) {
+                true => self.tape.load_point(lane, self.series.variables(), own),
+                false => self.tape.load(lane, own),
+            }
+            self.holders[lane] = Some(*index);
+        }
+        self.tape.expand(self.series.rates());
+        let bounds = self.series.bounds(&self.tape);
+        for (lane, index) in lanes.iter().enumerate() {
+            runs[*index].expansion.take_from(&self.tape, lane, &bounds);
+        }
+    }
+
+    /// Takes one step of each of these runs, or takes its last one back; an entry of `ends` is the
+    /// end of a run that ends there.
+    fn step(
+        &mut self,
+        lanes: &[usize],
+        runs: &mut [TaylorRun],
+        ends: &mut [Option<Result<PathEnd, SystemError>>],
+    ) {
+        self.expand(lanes, runs);
+        let mut lengths = [0.0; LANES];
+        let mut steps = [const { None }; LANES];
+        let mut variables = 0;
+        for (lane, index) in lanes.iter().enumerate() {
+            let run = &mut runs[*index];
+            match run.prepare() {
+                Ok(Prepared::Step(step)) => {
+                    variables = run.values.len();
+                    lengths[lane] = step.length;
+                    steps[lane] = Some(step);
+                }
+                Ok(Prepared::TakenBack) => {}
+                Ok(Prepared::Ended(reason)) => ends[*index] = Some(Ok(reason)),
+                Err(error) => ends[*index] = Some(Err(error)),
+            }
+        }
+        self.sums.resize(variables, SeriesSums::default());
+        self.tape.sums(&lengths, &mut self.sums);
+        for (lane, (index, step)) in lanes.iter().zip(&steps).enumerate() {
+            let (run, Some(step)) = (&mut runs[*index], step) else { continue };
+            match run.expansion.is_of_lane() {
+                true => run.sum_from(lane, &self.sums),
+                false => run.sum_alone(step.length),
+            }
+            ends[*index] = run.advance(step).map(Ok);
         }
     }
 }
@@ -65,7 +147,7 @@ pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
 /// Follows several runs, up to [`LANES`] of those with the same recurrences side by side, and
 /// returns their paths in order; each is bit for bit the same as alone.
 pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
-    let mut tapes: Vec<(SystemSeries, Tape<LANES>)> = vec![];
+    let mut tapes: Vec<Lanes> = vec![];
     let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
     while let Some(first) = ends.iter().position(Option::is_none) {
         let alike = |index: &usize| {
@@ -77,20 +159,12 @@ pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, Syst
             ends[*index].is_none()
         });
         let Some(series) = lanes.first().map(|index| &runs[*index].expansion) else { continue };
-        let known = tapes.iter().position(|(own, _)| own.is_like(series)).unwrap_or_else(|| {
-            tapes.push((series.clone(), series.tape.side_by_side()));
+        let known = tapes.iter().position(|own| own.series.is_like(series));
+        let known = known.unwrap_or_else(|| {
+            tapes.push(Lanes::new(series));
             tapes.len() - 1
         });
-        let (series, tape) = &mut tapes[known];
-        for (lane, index) in lanes.iter().enumerate() {
-            tape.load(lane, &runs[*index].expansion.tape);
-        }
-        tape.expand(series.rates());
-        let longest_steps = series.longest_steps(tape);
-        for (lane, (index, longest_step)) in lanes.into_iter().zip(longest_steps).enumerate() {
-            runs[index].expansion.take_from(tape, lane, longest_step);
-            ends[index] = runs[index].step().transpose();
-        }
+        tapes[known].step(&lanes, &mut runs, &mut ends);
     }
     let finished =
         |(run, end): (TaylorRun, Result<PathEnd, SystemError>)| end.map(|end| run.finish(end));
@@ -122,9 +196,13 @@ pub(super) struct TaylorRun<'a> {
     stuck: usize,
     /// The corner at which the last step ended, and the speed of its argument there.
     met: Option<(usize, f64)>,
-    /// The data to take back the last step; `None` if it ended at a corner or an event, and cannot
-    /// be taken back.
-    last: Option<StepUndo>,
+    /// The sums of the series of the states and of the variables of the roots at the end of the next
+    /// step.
+    at_end: Vec<SeriesSums>,
+    /// The data to take back the last step.
+    last: StepUndo,
+    /// Whether the last step may be taken back: not if it ended at a corner or an event.
+    is_open: bool,
     /// Number of halvings of the step from the present point.
     halvings: i32,
 }
@@ -132,10 +210,21 @@ pub(super) struct TaylorRun<'a> {
 /// Largest number of consecutive halvings of a step.
 const MOST_HALVINGS: i32 = 12;
 
+/// The result of the look at a point of expansion.
+enum Prepared {
+    Step(NextStep),
+    /// The last step was taken back.
+    TakenBack,
+    /// The run ends here.
+    Ended(PathEnd),
+}
+
 /// A step that is about to be taken.
 struct NextStep {
-    /// The value at its end of the variable of the series.
+    /// The value of the variable of the series at its end if there is no corner.
     reach: f64,
+    /// The value of the variable at its end.
+    length: f64,
     /// The time since the start at which it ends.
     until: f64,
     /// The first corner on it, and the value of the variable there.
@@ -143,12 +232,16 @@ struct NextStep {
 }
 
 /// The values that are restored if a step is taken back.
+#[derive(Default)]
 struct StepUndo {
     length: f64,
     values: Vec<f64>,
     signs: Vec<f64>,
     sides: Vec<f64>,
     occurrences: usize,
+    /// The change of each state at its rate at the end of the step, and the size of its terms
+    /// there.
+    changes: Vec<[f64; 2]>,
 }
 
 impl<'a> TaylorRun<'a> {
@@ -196,11 +289,13 @@ impl<'a> TaylorRun<'a> {
             time: 0.0,
             values: variables(&expansion),
             signs: vec![0.0; events.len()],
-            steps: TaylorSteps::new(values.len(), expansions.order()),
+            steps: TaylorSteps::new(values.len(), expansions.order(), &expansions.memory),
             occurrences: vec![],
             stuck: 0,
             met: None,
-            last: None,
+            at_end: vec![],
+            last: StepUndo::default(),
+            is_open: false,
             halvings: 0,
             expansions,
             root_signs,
@@ -238,44 +333,54 @@ impl<'a> TaylorRun<'a> {
         None
     }
 
-    /// Takes a step along the computed series, or takes the last step back. Returns the reason why
-    /// the run ends, `None` if it goes on.
+    /// Looks at the computed series: takes the last step back if it went astray, and measures the
+    /// next one.
     ///
     /// # Errors
     /// [`SystemError`] for a state or an event without a value at the start of the run.
-    fn step(&mut self) -> Result<Option<PathEnd>, SystemError> {
+    fn prepare(&mut self) -> Result<Prepared, SystemError> {
         let over = self.time >= self.duration;
         let now = self.start + self.time;
         let defined = self.defined();
-        let last = self.last.take();
-        if let Some(last) = last {
-            if self.halvings < MOST_HALVINGS
-                && (defined.is_err() || self.has_missed_something(&last, now))
+        if std::mem::take(&mut self.is_open) {
+            if self.halvings < MOST_HALVINGS && (defined.is_err() || self.has_missed_something(now))
             {
-                self.take_back(last);
-                return Ok(None);
+                self.take_back();
+                return Ok(Prepared::TakenBack);
             }
             self.halvings = 0;
         }
         match defined {
-            Err(_) if over => return Ok(Some(PathEnd::Reached)),
+            Err(_) if over => return Ok(Prepared::Ended(PathEnd::Reached)),
             Err(error) if self.steps.count() == 0 => return Err(error),
-            Err(_) => return Ok(Some(self.without_value())),
+            Err(_) => return Ok(Prepared::Ended(self.without_value())),
             Ok(()) => {}
         }
         if over {
-            return Ok(Some(PathEnd::Reached));
+            return Ok(Prepared::Ended(PathEnd::Reached));
         }
         let Some(step) = self.next_step(now) else {
-            return Ok(Some(PathEnd::Singular));
+            return Ok(Prepared::Ended(PathEnd::Singular));
         };
         let reach = step.reach;
         let met = self.met.take();
         if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
         {
-            return Ok(Some(PathEnd::Sticks));
+            return Ok(Prepared::Ended(PathEnd::Sticks));
         }
-        Ok(self.advance(&step))
+        Ok(Prepared::Step(step))
+    }
+
+    /// Sums the series at the end of the next step on the tape of this run.
+    fn sum_alone(&mut self, length: f64) {
+        self.at_end.resize(self.values.len(), SeriesSums::default());
+        self.expansion.tape.sums(&[length], &mut self.at_end);
+    }
+
+    /// Takes the sums of a lane at the end of the next step.
+    fn sum_from<const L: usize>(&mut self, lane: usize, sums: &[SeriesSums<L>]) {
+        self.at_end.clear();
+        self.at_end.extend(sums.iter().map(|sums| sums.of_lane(lane)));
     }
 
     /// Checks that all states and events have a series here.
@@ -287,9 +392,7 @@ impl<'a> TaylorRun<'a> {
         // Behind the states come the variables of the roots.
         let name = |state: usize| *self.system.state.get(state).unwrap_or(&self.system.time);
         settled.map_err(|state| SystemError::Start(name(state)))?;
-        let is_undefined =
-            |event: &usize| !self.expansion.event(*event).iter().all(|value| value.is_finite());
-        match (0..self.events.len()).find(is_undefined) {
+        match self.expansion.undefined_event() {
             Some(event) => Err(SystemError::Event(event)),
             None => Ok(()),
         }
@@ -328,30 +431,25 @@ impl<'a> TaylorRun<'a> {
             true => now + reach > now,
             false => corner.is_some() || self.expansion.elapsed(reach) > 0.0,
         };
-        (reach > 0.0 && moves).then_some(NextStep { reach, until, corner })
+        let length = corner.map_or(reach, |(_, place)| place);
+        (reach > 0.0 && moves).then_some(NextStep { reach, length, until, corner })
     }
 
-    /// Advances by a step, or to the first corner or stopping event on it. Returns the reason if the
-    /// run ends there.
-    fn advance(&mut self, &NextStep { reach, until, corner }: &NextStep) -> Option<PathEnd> {
-        // A corner within the step ends it, and so does an event that stops.
-        let mut corner = corner;
-        let mut length = corner.map_or(reach, |(_, place)| place);
-        let before = self.values.clone();
-        let range = end_of_range(length, |place| {
-            self.expansion.tape.values(place, &mut self.values);
-            within_range(self.values.iter().copied())
-        });
+    /// Advances to the end of a step, at which the series have been summed, or to the first stopping
+    /// event on it. Returns the reason if the run ends there.
+    fn advance(&mut self, step: &NextStep) -> Option<PathEnd> {
+        let &NextStep { reach, mut length, until, mut corner } = step;
+        self.remember(length);
+        let range = match within_range(self.values.iter().copied()) {
+            true => None,
+            false => end_of_range(length, |place| {
+                self.expansion.tape.values(place, &mut self.values);
+                within_range(self.values.iter().copied())
+            }),
+        };
         if let Some(end) = range {
             (corner, length) = (None, end);
         }
-        let last = StepUndo {
-            length,
-            values: before,
-            signs: self.signs.clone(),
-            sides: self.expansion.sides(),
-            occurrences: self.occurrences.len(),
-        };
         let mut met = self.expansion.crossings(&mut self.signs, length);
         met.retain(|(event, _, rising)| self.events[*event].counts(*rising));
         let stop = met.iter().position(|found| self.events[found.0].stops);
@@ -369,8 +467,8 @@ impl<'a> TaylorRun<'a> {
         let series = (0..self.system.state.len()).map(|state| self.expansion.state(state));
         let point = ExpansionPoint {
             root_signs: &self.root_signs,
-            sides: &last.sides,
-            values: &last.values,
+            sides: &self.last.sides,
+            values: &self.last.values,
         };
         self.steps.push([time, length], &point, series, self.expansion.time());
         self.steps.forget_before(self.options.keep_from - start);
@@ -378,7 +476,7 @@ impl<'a> TaylorRun<'a> {
             self.expansion.tape.values(length, &mut self.values);
         }
         let whole = corner.is_none() && stop.is_none() && range.is_none();
-        self.last = whole.then_some(last);
+        self.is_open = whole;
         self.time = if whole { until } else { time + self.expansion.elapsed(length) };
         if let Some(event) = stop {
             return Some(PathEnd::Event(event));
@@ -405,6 +503,21 @@ impl<'a> TaylorRun<'a> {
         self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
         self.expansion.cross(corner);
         None
+    }
+
+    /// Takes the states at the end of a step, and keeps those before it.
+    fn remember(&mut self, length: f64) {
+        let last = &mut self.last;
+        (last.length, last.occurrences) = (length, self.occurrences.len());
+        std::mem::swap(&mut last.values, &mut self.values);
+        self.values.clear();
+        self.values.extend(self.at_end.iter().map(|sums| sums.value[0]));
+        last.signs.clone_from(&self.signs);
+        last.sides.clear();
+        last.sides.extend(self.expansion.tape.corners().map(|(_, side)| side));
+        let states = self.at_end.iter().take(self.system.state.len());
+        last.changes.clear();
+        last.changes.extend(states.map(|sums| [sums.change[0], sums.size[0]]));
     }
 
     /// Goes over to the other side of a root. Returns the reason if the run ends there.
@@ -436,24 +549,19 @@ impl<'a> TaylorRun<'a> {
 
     /// Whether the rates at the end of a step differ from those of its series, for instance because
     /// of a wall that did not show at its beginning.
-    fn has_missed_something(&mut self, last: &StepUndo, now: f64) -> bool {
+    fn has_missed_something(&mut self, now: f64) -> bool {
         /// Largest error of a rate times the step, over the size of the state on it.
         const ASTRAY: f64 = 1e-8;
         // The truncated terms are within the tolerance, and their derivatives within the tolerance
         // times the next order.
         let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
-        let apart = |(state, series): (usize, &[f64])| {
-            let rate = self.expansion.rate(state);
-            let (mut power, mut size, mut change) = (1.0, series[0].abs(), 0.0);
-            for (order, coefficient) in series.iter().enumerate().skip(1) {
-                power *= last.length;
-                size += (coefficient * power).abs();
-                change += order as f64 * coefficient * power;
-            }
-            let apart = (change - rate * last.length).abs();
-            (apart > astray * size).then_some((state, apart / last.length))
+        let length = self.last.length;
+        let apart = |(state, [change, size]): (usize, &[f64; 2])| {
+            let apart = (change - self.expansion.rate(state) * length).abs();
+            (apart > astray * size).then_some((state, apart / length))
         };
-        let missed: Vec<(usize, f64)> = self.steps.last().enumerate().filter_map(apart).collect();
+        let missed: Vec<(usize, f64)> =
+            self.last.changes.iter().enumerate().filter_map(apart).collect();
         !missed.is_empty() && !self.is_rounding(&missed, now)
     }
 
@@ -484,10 +592,12 @@ impl<'a> TaylorRun<'a> {
     }
 
     /// Returns to the start of the last step, from which half of it will be taken.
-    fn take_back(&mut self, last: StepUndo) {
+    fn take_back(&mut self) {
         let Some(time) = self.steps.pop() else { return };
-        (self.time, self.values) = (time, last.values);
-        self.signs = last.signs;
+        let last = &self.last;
+        self.time = time;
+        self.values.clone_from(&last.values);
+        self.signs.clone_from(&last.signs);
         self.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
         self.halvings += 1;

@@ -94,6 +94,10 @@ pub(super) struct Program {
     /// Places of the series with higher orders, and of those that are only a number.
     changing: Vec<usize>,
     numbers: Vec<usize>,
+    /// Those of the series with higher orders that are not zero beyond any order, and the order
+    /// beyond which all others are.
+    endless: Vec<usize>,
+    longest: usize,
     /// The place of the slope of each variable, if it is needed.
     slopes: Vec<Option<usize>>,
     /// The places of the arguments whose signs choose between formulas.
@@ -112,6 +116,8 @@ impl Program {
             values: vec![],
             changing: vec![],
             numbers: vec![],
+            endless: vec![],
+            longest: 0,
             slopes: vec![],
             corners: vec![],
             named: vec![],
@@ -207,6 +213,12 @@ impl Program {
         }
         self.changing.retain(|place| needed[*place]);
         self.numbers.retain(|place| needed[*place]);
+        let ends = |place: &usize| self.degrees[*place].is_some();
+        let changing = self.changing.iter().copied();
+        let (polynomials, endless): (Vec<usize>, Vec<usize>) = changing.partition(ends);
+        let degrees = polynomials.into_iter().filter_map(|place| self.degrees[place]);
+        self.longest = degrees.max().unwrap_or(0);
+        self.endless = endless;
     }
 }
 
@@ -231,6 +243,7 @@ impl Tape {
     }
 
     /// Sets a coefficient of a variable.
+    #[inline]
     pub fn set(&mut self, place: usize, order: usize, value: f64) {
         self.series[place * self.program.length + order] = [value];
     }
@@ -254,12 +267,13 @@ impl Tape {
     }
 
     /// The series at a place; coefficients without a value are not finite.
+    #[inline]
     pub fn series(&self, place: usize) -> &[f64] {
         self.lanes(place).as_flattened()
     }
 
     /// Writes the values of the first variables at `s`, by Horner's rule for all of them side by
-    /// side, so that no sum waits for another.
+    /// side, so that no sum waits for another. They are bit for bit those of [`sums`](Self::sums).
     pub fn values(&self, s: f64, into: &mut [f64]) {
         let length = self.program.length;
         into.fill(0.0);
@@ -272,6 +286,7 @@ impl Tape {
 
     /// Returns the series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`),
     /// each with the sign that is assumed.
+    #[inline]
     pub fn corners(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let arguments = self.program.corners.iter().map(|argument| self.series(*argument));
         arguments.zip(self.sides.iter().map(|[side]| *side))
@@ -307,6 +322,7 @@ impl Tape {
     }
 
     /// Whether another tape has the same operations, so that both may be computed side by side.
+    #[inline]
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.program, &other.program)
     }
@@ -325,6 +341,23 @@ impl<const L: usize> Tape<L> {
                 }
             }
         }
+        self.load_sides(lane, own);
+    }
+
+    /// Loads the first variables and the sides of one lane, which has all its numbers already, from
+    /// a tape of its own with the same operations.
+    pub fn load_point(&mut self, lane: usize, variables: usize, own: &Tape) {
+        let length = self.program.length;
+        let given = self.series.chunks_mut(length).zip(own.series.chunks(length));
+        for (series, own) in given.take(variables) {
+            for (coefficients, [own]) in series.iter_mut().zip(own).take(2) {
+                coefficients[lane] = *own;
+            }
+        }
+        self.load_sides(lane, own);
+    }
+
+    fn load_sides(&mut self, lane: usize, own: &Tape) {
         for (sides, [own]) in self.sides.iter_mut().zip(&own.sides) {
             sides[lane] = *own;
         }
@@ -343,12 +376,19 @@ impl<const L: usize> Tape<L> {
     }
 
     /// The series at a place, lane by lane; coefficients without a value are not finite.
+    #[inline]
     pub fn lanes(&self, place: usize) -> &[[f64; L]] {
         let length = self.program.length;
         &self.series[place * length..][..length]
     }
 
+    /// Sums the series of the first variables, each lane at its own `s`, which is not negative.
+    pub fn sums(&self, s: &[f64; L], into: &mut [SeriesSums<L>]) {
+        Arch::new().dispatch(TapeSums { tape: self, s, into });
+    }
+
     /// The places of the arguments of the corners.
+    #[inline]
     pub fn corner_places(&self) -> &[usize] {
         &self.program.corners
     }
@@ -357,6 +397,59 @@ impl<const L: usize> Tape<L> {
     /// places of the rates of the first variables.
     pub fn expand(&mut self, rates: &[usize]) {
         Arch::new().dispatch(TapeExpansion { tape: self, rates });
+    }
+}
+
+/// The sums of a series at a place, lane by lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeriesSums<const L: usize = 1> {
+    /// The value, `sum_k c_k s^k`.
+    pub value: [f64; L],
+    /// The slope times `s`, `sum_k k c_k s^k`.
+    pub change: [f64; L],
+    /// The size of all terms, `sum_k |c_k| s^k`.
+    pub size: [f64; L],
+}
+
+impl<const L: usize> Default for SeriesSums<L> {
+    fn default() -> Self {
+        Self { value: [0.0; L], change: [0.0; L], size: [0.0; L] }
+    }
+}
+
+impl<const L: usize> SeriesSums<L> {
+    /// The sums of one lane.
+    pub fn of_lane(&self, lane: usize) -> SeriesSums {
+        let [value, change, size] = [self.value, self.change, self.size].map(|sum| [sum[lane]]);
+        SeriesSums { value, change, size }
+    }
+}
+
+/// The sums of the first series of a tape by Horner's rule; it is inlined into its caller.
+struct TapeSums<'a, const L: usize> {
+    tape: &'a Tape<L>,
+    s: &'a [f64; L],
+    into: &'a mut [SeriesSums<L>],
+}
+
+impl<const L: usize> WithSimd for TapeSums<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let s = *self.s;
+        for (place, sums) in self.into.iter_mut().enumerate() {
+            let (mut value, mut slope, mut size) = ([0.0; L], [0.0; L], [0.0; L]);
+            for coefficients in self.tape.lanes(place).iter().rev() {
+                for lane in 0..L {
+                    slope[lane] = slope[lane] * s[lane] + value[lane];
+                    value[lane] = value[lane] * s[lane] + coefficients[lane];
+                    size[lane] = size[lane] * s[lane] + coefficients[lane].abs();
+                }
+            }
+            let change = per_lane(|lane| slope[lane] * s[lane]);
+            *sums = SeriesSums { value, change, size };
+        }
     }
 }
 
@@ -377,7 +470,10 @@ impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
         let mut inverse = f64::INFINITY;
         for order in 0..length {
             let numbers: &[usize] = if order == 0 { &program.numbers } else { &[] };
-            for &place in numbers.iter().chain(&program.changing) {
+            // Beyond its degree a polynomial stays zero.
+            let changing =
+                if order > program.longest { &program.endless } else { &program.changing };
+            for &place in numbers.iter().chain(changing) {
                 compute(program, (sides, series), place, (order, inverse));
             }
             if order + 1 == length {

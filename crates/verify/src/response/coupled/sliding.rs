@@ -921,6 +921,7 @@ impl<'a> Run<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::surfaces::FlowWall;
     use super::*;
     use crate::expr::Expr;
     use crate::symbol::Symbol;
@@ -975,6 +976,44 @@ mod tests {
                         "{start:?} {row} {column}: {slope} {found}"
                     );
                 }
+            }
+        }
+    }
+
+    /// The variations across impacts on a moving wall are differences of runs beside it.
+    #[test]
+    fn variations_across_impacts_are_differences() {
+        let states: Vec<Symbol> = ["x", "x'"].map(Symbol::new).into();
+        let text = |text: &str| text.parse::<Expr>().expect("an expression");
+        let right = ["x'", "-x - x'/10 - x^3/5 + p*cos(t)"].map(text);
+        // The wall 1 + sin(2*t)/10 + p/20 with the coefficient of restitution 0.7 - p/50.
+        let gap = text("1 + sin(2*t)/10 + p/20 - x");
+        let after = text("x' - (1.7 - p/50)*(x' - cos(2*t)/5)");
+        let wall = FlowWall { gap, after: vec![text("x"), after] };
+        let surfaces = JumpSurfaces::new(&states, "t".into(), &right, "p".into(), &[wall]);
+        let surfaces = surfaces.expect("surfaces").expect("a wall");
+        let options = IntegrationOptions::with_tolerance(1e-13);
+        let at = |start: [f64; 2], p: f64| {
+            let run = follow(&surfaces, &start, [0.0, 7.0], p, &[1.0, 2.0], Some(1.0), &options);
+            run.expect("a run")
+        };
+        let (start, p) = ([0.2, 1.4], 1.9);
+        let run = at(start, p);
+        assert!(run.impacts >= 2, "{}", run.impacts);
+        const STEP: f64 = 1e-6;
+        for column in 0..3 {
+            let beside = |step: f64| match column {
+                0 => at([start[0] + step, start[1]], p).values,
+                1 => at([start[0], start[1] + step], p).values,
+                _ => at(start, p + step).values,
+            };
+            let (above, below) = (beside(STEP), beside(-STEP));
+            for row in 0..2 {
+                // The columns count the start in its sizes.
+                let size = [1.0, 2.0, 1.0][column];
+                let slope = size * (above[row] - below[row]) / (2.0 * STEP);
+                let found = run.values[2 + row * 3 + column];
+                assert!((slope - found).abs() < 1e-6, "{row} {column}: {slope} {found}");
             }
         }
     }

@@ -418,6 +418,9 @@ fn refused(error: ResponseError) -> Failure {
         ResponseError::CoupledJump(_) => Some(
             "make one of them smooth: (2/pi)*atan(100*x') for sgn(x')".to_owned(),
         ),
+        ResponseError::WallsWithoutDrive => Some(
+            "`lindstedt simulate` with --wall follows the motion to the cycle on which it settles".to_owned(),
+        ),
         ResponseError::RestsOnWall => Some(
             "`lindstedt simulate` with --wall follows it to rest and beyond; a larger coefficient of restitution or a stronger drive keeps it moving"
                 .to_owned(),

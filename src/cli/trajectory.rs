@@ -150,7 +150,7 @@ fn refused(error: TrajectoryError) -> Failure {
                 .to_owned(),
         ),
         TrajectoryError::BehindWall { .. } => Some(
-            "give a start on the allowed side with --from, or turn the sign of the wall round"
+            "give a start on the allowed side with --from, or reverse the inequality of --wall"
                 .to_owned(),
         ),
         TrajectoryError::Unknown(_) => Some(

@@ -31,7 +31,10 @@ impl WallArguments {
         let own: Vec<Expr> = self
             .restitution
             .iter()
-            .flat_map(|text| text.split(','))
+            .flat_map(|text| match text.contains('(') {
+                true => vec![text.as_str()],
+                false => text.split(',').collect(),
+            })
             .map(|text| {
                 expression(text)
                     .map_err(|error| Failure::Usage(format!("--restitution {text}: {error}")))
@@ -47,17 +50,9 @@ impl WallArguments {
                     .to_owned(),
             ));
         }
-        if own.len() > 1 && own.len() != bounds.len() {
-            return Err(Failure::Usage(format!(
-                "{} values of --restitution for {} walls: give one for all, or one for each",
-                own.len(),
-                bounds.len()
-            )));
-        }
-        let mut walls = Vec::new();
-        for (index, (bound, of_file)) in bounds.into_iter().enumerate() {
-            let given = own.get(index).or_else(|| own.first()).cloned().or(of_file);
-            let Some(restitution) = given else {
+        let mut walls: Vec<Wall> = Vec::new();
+        for (bound, of_file) in bounds {
+            let Some(restitution) = own.first().cloned().or(of_file) else {
                 return Err(Failure::Usage(format!(
                     "the wall `{bound}` needs its coefficient of restitution: --restitution 0.8, say, or 1 for an impact without loss"
                 )));
@@ -67,6 +62,18 @@ impl WallArguments {
             walls.extend(
                 read.map_err(|error| Failure::because(format!("wall `{bound}`: {error}")))?,
             );
+        }
+        if own.len() > 1 && own.len() != walls.len() {
+            return Err(Failure::Usage(format!(
+                "{} values of --restitution for {} walls: give one for all, or one for each",
+                own.len(),
+                walls.len()
+            )));
+        }
+        if own.len() > 1 {
+            for (wall, restitution) in walls.iter_mut().zip(own) {
+                wall.restitution = restitution;
+            }
         }
         Ok(walls)
     }

@@ -269,6 +269,9 @@ fn end_in_words(
         BranchEnd::Held => {
             format!("It comes to rest at {place}: beyond, friction bears what drives it.")
         }
+        BranchEnd::ImpactAtStart => format!(
+            "At {place} an impact falls on the beginning of a period, where the start of the motion jumps: what goes on beyond is listed as another branch."
+        ),
         BranchEnd::Grazing => format!(
             "It grazes a wall at {place}: beyond, a period has an impact less or more, and the map of a period has a root there."
         ),

@@ -208,7 +208,7 @@ fn on_walls<'a>(motion: &Trajectory) -> Vec<Block<'a>> {
     let with_loss = impacts.iter().any(|impact| impact.loss.is_some());
     let mut head = vec!["t"];
     head.extend(several.then_some("wall"));
-    head.extend(["speed before", "speed after"]);
+    head.extend(["gap closes at", "gap opens at"]);
     head.extend(with_loss.then_some("energy lost"));
     let row = |impact: &Impact| -> Vec<String> {
         let mut cells = vec![decimal(impact.time)];

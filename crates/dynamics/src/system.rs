@@ -244,6 +244,8 @@ pub enum PathEnd {
     Overflow,
     /// The state stays on a corner: the rates on both sides lead back to it.
     Sticks,
+    /// The motion has passed a rigid wall.
+    PassesWall,
     /// The run was interrupted.
     Interrupted,
 }

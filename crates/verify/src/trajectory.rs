@@ -28,6 +28,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 use crate::coupled::CoupledEquations;
+use crate::decimal::decimal;
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
@@ -167,7 +168,7 @@ pub enum TrajectoryError {
     #[error(transparent)]
     Wall(#[from] WallError),
     /// A start behind a wall.
-    #[error("the motion begins behind a wall: `{gap}` is {value:e} there and must not be negative")]
+    #[error("the motion begins behind a wall: `{gap}` is {} there and must not be negative", decimal(*.value))]
     BehindWall {
         /// The gap of the wall.
         gap: Expr,
@@ -273,7 +274,7 @@ impl TrajectoryRequest {
         Self { mass: Some(equations.matrix.clone()), ..request }
     }
 
-    /// The same problem with rigid walls, whose work is accounted for where there is an energy.
+    /// Returns the problem with rigid walls, whose work is accounted for where there is an energy.
     #[must_use]
     pub fn with_walls(mut self, walls: Vec<Wall>) -> Self {
         if let (Some(energy), false) = (&mut self.energy, walls.is_empty()) {
@@ -861,6 +862,9 @@ pub fn in_words(end: PathEnd) -> &'static str {
         PathEnd::Event(_) => "at an event",
         PathEnd::StepLimit => "after as many steps as were allowed",
         PathEnd::Singular => "where a state or its rate has no value, or no next step",
+        PathEnd::PassesWall => {
+            "where it passes a wall: impacts on several walls accumulate there, which is not followed"
+        }
         PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
         PathEnd::Sticks => {
             "on a corner that the rates on both sides lead back to, where it is not followed"

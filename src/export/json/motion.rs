@@ -165,7 +165,7 @@ pub struct ImpactDocument {
     pub t: f64,
     /// The wall, counted from 0.
     pub wall: usize,
-    /// The speed at which the gap closes before the impact.
+    /// The rate at which the gap closes before the impact: a speed where the gap is a distance.
     pub speed: f64,
     /// The speed at which it opens after the impact; 0 for the one after which the rest of an
     /// accumulation is summed.
@@ -180,9 +180,9 @@ pub struct ImpactDocument {
 pub struct WallRestDocument {
     /// The wall, counted from 0.
     pub wall: usize,
-    /// When it begins.
+    /// The time at which it begins.
     pub from: f64,
-    /// When the wall no longer presses, or the motion ends.
+    /// The time at which the wall no longer presses, or the motion ends.
     pub until: f64,
     /// Whether infinitely many impacts came before it.
     pub after_chatter: bool,

@@ -178,13 +178,14 @@ impl MotionPoint {
 
     /// The motion at these values of what varies; `None` if a number is none.
     pub fn read(&self, values: Vec<f64>) -> Option<SweptMotion> {
-        const ENDS: [PathEnd; 7] = [
+        const ENDS: [PathEnd; 8] = [
             PathEnd::Reached,
             PathEnd::Event(0),
             PathEnd::StepLimit,
             PathEnd::Singular,
             PathEnd::Overflow,
             PathEnd::Sticks,
+            PathEnd::PassesWall,
             PathEnd::Interrupted,
         ];
         let crossing = |(time, state): &(AnyNumber, Vec<AnyNumber>)| {

@@ -85,6 +85,8 @@ pub enum BranchEnd {
     Unbounded,
     /// No step leads on, however small.
     Lost,
+    /// An impact falls on the beginning of a period, where the start of the motion jumps.
+    ImpactAtStart,
     /// The motion touches a wall, and a motion with an impact less or more begins.
     Grazing,
     /// The largest number of points was reached.

@@ -157,6 +157,11 @@ pub enum ResponseError {
     /// No motion could be followed over a period because it comes to rest on a wall.
     #[error("no motion was found that does not come to rest on a wall within a period")]
     RestsOnWall,
+    /// Walls in equations that nothing drives.
+    #[error(
+        "branches of motions with impacts are followed where something drives the motion: time `t` does not occur in the equations"
+    )]
+    WallsWithoutDrive,
     /// A wall in equations of first order.
     #[error(
         "the wall `{0} = 0` needs velocities, but the equations have coordinates of first order"

@@ -17,7 +17,7 @@
 //! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
 //! standard error is that of the means of ten parts of the motion.
 
-use super::walls::WallRun;
+use super::walls::{Impact, WallRun};
 use super::{ACCOUNTS, Trajectory, TrajectoryRequest};
 use crate::system::PathEnd;
 
@@ -74,7 +74,17 @@ impl Trajectory {
         let quarter = 0.25 * self.end();
         let from = if self.course.after > 0.0 { self.course.after } else { quarter };
         let step = (self.end() - from) / f64::from(INTERVALS);
-        let time = |index: u32| from + step * f64::from(index);
+        // No instant is at an impact, where one of the two motions is before it and the other behind.
+        let times: Vec<f64> = (0..=INTERVALS)
+            .map(|index| {
+                let time = from + step * f64::from(index);
+                let impacts = &self.walls.impacts;
+                let is_near = |hit: &Impact| (hit.time - time).abs() < 1e-3 * step;
+                if impacts.iter().any(is_near) { time + 2e-3 * step } else { time }
+            })
+            .collect();
+        let last = times.len() - 1;
+        let time = |index: u32| times[(index as usize).min(last)].min(self.end());
         let reference: Vec<Vec<f64>> =
             (0..=INTERVALS).map(|index| self.states_at(time(index))).collect::<Option<_>>()?;
         let count = self.course.rates.states.len();
@@ -113,7 +123,7 @@ impl Trajectory {
             if !(after > 0.0 && after.is_finite()) {
                 return None;
             }
-            growths.push((after / before).ln() / step);
+            growths.push((after / before).ln() / (then - now));
             away = apart.iter().map(|apart| apart * (APART / after)).collect();
         }
         // The first part turns the displacement into the direction that grows.

@@ -21,7 +21,7 @@ use crate::expr::{CompiledList, Expr, ExprError};
 use crate::mechanics::{MechanicsError, Rates, linear};
 use crate::symbol::Symbol;
 use crate::system::{Integrator, Path, PathEnd, Solver, rate_along};
-use crate::wall::{Wall, WallImpact};
+use crate::wall::{Wall, WallError, WallImpact};
 
 /// Largest gap that counts as zero up to rounding, relative to the positions in it.
 const ON_WALL: f64 = 1e-11;
@@ -35,7 +35,13 @@ const UNSEEN: f64 = 1e-13;
 
 /// Largest change of the force on a wall within an accumulation that is summed, relative to the
 /// force.
-const STEADY: f64 = 1e-8;
+const STEADY: f64 = 1e-6;
+
+/// Height of a bounce, relative to the positions in its gap, that is lost in their rounding.
+const ROUNDING: f64 = 2e-13;
+
+/// Depth behind a wall, relative to the sizes of its gap, beyond which a motion has passed it.
+const BEHIND: f64 = 1e-9;
 
 /// Largest number of impacts at one time.
 const MOST_AT_ONE_TIME: usize = 10_000;
@@ -143,6 +149,27 @@ struct AtWall {
     direction: Vec<f64>,
 }
 
+impl AtWall {
+    /// n . d: the change of the rate of the gap by a unit of momentum of the wall.
+    fn compliance(&self) -> f64 {
+        self.compliance_with(self)
+    }
+
+    /// The change of the rate of this gap by a unit of momentum of another wall.
+    fn compliance_with(&self, other: &Self) -> f64 {
+        self.normal.iter().zip(&other.direction).map(|(n, d)| n * d).sum()
+    }
+}
+
+/// The forces of walls that keep their gaps closed; `None` if they are not determined.
+fn forces(walls: &[(usize, AtWall)]) -> Option<DVector<f64>> {
+    let size = walls.len();
+    let compliance = DMatrix::from_fn(size, size, |i, j| walls[i].1.compliance_with(&walls[j].1));
+    let right = DVector::from_fn(size, |i, _| -walls[i].1.free);
+    let forces = compliance.lu().solve(&right)?;
+    forces.iter().all(|force| force.is_finite()).then_some(forces)
+}
+
 impl CompiledWalls {
     /// The walls of a course whose account of energy has these works behind its states.
     pub(super) fn new(course: &TrajectoryRequest) -> Result<Option<Self>, TrajectoryError> {
@@ -222,12 +249,19 @@ impl CompiledWalls {
         value.is_finite().then_some(value)
     }
 
-    /// Whether a motion is on a wall, up to rounding.
-    fn is_on(&self, at: &AtWall, state: &[f64]) -> bool {
+    /// The size of a gap: that of the positions in it, whose rounding it has, or the largest so far.
+    fn size_of_gap(&self, at: &AtWall, state: &[f64], largest: f64) -> f64 {
         let [coordinates, _] = self.counts;
         let parts = at.normal.iter().zip(&state[..coordinates]).map(|(n, q)| (n * q).abs());
-        // Two parts that cancel leave their rounding; at a wall through the origin none does.
-        at.gap.abs() <= ON_WALL * parts.fold(0.0, f64::max)
+        parts.fold(largest, f64::max)
+    }
+
+    /// The first wall behind which a motion is, beyond rounding; `largest` is the largest gap of each.
+    fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
+        (0..self.walls.len()).find(|wall| {
+            let at = self.at(*wall, time, state);
+            at.gap < -BEHIND * self.size_of_gap(&at, state, largest[*wall])
+        })
     }
 
     /// The start of a motion on or in front of all walls, to rounding.
@@ -237,9 +271,12 @@ impl CompiledWalls {
     pub(super) fn check_start(&self, time: f64, state: &[f64]) -> Result<(), TrajectoryError> {
         for (index, wall) in self.walls.iter().enumerate() {
             let at = self.at(index, time, state);
-            if at.gap < 0.0 && !self.is_on(&at, state) {
+            if at.gap < -ON_WALL * self.size_of_gap(&at, state, 0.0) {
                 let gap = wall.impact.gap.clone();
                 return Err(TrajectoryError::BehindWall { gap, value: at.gap });
+            }
+            if at.compliance().is_nan() || at.compliance() <= 0.0 {
+                return Err(WallError::WithoutMass(wall.impact.gap.clone()).into());
             }
             if at.gap.is_nan() || at.rate.is_nan() {
                 return Err(TrajectoryError::WallWithCorner(wall.impact.gap.clone()));
@@ -250,7 +287,7 @@ impl CompiledWalls {
 
     /// Carries out the impacts at a state after this event, and returns the walls on which the motion
     /// rests from there on. `resting` are those on which it rested before, `largest` is the largest gap
-    /// of each wall in the flight before.
+    /// of each wall so far.
     fn settle(
         &self,
         time: f64,
@@ -269,9 +306,9 @@ impl CompiledWalls {
                 state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             let closing = (0..self.walls.len()).find_map(|wall| {
                 let at = self.at(wall, time, state);
-                let on = event == WallEvent::Hit(wall)
-                    || touched.contains(&wall)
-                    || self.is_on(&at, state);
+                let seen = largest.get(wall).copied().unwrap_or(0.0);
+                let near = at.gap.abs() <= ON_WALL * self.size_of_gap(&at, state, seen);
+                let on = event == WallEvent::Hit(wall) || touched.contains(&wall) || near;
                 if on && !touched.contains(&wall) {
                     touched.push(wall);
                 }
@@ -280,9 +317,9 @@ impl CompiledWalls {
             });
             let Some((wall, at)) = closing else { break };
             let before = self.energy(time, state);
-            let compliance: f64 = at.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
+            let compliance = at.compliance();
             let mut departure = -self.restitution[wall] * at.rate;
-            let over = self.accumulation(wall, &at, departure, largest, !resting.is_empty());
+            let over = self.accumulation(wall, &at, departure, largest, resting, (time, state));
             if let Some(sum) = over {
                 departure = 0.0;
                 chatter.insert(wall, sum);
@@ -332,8 +369,7 @@ impl CompiledWalls {
     /// Whether an impact on a wall changes the rate of the gap of another.
     fn couples(&self, other: usize, at: &AtWall, time: f64, state: &[f64]) -> bool {
         let other = self.at(other, time, state);
-        let coupling: f64 = other.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
-        coupling != 0.0
+        other.compliance_with(at) != 0.0
     }
 
     /// The time after which the impacts that follow one of this departure are over, if they cannot be
@@ -344,28 +380,39 @@ impl CompiledWalls {
         at: &AtWall,
         departure: f64,
         largest: &[f64],
-        others_bear: bool,
+        resting: &[usize],
+        (time, state): (f64, &[f64]),
     ) -> Option<f64> {
         let restitution = self.restitution[wall];
         if restitution == 0.0 {
             return Some(0.0);
         }
-        let pull = -at.free;
-        if restitution >= 1.0 || pull <= 0.0 || others_bear {
+        // The acceleration of the gap with the forces of the walls that bear.
+        let others: Vec<(usize, AtWall)> = resting
+            .iter()
+            .filter(|other| **other != wall)
+            .map(|other| (*other, self.at(*other, time, state)))
+            .collect();
+        let forces = forces(&others)?;
+        let held = others.iter().zip(forces.iter());
+        let pull = -at.free
+            - held.map(|((_, other), force)| at.compliance_with(other) * force).sum::<f64>();
+        if restitution >= 1.0 || pull <= 0.0 {
             return None;
         }
         let sum = 2.0 * departure / (pull * (1.0 - restitution));
         let height = departure * departure / (2.0 * pull);
         let seen = largest.get(wall).copied().unwrap_or(0.0);
-        (height <= UNSEEN * seen && at.jerk.abs() * sum <= STEADY * pull).then_some(sum)
+        let is_steady = height <= UNSEEN * seen && at.jerk.abs() * sum <= STEADY * pull;
+        let is_rounding = height <= ROUNDING * self.size_of_gap(at, state, 0.0);
+        (is_steady || is_rounding).then_some(sum)
     }
 
     /// Moves a state along M^-1 n onto a wall.
     fn project(&self, wall: usize, time: f64, state: &mut [f64]) {
         let [coordinates, _] = self.counts;
         let at = self.at(wall, time, state);
-        let compliance: f64 = at.normal.iter().zip(&at.direction).map(|(n, d)| n * d).sum();
-        let shift = at.gap / compliance;
+        let shift = at.gap / at.compliance();
         if shift.is_finite() {
             for (position, direction) in state[..coordinates].iter_mut().zip(&at.direction) {
                 *position -= shift * direction;
@@ -386,7 +433,7 @@ impl CompiledWalls {
         let speed = state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         let mut bearing: Vec<(usize, AtWall)> = touched
             .iter()
-            .map(|wall| (*wall, self.at(*wall, time, state)))
+            .map(|wall| (*wall, self.with_sign_of_force(*wall, time, state)))
             .filter(|(wall, at)| {
                 let size = at.normal.iter().fold(0.0_f64, |most, n| most.max(n.abs())) * speed;
                 at_rest(*wall) && at.rate.abs() <= 1e-9 * size || at.rate.abs() <= AT_REST * size
@@ -395,25 +442,37 @@ impl CompiledWalls {
         bearing.sort_by_key(|(wall, _)| *wall);
         // The wall that would pull most is left, until all press.
         while !bearing.is_empty() {
-            let size = bearing.len();
-            let compliance = DMatrix::from_fn(size, size, |i, j| {
-                let (n, d) = (&bearing[i].1.normal, &bearing[j].1.direction);
-                n.iter().zip(d).map(|(n, d)| n * d).sum::<f64>()
-            });
-            let right = DVector::from_fn(size, |i, _| -bearing[i].1.free);
-            let forces = compliance.lu().solve(&right);
-            let Some(forces) = forces.filter(|forces| forces.iter().all(|force| force.is_finite()))
-            else {
+            let Some(forces) = forces(&bearing) else {
                 bearing.pop();
                 continue;
             };
-            let least = (0..size).min_by(|one, other| forces[*one].total_cmp(&forces[*other]));
+            let least =
+                (0..bearing.len()).min_by(|one, other| forces[*one].total_cmp(&forces[*other]));
             match least {
                 Some(least) if forces[least] <= 0.0 => bearing.remove(least),
                 _ => break,
             };
         }
         bearing.into_iter().map(|(wall, _)| wall).collect()
+    }
+
+    /// The values at a wall with the sign of g'' a moment later, where it is zero.
+    fn with_sign_of_force(&self, wall: usize, time: f64, state: &[f64]) -> AtWall {
+        const MOMENT: f64 = 1e-3;
+        let [coordinates, states] = self.counts;
+        let at = self.at(wall, time, state);
+        if at.free != 0.0 {
+            return at;
+        }
+        let later = || {
+            let mut state = state[..states].to_vec();
+            for index in 0..coordinates {
+                state[index] += MOMENT * state[coordinates + index];
+            }
+            self.at(wall, time + MOMENT, &state).free
+        };
+        let sign = if at.jerk == 0.0 { later() } else { at.jerk };
+        AtWall { free: if sign < 0.0 { -f64::MIN_POSITIVE } else { 0.0 }, ..at }
     }
 
     /// Raises the largest gap of each wall to those on these stretches, which are looked at in some
@@ -477,6 +536,10 @@ impl<'a> WallRun<'a> {
             walls.check_start(from, &state)?;
             resting = walls.settle(from, &mut state, WallEvent::Start, &[], &[], &mut record);
             largest = walls.gaps(from, &state);
+            // The account begins behind an impact at the start.
+            if let Some(work) = walls.work {
+                state[work] = 0.0;
+            }
         }
         Ok(Self {
             course,
@@ -542,7 +605,22 @@ impl<'a> WallRun<'a> {
         if let Some(walls) = &flight.walls {
             walls.note_largest(&stretch, &mut self.largest);
         }
+        let passed = flight.walls.as_ref().is_some_and(|walls| {
+            let middle = 0.5 * (self.from + end);
+            let middle = stretch
+                .iter()
+                .find(|piece| piece.end() >= middle)
+                .and_then(|piece| Some((middle, piece.states_at(middle)?)));
+            let places = middle.into_iter().chain(last.clone().map(|state| (end, state)));
+            places
+                .into_iter()
+                .any(|(time, state)| walls.passed(time, &state, &self.largest).is_some())
+        });
         self.pieces.extend(stretch);
+        if passed {
+            self.reason = Some(PathEnd::PassesWall);
+            return Ok(());
+        }
         let (Some(walls), Some(last), PathEnd::Event(event)) = (&flight.walls, last, reason) else {
             self.reason = Some(reason);
             return Ok(());

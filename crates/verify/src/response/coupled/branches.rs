@@ -6,10 +6,12 @@ use num_complex::Complex;
 use super::changes::changes_between;
 use super::problem::{Anchor, CoupledProblem, Kind, Orbit, Orbits, SMALLEST, Travel};
 use super::surfaces::largest;
+use crate::expr::Expr;
 use crate::numeric::orbit_branch::{OrbitBranchEnd, OrbitBranchLimits};
 use crate::response::bifurcation::BifurcationKind;
 use crate::response::continuation::BranchEnd;
 use crate::response::{LONGEST_STEP, MOST_BRANCHES, MOST_POINTS};
+use crate::wall::Wall;
 
 /// A branch of orbits in order.
 #[derive(Clone, Debug)]
@@ -353,19 +355,12 @@ impl CoupledProblem<'_> {
         };
         let (points, ends) = orbits.branch_through(orbit, &limits, &refused);
         let last = [points.first(), points.last()];
-        // A motion without impacts ends where it touches a wall, one with a slow impact where it loses it.
-        const SLOW: f64 = 0.1;
-        let grazes = |side: usize| {
-            let course = last[side].map(|orbit| &orbit.kept);
-            !self.walls.is_empty()
-                && course.is_some_and(|course| course.impacts == 0 || course.slowest < SLOW)
-        };
+        let at_wall = |side: usize| last[side].and_then(|orbit| self.end_at_wall(orbit));
         let ends = [0, 1].map(|side| match ends[side] {
             OrbitBranchEnd::Range => BranchEnd::Range,
             OrbitBranchEnd::Closed => BranchEnd::Closed,
             OrbitBranchEnd::Joined => BranchEnd::Crossing,
-            OrbitBranchEnd::Lost if grazes(side) => BranchEnd::Grazing,
-            OrbitBranchEnd::Lost => BranchEnd::Lost,
+            OrbitBranchEnd::Lost => at_wall(side).unwrap_or(BranchEnd::Lost),
             OrbitBranchEnd::Points => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.is_exhausted() => BranchEnd::Points,
             OrbitBranchEnd::Refused if self.rests.get() => BranchEnd::Held,
@@ -393,6 +388,62 @@ impl CoupledProblem<'_> {
             && self.multipliers(orbit).is_some_and(|all| all.iter().any(near_one))
     }
 
+    /// The reason why a branch ends at an orbit, if it has to do with a wall.
+    fn end_at_wall(&self, orbit: &Orbit) -> Option<BranchEnd> {
+        /// Size of a gap, or of the speed of an impact, relative to those of the motion, near a wall.
+        const NEAR: f64 = 0.02;
+        const SLOW: f64 = 0.1;
+        if self.walls.is_empty() {
+            return None;
+        }
+        let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
+        let sizes = self.state_sizes(&orbit.kept.travel, &[]);
+        let start = &orbit.start().as_slice()[..self.states.len()];
+        if flow.least_gap(start, orbit.parameter(), &sizes) < NEAR * NEAR {
+            return Some(BranchEnd::ImpactAtStart);
+        }
+        if orbit.kept.impacts > 0 {
+            return (orbit.kept.slowest < SLOW).then_some(BranchEnd::Grazing);
+        }
+        const PLACES: usize = 256;
+        let period = std::f64::consts::TAU / self.frequency_of(orbit);
+        let path = self.by_series(start, period, orbit.parameter())?;
+        let numbers = [(self.question.parameter, orbit.parameter())];
+        let is_near = |index: usize| {
+            let time = period * index as f64 / PLACES as f64;
+            let Some(states) = path.states_at(time) else { return false };
+            let mut values: std::collections::BTreeMap<_, _> =
+                self.states.iter().copied().zip(states.iter().copied()).chain(numbers).collect();
+            values.insert(crate::symbol::Symbol::new("t"), time);
+            let size = sizes[..self.coordinates].iter().copied().fold(0.0, f64::max);
+            let gap = |wall: &Wall| wall.gap.evaluate(&values).unwrap_or(f64::INFINITY);
+            self.walls.iter().any(|wall| gap(wall) < NEAR * size)
+        };
+        (0..PLACES).any(is_near).then_some(BranchEnd::Grazing)
+    }
+
+    /// The start of an orbit, and that behind an impact at its beginning.
+    fn starts_at_wall(&self, orbit: &Orbit) -> Vec<Vec<f64>> {
+        let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
+        let start = orbit.start().as_slice()[..self.states.len()].to_vec();
+        let behind = flow.behind_impact(&start, orbit.parameter());
+        [Some(start), behind].into_iter().flatten().collect()
+    }
+
+    /// Whether the mirror image of every wall is a wall, so that the mirror image of a motion is one.
+    fn walls_are_mirrored(&self) -> bool {
+        let mirror = self.states[..self.coordinates].iter().map(|name| (*name, -Expr::from(*name)));
+        let mirror = mirror.collect();
+        self.walls.iter().all(|wall| {
+            let Ok(gap) = wall.gap.substitute_all(&mirror) else { return false };
+            let same =
+                |other: &Wall| (&gap - &other.gap).expand().is_ok_and(|apart| apart.is_zero());
+            let mut others = self.walls.iter();
+            !gap.contains(crate::symbol::Symbol::new("t"))
+                && others.any(|other| other.restitution == wall.restitution && same(other))
+        })
+    }
+
     /// Follows the branches on the other side of the grazing at which known ones end, where there is an
     /// impact less or more.
     pub(super) fn follow_beyond_grazings(&self, known: &mut Known) {
@@ -403,13 +454,16 @@ impl CoupledProblem<'_> {
         while index < known.branches.len() {
             let branch = known.branches[index].clone();
             let ends = [branch.orbits.first(), branch.orbits.last()].into_iter().zip(branch.ends);
-            for (orbit, _) in ends.filter(|(_, end)| *end == BranchEnd::Grazing) {
+            let is_at_wall =
+                |end: &BranchEnd| matches!(end, BranchEnd::Grazing | BranchEnd::ImpactAtStart);
+            for (orbit, _) in ends.filter(|(_, end)| is_at_wall(end)) {
                 let Some(orbit) = orbit else { continue };
                 for part in BESIDE {
                     let parameter = orbit.parameter() + part * (high - low);
                     if (low..=high).contains(&parameter) {
-                        let unknowns = orbit.start().to_vec();
-                        self.follow_from(&Start { parameter, unknowns }, known);
+                        for unknowns in self.starts_at_wall(orbit) {
+                            self.follow_from(&Start { parameter, unknowns }, known);
+                        }
                     }
                 }
             }
@@ -471,10 +525,12 @@ impl CoupledProblem<'_> {
                     states.push(next);
                 }
                 let (mut shifted, mut mirrored) = (Vec::new(), Vec::new());
+                let has_mirror = self.walls_are_mirrored();
                 for (index, state) in states.into_iter().enumerate() {
                     match index % 2 {
                         0 => shifted.push(state),
-                        _ => mirrored.push(negative(state)),
+                        _ if has_mirror => mirrored.push(negative(state)),
+                        _ => {}
                     }
                 }
                 Some([shifted, mirrored])

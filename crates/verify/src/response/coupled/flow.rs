@@ -51,6 +51,8 @@ pub(super) struct Flow {
     jumps: Option<JumpSurfaces>,
     /// The reason why the last motion that was not followed across jumps was not.
     stopped: Cell<Option<SlidingStop>>,
+    /// Whether a motion came to rest on a wall.
+    rested: Cell<bool>,
     /// The evaluations of the right sides so far, each counted as often as there are motions and variations.
     evaluations: Cell<u64>,
 }
@@ -130,6 +132,7 @@ impl Flow {
             by_parameter,
             jumps: JumpSurfaces::new(states, time, right, parameter, walls)?,
             stopped: Cell::new(None),
+            rested: Cell::new(false),
             evaluations: Cell::new(0),
         })
     }
@@ -172,9 +175,21 @@ impl Flow {
         }
     }
 
-    /// Whether the last motion that was not followed came to rest on a wall.
+    /// The least gap of a wall at the beginning, where every state changes by a unit of its size; infinite
+    /// without walls.
+    pub(super) fn least_gap(&self, state: &[f64], parameter: f64, sizes: &[f64]) -> f64 {
+        let jumps = self.jumps.as_ref();
+        jumps.map_or(f64::INFINITY, |jumps| sliding::least_gap(jumps, state, parameter, sizes))
+    }
+
+    /// The state behind the impact on the nearest wall at the beginning; `None` without walls.
+    pub(super) fn behind_impact(&self, state: &[f64], parameter: f64) -> Option<Vec<f64>> {
+        sliding::behind_impact(self.jumps.as_ref()?, state, parameter)
+    }
+
+    /// Whether a motion that was not followed came to rest on a wall.
     pub(super) fn rested_on_wall(&self) -> bool {
-        self.stopped.get() == Some(SlidingStop::RestsOnWall)
+        self.rested.get()
     }
 
     /// The motion across jumps between two times; `None` if it cannot be followed.
@@ -197,6 +212,7 @@ impl Flow {
                 // What was stopped has cost something too: a run of one evaluation a step.
                 self.evaluations.set(self.evaluations.get() + STEPS as u64);
                 self.stopped.set(Some(stop));
+                self.rested.set(self.rested.get() || stop == SlidingStop::RestsOnWall);
                 None
             }
         }

@@ -223,6 +223,42 @@ pub(super) fn follow(
     Err(SlidingStop::Chatter(nearest.unwrap_or(0)))
 }
 
+/// The arguments of all functions at time zero, on the positive side of all surfaces.
+fn at_beginning(surfaces: &JumpSurfaces, state: &[f64], parameter: f64) -> Vec<f64> {
+    let sides = surfaces.arguments.iter().map(|_| 1.0);
+    state.iter().copied().chain([0.0, parameter]).chain(sides).collect()
+}
+
+/// The least gap at time zero, where every state changes by a unit of its size; infinite without walls.
+pub(super) fn least_gap(
+    surfaces: &JumpSurfaces,
+    state: &[f64],
+    parameter: f64,
+    sizes: &[f64],
+) -> f64 {
+    let arguments = at_beginning(surfaces, state, parameter);
+    let gap = |wall: &WallMap| {
+        let normal = wall.normal.at(&arguments);
+        let size: f64 =
+            sizes.iter().enumerate().map(|(k, size)| (normal[(0, k)] * size).abs()).sum();
+        wall.gap.call(&arguments).abs() / size
+    };
+    surfaces.walls.iter().map(gap).fold(f64::INFINITY, f64::min)
+}
+
+/// The state behind an impact on the nearest wall at time zero; `None` without walls.
+pub(super) fn behind_impact(
+    surfaces: &JumpSurfaces,
+    state: &[f64],
+    parameter: f64,
+) -> Option<Vec<f64>> {
+    let arguments = at_beginning(surfaces, state, parameter);
+    let gap = |wall: &&WallMap| wall.gap.call(&arguments).abs();
+    let nearest = surfaces.walls.iter().min_by(|one, other| gap(one).total_cmp(&gap(other)))?;
+    let after = nearest.after.at(&arguments);
+    Some((0..surfaces.states).map(|i| after[(i, 0)]).collect())
+}
+
 /// The state mirrored in every wall behind which it is, at time zero.
 pub(super) fn in_front_of_walls(
     surfaces: &JumpSurfaces,
@@ -231,12 +267,7 @@ pub(super) fn in_front_of_walls(
 ) -> Vec<f64> {
     let n = surfaces.states;
     for wall in &surfaces.walls {
-        let arguments: Vec<f64> = state
-            .iter()
-            .copied()
-            .chain([0.0, parameter])
-            .chain(surfaces.arguments.iter().map(|_| 1.0))
-            .collect();
+        let arguments = at_beginning(surfaces, &state, parameter);
         let gap = wall.gap.call(&arguments);
         if gap < 0.0 {
             let normal = wall.normal.at(&arguments);

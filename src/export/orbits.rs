@@ -103,8 +103,8 @@ pub fn chart_picture(question: &ImpactEquation, chart: &OrbitChart) -> Result<St
         None => layers.push((label, vec![place], style)),
     };
     let [columns, rows] = chart.size;
-    // More dots than this run into each other, and make the file large.
-    let every = [columns.div_ceil(70), rows.div_ceil(70)];
+    // More dots than this run into each other, and make the file large; a panel is wider than high.
+    let every = [columns.div_ceil(100), rows.div_ceil(40)];
     for (index, point) in chart.points.iter().enumerate() {
         if (index % columns) % every[0] != 0 || (index / columns) % every[1] != 0 {
             continue;

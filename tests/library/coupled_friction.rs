@@ -39,6 +39,8 @@ fn start(point: &SteadyMotion) -> Vec<f64> {
 fn simulated(equations: &str, value: (&str, f64), start: &[f64], duration: f64) -> Vec<f64> {
     let equations = CoupledEquations::parse(equations).expect("equations");
     let course = TrajectoryRequest {
+        mass: None,
+        walls: vec![],
         coordinates: equations.coordinates.clone(),
         equations: vec![],
         rates: equations.rates.clone(),

@@ -197,7 +197,7 @@ fn in_closed_form(
     numbers: &ImpactNumbers,
     [least, greatest]: [u32; 2],
 ) -> Result<(Vec<ImpactOrbit>, Vec<u32>), OrbitError> {
-    let resonance = || OrbitError::Resonance(numbers.frequency);
+    let resonance = || OrbitError::Resonance(question.frequency.clone());
     let mut orbits = match question.is_symmetric()? {
         true => one_impact::symmetric_orbits(numbers, least..=greatest).ok_or_else(resonance)?,
         false => vec![],
@@ -225,7 +225,7 @@ fn searched(
     };
     for periods in least..=greatest {
         let search = Search::new(numbers, request.impacts, periods)
-            .ok_or(OrbitError::Resonance(numbers.frequency))?;
+            .ok_or(OrbitError::Resonance(question.frequency.clone()))?;
         orbits
             .extend(search.orbits(request.interrupt).into_iter().filter(|own| !is_symmetric(own)));
         if request.interrupt.is_requested() {
@@ -248,7 +248,8 @@ fn judged(
 ) -> Result<Vec<JudgedImpactOrbit>, OrbitError> {
     let walls: Vec<Wall> = question.walls.iter().map(|wall| wall.wall.clone()).collect();
     let simulation = WalledSimulation::new(&question.oscillator, &walls, values)?;
-    let walled = WalledFlow::new(numbers).ok_or(OrbitError::Resonance(numbers.frequency))?;
+    let walled =
+        WalledFlow::new(numbers).ok_or(OrbitError::Resonance(question.frequency.clone()))?;
     let judged = orbits.into_iter().map(|orbit| {
         if request.interrupt.is_requested() {
             return Err(OrbitError::Interrupted);

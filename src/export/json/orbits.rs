@@ -132,7 +132,7 @@ pub struct OrbitDocument {
 
 /// A Floquet multiplier.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Multiplier"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "OrbitMultiplier"))]
 pub struct MultiplierDocument {
     /// The real part.
     pub re: f64,
@@ -180,7 +180,7 @@ pub struct OrbitBranchDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "OrbitChange"))]
 pub struct OrbitChangeDocument {
-    /// `grazing`, `fold`, `period-doubling` or `symmetry-breaking`.
+    /// `grazing`, `fold`, `period-doubling`, `symmetry-breaking`, or `second-impact`, where an orbit touches a wall between impacts.
     pub kind: String,
     /// The number of the wall, from 1.
     pub wall: usize,
@@ -235,7 +235,7 @@ pub struct OrbitFamilyDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "OrbitCurve"))]
 pub struct OrbitCurveDocument {
-    /// `grazing`, `fold`, `period-doubling` or `symmetry-breaking`.
+    /// `grazing`, `fold`, `period-doubling`, `symmetry-breaking`, or `second-impact`, where an orbit touches a wall between impacts.
     pub kind: String,
     /// The number of the wall, from 1.
     pub wall: usize,

@@ -7,7 +7,7 @@ use super::equation::{CompiledImpact, ImpactEquation, ImpactNumbers};
 use super::error::OrbitError;
 use super::family::{OrbitChange, OrbitFamily};
 use super::multipliers::OrbitStability;
-use super::one_impact::OneImpact;
+use super::one_impact::{ImpactState, OneImpact};
 use super::sweep::{VaryingParameter, check_periods};
 use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::parallel::par_map;
@@ -134,24 +134,42 @@ struct Measures {
     fold: f64,
     /// Of the faster and the slower orbit.
     minus_one: [f64; 2],
+    /// Of both, 1 where a motion follows the orbit and -1 where it does not.
+    admissible: [f64; 2],
 }
 
 impl Measures {
-    const NONE: Self = Self { grazing: f64::NAN, fold: f64::NAN, minus_one: [f64::NAN; 2] };
+    const NONE: Self = Self {
+        grazing: f64::NAN,
+        fold: f64::NAN,
+        minus_one: [f64::NAN; 2],
+        admissible: [f64::NAN; 2],
+    };
 
-    fn new(relation: &OneImpact) -> Self {
+    /// The measures of which an orbit has both.
+    const COUNT: usize = 6;
+
+    fn new(family: OrbitFamily, numbers: &ImpactNumbers, relation: &OneImpact) -> Self {
         let states = relation.states();
-        let minus_one =
-            states.map(|state| state.map_or(f64::NAN, |state| relation.period_doubling(&state)));
-        Self { grazing: relation.grazing().unwrap_or(f64::NAN), fold: relation.fold(), minus_one }
+        let measure = |of: &dyn Fn(&ImpactState) -> f64| {
+            states.each_ref().map(|state| state.as_ref().map_or(f64::NAN, of))
+        };
+        let follows = |state: &ImpactState| family.is_admissible(numbers, relation, state);
+        Self {
+            grazing: relation.grazing().unwrap_or(f64::NAN),
+            fold: relation.fold(),
+            minus_one: measure(&|state| relation.period_doubling(state)),
+            admissible: measure(&|state| if follows(state) { 1.0 } else { -1.0 }),
+        }
     }
 
-    /// Grazing, fold, and the multiplier -1 of the faster and of the slower orbit.
+    /// Grazing, fold; of the faster and of the slower orbit the multiplier -1, then a second impact.
     fn get(&self, index: usize) -> f64 {
         match index {
             0 => self.grazing,
             1 => self.fold,
-            index => self.minus_one[index - 2],
+            2 | 3 => self.minus_one[index - 2],
+            index => self.admissible[index - 4],
         }
     }
 }
@@ -168,14 +186,14 @@ fn look(
         let own = numbers.as_ref().and_then(|numbers| Some((numbers, family.relation(numbers)?)));
         let (mut orbits, mut stable) = (0, 0);
         let measures = own.as_ref().map_or(Measures::NONE, |(numbers, relation)| {
-            for state in relation.states().into_iter().flatten() {
-                if family.is_admissible(numbers, relation, &state) {
+            let measures = Measures::new(*family, numbers, relation);
+            for (state, admissible) in relation.states().iter().zip(measures.admissible) {
+                if let Some(state) = state.as_ref().filter(|_| admissible > 0.0) {
                     orbits += 1;
-                    stable +=
-                        u8::from(family.stability(relation, &state) == OrbitStability::Stable);
+                    stable += u8::from(family.stability(relation, state) == OrbitStability::Stable);
                 }
             }
-            Measures::new(relation)
+            measures
         });
         point.orbits.push(orbits);
         point.stable.push(stable);
@@ -194,11 +212,12 @@ fn curves(
     let [columns, _] = chart.size;
     let mut curves: Vec<OrbitCurve> = Vec::new();
     for (number, family) in chart.families.iter().enumerate() {
-        for index in 0..4 {
+        for index in 0..Measures::COUNT {
             let change = match index {
                 0 => OrbitChange::Grazing,
                 1 => OrbitChange::Fold,
-                _ => OrbitChange::of_minus_one(family.kind),
+                2 | 3 => OrbitChange::of_minus_one(family.kind),
+                _ => OrbitChange::SecondImpact,
             };
             // Without impacts there are no periods: grazing is one curve for each wall.
             let is_known =
@@ -236,17 +255,21 @@ fn crossing(
         let relation = family.relation(&numbers)?;
         Some((numbers, relation))
     };
-    let measure =
-        |part: f64| relation(part).map_or(f64::NAN, |own| Measures::new(&own.1).get(index));
+    let measure = |part: f64| {
+        relation(part)
+            .map_or(f64::NAN, |(numbers, own)| Measures::new(family, &numbers, &own).get(index))
+    };
     let (first, last) = (measure(0.0), measure(1.0));
     let holds = |part: f64| (measure(part) > 0.0) == (first > 0.0);
     let [inside, outside] = bisect(holds, 0.0, 1.0, BisectionStop::Halvings(HALVINGS));
     let scale = first.abs().max(last.abs());
     let size = |part: f64| measure(part).abs();
-    if !(size(inside).min(size(outside)) <= 1e-3 * scale) {
+    // Whether a motion follows an orbit has no small values, and is decided on both sides.
+    let is_decided = index >= 4;
+    if !is_decided && !(size(inside).min(size(outside)) <= 1e-3 * scale) {
         return None;
     }
-    if index > 0 {
+    if index > 0 && !is_decided {
         // A fold has orbits on one side alone.
         let is_followed = [inside, outside].into_iter().any(|part| {
             relation(part).is_some_and(|(numbers, relation)| {

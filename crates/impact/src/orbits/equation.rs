@@ -86,7 +86,7 @@ impl ImpactEquation {
     /// let table = Wall::parse("x > Z*sin(w*t)", &"e".parse()?)?;
     /// let question = ImpactEquation::new(&ball, &table)?;
     /// assert_eq!(question.walls[0].load.constant.to_string(), "-g");
-    /// assert_eq!(question.walls[0].load.sine.to_string(), "Z*w^2");
+    /// assert_eq!(question.walls[0].load.sine.to_string(), "w^2*Z");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(oscillator: &Oscillator, walls: &[Wall]) -> Result<Self, OrbitError> {
@@ -108,13 +108,19 @@ impl ImpactEquation {
         let places: Result<Vec<_>, OrbitError> =
             walls.iter().map(|wall| place(wall, x, &mut frequency)).collect();
         let places = places?;
-        let Some(frequency) = frequency else { return Err(OrbitError::NoDrive) };
+        let Some(FirstWave { rate: frequency, .. }) = frequency else {
+            return Err(OrbitError::NoDrive);
+        };
         match walls.len() {
             0 => return Err(OrbitError::NoWall),
             1 => {}
             2 if places[0].0 != places[1].0 => {}
             2 => return Err(OrbitError::SameSide(walls[0].gap.clone(), walls[1].gap.clone())),
             count => return Err(OrbitError::ManyWalls(count)),
+        }
+        let dynamic = (&stiffness - &frequency.integer_power(2)?).expand()?;
+        if damping.is_zero() && dynamic.is_zero() {
+            return Err(OrbitError::Resonance(frequency));
         }
         let walls = walls.iter().zip(places).map(|(wall, (side, offset))| {
             let load = load_of_gap(side, &offset, &load, [&damping, &stiffness, &frequency])?;
@@ -257,8 +263,14 @@ fn offending_term(oscillator: &Oscillator) -> Result<String, ExprError> {
     Ok(oscillator.force.to_string())
 }
 
+/// The first wave that is met, whose frequency all others have.
+struct FirstWave {
+    term: Expr,
+    rate: Expr,
+}
+
 /// Reads a sum of constants and waves of one frequency.
-fn harmonic(sum: &Expr, frequency: &mut Option<Expr>) -> Result<Harmonic<Expr>, OrbitError> {
+fn harmonic(sum: &Expr, frequency: &mut Option<FirstWave>) -> Result<Harmonic<Expr>, OrbitError> {
     let t = Symbol::new("t");
     let expanded = sum.expand()?;
     let (mut constant, mut cosine, mut sine) = (vec![], vec![], vec![]);
@@ -271,10 +283,11 @@ fn harmonic(sum: &Expr, frequency: &mut Option<Expr>) -> Result<Harmonic<Expr>, 
             return Err(OrbitError::NoWave(term.to_string()));
         };
         match frequency {
-            None => *frequency = Some(wave.rate.clone()),
-            Some(known) if *known == wave.rate => {}
+            None => *frequency = Some(FirstWave { term: term.clone(), rate: wave.rate.clone() }),
+            Some(known) if known.rate == wave.rate => {}
             Some(known) => {
-                return Err(OrbitError::TwoFrequencies { first: known.clone(), second: wave.rate });
+                let (first, second) = (known.term.clone(), term.clone());
+                return Err(OrbitError::TwoFrequencies { first, second });
             }
         }
         let (c, s) = (wave.phase.cos()?, wave.phase.sin()?);
@@ -297,7 +310,7 @@ fn harmonic(sum: &Expr, frequency: &mut Option<Expr>) -> Result<Harmonic<Expr>, 
 fn place(
     wall: &Wall,
     x: Symbol,
-    frequency: &mut Option<Expr>,
+    frequency: &mut Option<FirstWave>,
 ) -> Result<(i8, Harmonic<Expr>), OrbitError> {
     wall.check(&[x])?;
     let nonlinear = || OrbitError::NonlinearWall { gap: wall.gap.clone(), coordinate: x };

@@ -30,11 +30,11 @@ pub enum OrbitError {
     #[error("the term `{0}` is not a harmonic wave such as F*cos(w*t)")]
     NoWave(String),
     /// Two frequencies drive the motion.
-    #[error("`{first}` and `{second}` are two frequencies of one drive")]
+    #[error("`{first}` and `{second}` drive the motion with two frequencies")]
     TwoFrequencies {
-        /// The first frequency.
+        /// A wave of the first frequency.
         first: Expr,
-        /// Another one.
+        /// A wave of another one.
         second: Expr,
     },
     /// Nothing depends on time.
@@ -83,7 +83,7 @@ pub enum OrbitError {
     #[error(
         "without damping a drive at the natural frequency {0} has no steady motion about which to write the closed form"
     )]
-    Resonance(f64),
+    Resonance(Expr),
     /// A number of periods or impacts is zero or too large.
     #[error("{what} must lie between 1 and {most}, not {value}")]
     Count {

@@ -3,9 +3,9 @@
 
 use num_complex::Complex64;
 
+use super::multipliers::multipliers;
 use super::orbit::ImpactOrbit;
 use super::simulation::WalledSimulation;
-use crate::numeric::periodic::{by_differences, eigenvalues_of_two};
 use crate::verify::Verdict;
 
 /// An orbit beside a simulation that started on it.
@@ -47,21 +47,41 @@ pub(super) fn judge(
     let motion = advance(begin)?;
     let distance = ((motion.end[0] - begin[0]) * frequency).hypot(motion.end[1] - begin[1]);
     let return_error = distance / speed;
-    let sizes = [speed / frequency, speed];
-    let derivative = by_differences(begin, sizes, |state| Some((advance(state)?.end, ())));
-    let multipliers =
-        derivative.map(|(_, matrix, ())| eigenvalues_of_two(matrix.trace(), matrix.determinant()));
-    let multiplier_error = multipliers.map(|found| farthest(&found, &orbit.multipliers));
+    let end_of = |state: [f64; 2]| Some(advance(state)?.end);
+    let found = map_multipliers(begin, [speed / frequency, speed], end_of);
+    let multiplier_error = found.map(|found| farthest(&found, &orbit.multipliers));
     let size = orbit.multipliers.iter().map(|own| own.norm()).fold(1.0, f64::max);
     let is_alike = motion.impacts.len() == orbit.impacts.len()
         && return_error <= tolerance
         && multiplier_error.is_some_and(|error| error <= tolerance * size);
     Some(OrbitVerdict {
         return_error,
-        multipliers,
+        multipliers: found,
         multiplier_error,
         verdict: Verdict::from_passed(is_alike),
     })
+}
+
+/// The multipliers of a map by central differences over steps that are small beside these sizes.
+fn map_multipliers(
+    at: [f64; 2],
+    sizes: [f64; 2],
+    map: impl Fn([f64; 2]) -> Option<[f64; 2]>,
+) -> Option<[Complex64; 2]> {
+    /// Far above the error of the integration, whose error it is over this.
+    const DIFFERENCE: f64 = 1e-5;
+    let column = |index: usize| {
+        let step = DIFFERENCE * sizes[index];
+        let beside = |step: f64| {
+            let mut state = at;
+            state[index] += step;
+            map(state)
+        };
+        let (right, left) = (beside(step)?, beside(-step)?);
+        Some([0, 1].map(|row| (right[row] - left[row]) / (2.0 * step)))
+    };
+    let ([a, c], [b, d]) = (column(0)?, column(1)?);
+    Some(multipliers(a + d, a * d - b * c))
 }
 
 fn failed() -> OrbitVerdict {

@@ -12,8 +12,6 @@
 
 use num_complex::Complex64;
 
-use crate::numeric::periodic::eigenvalues_of_two;
-
 /// Whether neighbouring motions approach an orbit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OrbitStability {
@@ -48,7 +46,16 @@ impl OrbitStability {
 
 /// Both multipliers of a monodromy, the one of larger size first.
 pub(super) fn multipliers(trace: f64, determinant: f64) -> [Complex64; 2] {
-    eigenvalues_of_two(trace, determinant)
+    let half = 0.5 * trace;
+    let square = half * half - determinant;
+    if square < 0.0 {
+        let root = (-square).sqrt();
+        return [Complex64::new(half, root), Complex64::new(half, -root)];
+    }
+    // The smaller one by the product, which does not cancel.
+    let large = half + half.signum() * square.sqrt();
+    let small = if large == 0.0 { 0.0 } else { determinant / large };
+    [large, small].map(Complex64::from)
 }
 
 /// The product of two matrices by rows.

@@ -64,9 +64,9 @@ impl WalledSimulation {
     }
 
     /// Follows a motion from a time and a state. Returns `None` if it does not reach the end: it
-    /// has more than a million impacts per call, rests on a wall, or overflows.
+    /// has more than 20 000 impacts, as one that comes to rest on a wall has, rests on a wall, or overflows.
     pub fn follow(&self, [start, end]: [f64; 2], state: [f64; 2]) -> Option<SimulatedMotion> {
-        const MOST_IMPACTS: usize = 1_000_000;
+        const MOST_IMPACTS: usize = 20_000;
         let (mut time, mut state) = (start, state);
         let mut impacts: Vec<(f64, usize, f64)> = Vec::new();
         while impacts.len() < MOST_IMPACTS {

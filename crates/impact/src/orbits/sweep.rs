@@ -1,10 +1,10 @@
 //! Orbits in closed form along a parameter: speeds, phases, stability, and where they change.
 
-use super::equation::ImpactEquation;
+use super::equation::{ImpactEquation, ImpactNumbers};
 use super::error::OrbitError;
 use super::family::{OrbitChange, OrbitFamily};
 use super::multipliers::OrbitStability;
-use super::one_impact::{ImpactState, OneImpact};
+use super::one_impact::OneImpact;
 use super::{MOST_PERIODS, OrbitRequest};
 use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::symbol::Symbol;
@@ -134,14 +134,15 @@ pub fn sweep_orbits(
             Some((numbers, relation))
         };
         let mut open: [Option<OrbitBranch>; 2] = [None, None];
-        let mut before: Option<(f64, OneImpact)> = None;
+        let mut before: Option<(f64, Look)> = None;
         for step in 0..STEPS {
             let parameter = vary.value(step, STEPS);
-            let Some((numbers, relation)) = look(parameter) else {
+            let Some(own) = look(parameter) else {
                 branches.extend(open.iter_mut().filter_map(Option::take));
                 before = None;
                 continue;
             };
+            let (numbers, relation) = &own;
             for (index, state) in relation.states().into_iter().enumerate() {
                 let Some(state) = state else {
                     branches.extend(open[index].take());
@@ -151,17 +152,17 @@ pub fn sweep_orbits(
                     parameter,
                     speed: state.speed,
                     phase: state.phase,
-                    stability: family.stability(&relation, &state),
-                    admissible: family.is_admissible(&numbers, &relation, &state),
+                    stability: family.stability(relation, &state),
+                    admissible: family.is_admissible(numbers, relation, &state),
                 };
                 let branch = || OrbitBranch { family, faster: index == 0, points: vec![] };
                 open[index].get_or_insert_with(branch).points.push(point);
             }
             if let Some((from, earlier)) = &before {
-                let ends = [(*from, earlier), (parameter, &relation)];
+                let ends = [(*from, earlier), (parameter, &own)];
                 changes_between(family, ends, &look, &mut changes);
             }
-            before = Some((parameter, relation));
+            before = Some((parameter, own));
         }
         branches.extend(open.into_iter().flatten());
     }
@@ -184,60 +185,74 @@ pub(super) fn check_periods(periods: [u32; 2]) -> Result<(), OrbitError> {
     }
 }
 
+/// The numbers at a value of the parameter and the relation of the orbits there.
+type Look = (ImpactNumbers, OneImpact);
+
+/// A measure that changes its sign where orbits change; `None` where it has no meaning.
+type Measure<'a> = &'a dyn Fn(&Look) -> Option<f64>;
+
 /// Adds the changes between two values of the parameter.
 fn changes_between(
     family: OrbitFamily,
-    [(from, earlier), (to, later)]: [(f64, &OneImpact); 2],
-    look: &impl Fn(f64) -> Option<(super::ImpactNumbers, OneImpact)>,
+    [from, to]: [(f64, &Look); 2],
+    look: &impl Fn(f64) -> Option<Look>,
     changes: &mut Vec<OrbitChangePoint>,
 ) {
-    let mut add = |change: OrbitChange,
-                   measure: &dyn Fn(&OneImpact) -> Option<f64>,
-                   index: Option<usize>| {
-        let (Some(first), Some(last)) = (measure(earlier), measure(later)) else { return };
-        if (first > 0.0) == (last > 0.0) {
+    let mut add = |change: OrbitChange, measure: Measure, orbit: usize| {
+        let Some([inside, outside]) = sign_change(change, measure, [from, to], look) else {
             return;
-        }
-        let value = |parameter: f64| look(parameter).and_then(|(_, relation)| measure(&relation));
-        let holds =
-            |parameter: f64| value(parameter).is_some_and(|own| (own > 0.0) == (first > 0.0));
-        let [inside, outside] = bisect(holds, from, to, BisectionStop::Halvings(60));
-        // A change of sign through a pole is no change of orbits.
-        let scale = first.abs().max(last.abs());
-        let nearest = [inside, outside]
-            .into_iter()
-            .filter_map(value)
-            .map(f64::abs)
-            .fold(f64::INFINITY, f64::min);
-        if !(nearest <= 1e-6 * scale) {
-            return;
-        }
+        };
         let there = [inside, outside].into_iter().find_map(|parameter| {
             let (numbers, relation) = look(parameter)?;
-            let states = relation.states();
-            let state: Option<ImpactState> = match index {
-                Some(index) => states[index],
-                None => states.into_iter().flatten().next(),
-            };
-            let state = state?;
+            let state = relation.states()[orbit]?;
             family.is_admissible(&numbers, &relation, &state).then_some((parameter, state.speed))
         });
-        match (change, there) {
-            (OrbitChange::Grazing, _) => {
-                changes.push(OrbitChangePoint { change, family, parameter: inside, speed: None })
-            }
-            (_, Some((parameter, speed))) => {
-                changes.push(OrbitChangePoint { change, family, parameter, speed: Some(speed) });
-            }
-            (_, None) => {}
-        }
-    };
-    add(OrbitChange::Grazing, &|relation| relation.grazing(), None);
-    add(OrbitChange::Fold, &|relation| Some(relation.fold()), None);
-    for index in 0..2 {
-        let measure = move |relation: &OneImpact| {
-            relation.states()[index].map(|state| relation.period_doubling(&state))
+        let found = match (change, there) {
+            (OrbitChange::Grazing, _) => Some((inside, None)),
+            (_, Some((parameter, speed))) => Some((parameter, Some(speed))),
+            // No motion follows the orbit that changes.
+            (_, None) => None,
         };
-        add(OrbitChange::of_minus_one(family.kind), &measure, Some(index));
+        changes.extend(found.map(|(parameter, speed)| OrbitChangePoint {
+            change,
+            family,
+            parameter,
+            speed,
+        }));
+    };
+    add(OrbitChange::Grazing, &|(_, relation)| relation.grazing(), 0);
+    add(OrbitChange::Fold, &|(_, relation)| Some(relation.fold()), 0);
+    for orbit in 0..2 {
+        let minus_one = move |(_, relation): &Look| {
+            relation.states()[orbit].map(|state| relation.period_doubling(&state))
+        };
+        add(OrbitChange::of_minus_one(family.kind), &minus_one, orbit);
+        let follows = move |(numbers, relation): &Look| {
+            let state = relation.states()[orbit]?;
+            Some(if family.is_admissible(numbers, relation, &state) { 1.0 } else { -1.0 })
+        };
+        add(OrbitChange::SecondImpact, &follows, orbit);
     }
+}
+
+/// The neighbouring values of the parameter between which a measure changes its sign.
+fn sign_change(
+    change: OrbitChange,
+    measure: Measure,
+    [(from, earlier), (to, later)]: [(f64, &Look); 2],
+    look: &impl Fn(f64) -> Option<Look>,
+) -> Option<[f64; 2]> {
+    let (first, last) = (measure(earlier)?, measure(later)?);
+    if (first > 0.0) == (last > 0.0) {
+        return None;
+    }
+    let value = |parameter: f64| look(parameter).and_then(|own| measure(&own));
+    let holds = |parameter: f64| value(parameter).is_some_and(|own| (own > 0.0) == (first > 0.0));
+    let ends = bisect(holds, from, to, BisectionStop::Halvings(60));
+    // A change of sign through a pole is no change of orbits; whether a motion follows one has no
+    // small values.
+    let sizes = ends.into_iter().filter_map(value).map(f64::abs);
+    let nearest = sizes.fold(f64::INFINITY, f64::min);
+    let is_zero = nearest <= 1e-6 * first.abs().max(last.abs());
+    (is_zero || change == OrbitChange::SecondImpact).then_some(ends)
 }

@@ -122,7 +122,7 @@ fn numbers<'a>(question: &ImpactEquation, found: &FoundOrbits) -> Vec<Block<'a>>
         blocks.push(multiplier_table(found));
     }
     for own in &found.orbits {
-        blocks.extend(obstacle_in_words(question, &own.orbit).map(Block::Note));
+        blocks.extend(obstacle_in_words(question, &own.orbit).map(Block::Sentence));
     }
     if !found.degenerate.is_empty() {
         let periods: Vec<String> = found.degenerate.iter().map(ToString::to_string).collect();

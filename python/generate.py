@@ -315,6 +315,7 @@ RESULTS = {
     "simulate": "Simulation | Sweep | Motion | MotionSweep | Primary | PrimarySweep",
     "response": "Response",
     "absorber": "Absorber",
+    "orbits": "Orbits",
     "friction": "Friction",
     "lagrange": "Lagrangian",
     "materials": "Materials",
@@ -344,6 +345,8 @@ TOLD = {
 TYPES = {
     "DEGREE": "int",
     "H": "int",
+    "K": "int",
+    "N[:M]": "int | str",
     "N": "int",
     "NAME=VALUE,...": "Values",
     "NAME=FROM:TO": "Values",

@@ -40,6 +40,7 @@
 //! | [`mechanics`] | makes equations of motion from energies; units, dimensionless groups, modes | [`mechanics::Mechanism`] |
 //! | [`impact`] | a pendulum that hits an elastic barrier: three phases in closed form, or event by event | [`impact::solve`], [`impact::simulate`](impact::simulate()) |
 //! | [`optimize`] | searches the damper that rests soonest: constraints, fronts, what decides | [`optimize::optimize`](optimize::optimize()) |
+//! | [`orbits`] | periodic motions between rigid walls: speeds, multipliers, charts | [`orbits::laws`], [`orbits::find_orbits`] |
 //! | [`audit`] | computes the claims of publications again | [`audit::audit`](audit::audit()) |
 //! | [`problem`] | reads problem files | [`problem::Problem`] |
 //! | [`catalog`] | classical oscillators by name | [`catalog::find`] |
@@ -74,7 +75,7 @@ pub use lindstedt_dynamics::{coupled, mechanics, system, wall};
 #[doc(inline)]
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]
-pub use lindstedt_impact::{impact, optimize};
+pub use lindstedt_impact::{impact, optimize, orbits};
 #[doc(inline)]
 pub use lindstedt_modes::{absorber, modes, multiple_scales};
 #[doc(inline)]

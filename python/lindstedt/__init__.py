@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from .commands import lagrange as lagrange
     from .commands import materials as materials
     from .commands import optimize as optimize
+    from .commands import orbits as orbits
     from .commands import paper as paper
     from .commands import response as response
     from .commands import simulate as simulate
@@ -79,7 +80,8 @@ PLACES = {
     **dict.fromkeys(
         (
             "absorber", "audit", "certify", "check", "compare", "derive", "friction", "impact",
-            "lagrange", "materials", "optimize", "paper", "response", "simulate", "stability",
+            "lagrange", "materials", "optimize", "orbits", "paper", "response", "simulate",
+            "stability",
         ),
         "commands",
     ),

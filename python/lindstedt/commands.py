@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .documents.impact_certificate import ImpactCertificate
     from .documents.impact_comparison import ImpactComparison
     from .documents.lagrangian import Lagrangian
+    from .documents.orbits import Orbits
     from .impacts import Impact
     from .law import Law
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
@@ -308,6 +309,50 @@ def absorber(
         UsageError: An option has a value that it cannot have.
     """
     return ask("absorber", kind, {"excitation": excitation, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
+def orbits(
+    problem: Problem,
+    *,
+    wall: Sequence[str] | None = None,
+    restitution: Sequence[str] | None = None,
+    impacts: int | None = None,
+    periods: int | str | None = None,
+    vary: Values | None = None,
+    along: Values | None = None,
+    tolerance: float | None = None,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Orbits:
+    """Periodic motions of a linear driven oscillator that hits rigid walls: speed, phase and stability in closed form, each orbit beside a simulation; charts over two parameters.
+
+    Args:
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
+        wall: A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d", "-1
+            < x < 1"); repeatable.
+        restitution: The speed after an impact over that before, between 0 and 1: one for all
+            walls, or one for each.
+        impacts: Impacts in a period of the orbit: 1 in closed form, with symmetric orbits
+            between two walls; more by a search.
+        periods: Periods of the drive in a period of the orbit, one number or from N to M; 1:3
+            without it.
+        vary: A parameter, and from where to where: impact speeds along it (F=0.05:1.5).
+        along: A second parameter, and from where to where: a chart of where orbits exist and
+            are stable.
+        tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
+        timeout: Give up after so many seconds.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("orbits", problem, {"wall": wall, "restitution": restitution, "impacts": impacts, "periods": periods, "vary": vary, "along": along, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def friction(

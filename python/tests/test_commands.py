@@ -45,6 +45,7 @@ CALLS = {
         "x'' + x'/10 + x + x^3/10 = F*cos(W*t)", vary={"W": (0.8, 1.2)}, F="1/10"
     ),
     "absorber": lambda: ls.absorber("tuned", mu="1/20"),
+    "orbits": lambda: ls.orbits(EXAMPLES / "orbits" / "driven-beam.toml"),
     "friction": lambda: ls.friction(),
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),

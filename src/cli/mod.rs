@@ -25,6 +25,7 @@ mod materials;
 mod modes;
 mod one_harmonic;
 mod optimize;
+mod orbits;
 mod primary;
 mod problem;
 mod progress;
@@ -78,7 +79,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 20] = [
+static COMMANDS: [Command; 21] = [
     Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
@@ -95,6 +96,7 @@ static COMMANDS: [Command; 20] = [
         .waiting(one_minute),
     Command::new::<absorber::AbsorberArguments>("absorber")
         .showing(include_str!("help/absorber.txt")),
+    Command::new::<orbits::OrbitsArguments>("orbits").showing(include_str!("help/orbits.txt")),
     Command::new::<friction::FrictionArguments>("friction")
         .showing(include_str!("help/friction.txt")),
     Command::new::<lagrange::LagrangeArguments>("lagrange")

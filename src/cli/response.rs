@@ -362,7 +362,7 @@ fn periods_of(solution: &Solution) -> Option<usize> {
 }
 
 /// A name and a range, the value of an option: `Omega=0.5:1.5`.
-fn range(option: &str, text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
+pub(super) fn range(option: &str, text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
     let name = text.split(['=', ':']).next().map(str::trim).filter(|name| !name.is_empty());
     let form = || {
         let name = name.unwrap_or("Omega");

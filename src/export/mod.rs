@@ -21,6 +21,7 @@ pub mod latex;
 pub mod materials;
 pub mod modes;
 pub mod optimization;
+pub mod orbits;
 pub mod primary;
 pub mod response;
 pub mod simulation;

@@ -33,10 +33,12 @@ pub enum ReadingCommand {
     Stability,
     /// `lindstedt response`
     Response,
+    /// `lindstedt orbits`
+    Orbits,
 }
 
 use ReadingCommand::{
-    Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability,
+    Compare, Derive, Impact, Lagrange, Materials, Optimize, Orbits, Response, Simulate, Stability,
     Trajectory,
 };
 
@@ -52,6 +54,7 @@ impl fmt::Display for ReadingCommand {
             Optimize => "lindstedt optimize",
             Stability => "lindstedt stability",
             Response => "lindstedt response",
+            Orbits => "lindstedt orbits",
         })
     }
 }
@@ -59,15 +62,20 @@ impl fmt::Display for ReadingCommand {
 /// The commands that read a key, or refuse it with a specific message.
 fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
     match (section, key) {
-        ("", "equation") => &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
+        ("", "equation") => {
+            &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response, Orbits]
+        }
         ("", "method") => &[Derive, Impact, Response],
         ("", "order") => &[Derive, Impact, Stability, Response],
-        ("", "vary" | "periods" | "of" | "along") => &[Response],
+        ("", "of") => &[Response],
+        ("", "vary" | "periods" | "along") => &[Response, Orbits],
         ("", "small") => &[Derive, Compare, Stability],
         ("", "resonance") => &[Derive, Response],
         ("", "amplitude") => &[Derive, Impact],
         ("", "about") => &[Derive, Compare, Impact],
-        ("", "[values]") => &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response],
+        ("", "[values]") => {
+            &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response, Orbits]
+        }
         // A command that reads an equation of motion reads a mechanism as well.
         ("lagrangian", _) | ("", "[units]") => {
             &[Derive, Compare, Impact, Trajectory, Lagrange, Response]
@@ -85,7 +93,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("run", "duration") => &[Simulate, Materials, Trajectory, Optimize],
         ("run", "step_limit") => &[Impact, Simulate, Materials, Trajectory, Optimize],
         ("", "[[material]]") => &[Materials, Optimize],
-        ("", "[[wall]]") => &[Trajectory, Response],
+        ("", "[[wall]]") => &[Trajectory, Response, Orbits],
         ("limits" | "genetic", _) => &[Optimize],
         _ => &[Impact, Simulate, Materials, Optimize],
     }
@@ -207,7 +215,7 @@ impl Problem {
     /// [`ProblemError`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: ReadingCommand) -> Result<(), ProblemError> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
-        if matches!(reader, Derive | Compare | Stability | Response)
+        if matches!(reader, Derive | Compare | Stability | Response | Orbits)
             && self.equation.is_none()
             && self.lagrangian.is_none()
             && described

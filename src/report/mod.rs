@@ -21,6 +21,7 @@ mod mechanism;
 mod modes;
 mod one_harmonic;
 mod optimization;
+mod orbits;
 mod primary;
 mod response;
 mod slow_equations;
@@ -47,6 +48,10 @@ pub use mechanism::{mechanism, paper_equations};
 pub use modes::{ModesReport, modes};
 pub use one_harmonic::{OneHarmonicReport, one_harmonic};
 pub use optimization::{optimization, optimization_sentences};
+pub(crate) use orbits::family_in_words;
+#[cfg(feature = "json")]
+pub(crate) use orbits::obstacle_in_words;
+pub use orbits::{OrbitsReport, orbits};
 pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]
 pub(crate) use response::motion_frequency;

@@ -37,6 +37,7 @@ mod names;
 mod narrow;
 mod near_rest;
 mod normal_modes;
+mod orbits;
 mod primary;
 mod primary_chain;
 mod printed_integrals;

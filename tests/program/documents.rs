@@ -13,7 +13,7 @@ use lindstedt::export::json::{
     DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
     ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
     ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
-    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
@@ -105,6 +105,7 @@ fn reads_back(document: &Value) {
         DocumentKind::Simulation => again::<SimulationDocument>(document),
         DocumentKind::Sweep => again::<SweepDocument>(document),
         DocumentKind::Absorber => again::<AbsorberDocument>(document),
+        DocumentKind::Orbits => again::<OrbitsDocument>(document),
         DocumentKind::Friction => again::<FrictionDocument>(document),
         DocumentKind::Lagrangian => again::<LagrangianDocument>(document),
         DocumentKind::MotionSweep => again::<MotionSweepDocument>(document),
@@ -186,6 +187,12 @@ fn documents() -> Vec<(String, Value)> {
     add(&["absorber", "tuned", "--at", "mu=1/20"]);
     add(&["absorber", "nonlinear"]);
     add(&["absorber", "impact-sink", "--at", "r=0.65,b=1,mu=1/100"]);
+    for file in files("examples/orbits", ".toml") {
+        add(&["orbits", &file.to_string_lossy()]);
+    }
+    let ball = "examples/orbits/bouncing-ball.toml";
+    add(&["orbits", ball, "--vary", "Z=0.001:0.01"]);
+    add(&["orbits", ball, "--vary", "Z=0.001:0.01", "--along", "e=0.2:0.9"]);
     add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["impact", "--certify"]);
@@ -269,6 +276,7 @@ fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
         Some("lindstedt/absorber/1") => "/designs/0/formulas/0",
+        Some("lindstedt/orbits/1") => "/laws/0",
         Some("lindstedt/modes/1") => "/modes/0",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",

@@ -12,6 +12,7 @@ mod impact_files;
 mod materials;
 mod optimize;
 mod options;
+mod orbits;
 #[cfg(feature = "plot")]
 mod pages;
 #[cfg(feature = "plot")]

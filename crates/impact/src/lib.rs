@@ -1,10 +1,12 @@
-//! The pendulum that hits an elastic barrier, and the search for the best damper.
+//! The pendulum that hits an elastic barrier, the search for the best damper, and periodic motions
+//! between rigid walls.
 //!
-//! In: masses, lengths, a contact law. Out: three phases in closed form, all forces event by event,
-//! sweeps, materials, the design that rests soonest.
+//! In: masses, lengths, a contact law; or a linear driven oscillator with walls. Out: three phases in
+//! closed form, all forces event by event, sweeps, materials, the design that rests soonest; periodic
+//! impact orbits in closed form.
 //!
 //! Five names to know: [`impact::Model`], equation (7); [`mod@impact::chain`], impacts in closed
-//! form; [`impact::primary`], the main mass; `impact::materials`; [`optimize::optimize`].
+//! form; [`impact::primary`], the main mass; [`optimize::optimize`]; [`orbits::find_orbits`].
 
 #![warn(missing_docs)]
 
@@ -24,6 +26,8 @@ pub use lindstedt_verify::{trajectory, verify};
 pub mod impact;
 
 pub mod optimize;
+
+pub mod orbits;
 
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
 pub use method::motion::Motion;

@@ -22,6 +22,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/motion/1": ("motion", ("Motion",)),
     "lindstedt/one-harmonic/1": ("one_harmonic", ("OneHarmonic",)),
     "lindstedt/optimization/1": ("optimization", ("Optimization",)),
+    "lindstedt/orbits/1": ("orbits", ("Orbits",)),
     "lindstedt/point/1": ("point", ("Point",)),
     "lindstedt/primary-sweep/1": ("primary_sweep", ("PrimarySweep",)),
     "lindstedt/primary/1": ("primary", ("Primary",)),

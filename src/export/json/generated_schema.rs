@@ -13,7 +13,7 @@ use super::{
     DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
     ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
     ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
-    OneHarmonicDocument, OptimizationDocument, PointDocument, PrimaryDocument,
+    OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
     PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
     SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
@@ -42,6 +42,7 @@ impl DocumentKind {
             Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
             Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
             Self::Absorber => generator.into_root_schema_for::<AbsorberDocument>(),
+            Self::Orbits => generator.into_root_schema_for::<OrbitsDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),

@@ -35,6 +35,7 @@ pub mod motion;
 pub mod number;
 mod one_harmonic;
 pub mod optimization;
+mod orbits;
 pub mod points;
 pub mod primary;
 pub mod response;
@@ -82,6 +83,11 @@ pub use one_harmonic::{
     OneHarmonicMotionDocument, one_harmonic,
 };
 pub use optimization::{OptimizationDocument, optimization};
+pub use orbits::{
+    MultiplierDocument, OrbitBranchDocument, OrbitChangeDocument, OrbitChartDocument,
+    OrbitCurveDocument, OrbitDocument, OrbitFamilyDocument, OrbitLawsDocument,
+    OrbitRelationDocument, OrbitSweepDocument, OrbitWallDocument, OrbitsDocument, orbits,
+};
 pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep};
 pub use response::{ResponseDocument, response};
 pub use schema::DocumentKind;

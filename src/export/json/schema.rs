@@ -37,6 +37,8 @@ pub enum DocumentKind {
     Response,
     /// `absorber`.
     Absorber,
+    /// `orbits`.
+    Orbits,
     /// `friction`.
     Friction,
     /// `lagrange`.
@@ -63,7 +65,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::Solution,
         Self::Modes,
         Self::OneHarmonic,
@@ -80,6 +82,7 @@ impl DocumentKind {
         Self::Sweep,
         Self::Response,
         Self::Absorber,
+        Self::Orbits,
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
@@ -124,6 +127,7 @@ impl DocumentKind {
             Self::Sweep => ["lindstedt/sweep/1", include_str!("schemas/sweep.json")],
             Self::Response => ["lindstedt/response/1", include_str!("schemas/response.json")],
             Self::Absorber => ["lindstedt/absorber/1", include_str!("schemas/absorber.json")],
+            Self::Orbits => ["lindstedt/orbits/1", include_str!("schemas/orbits.json")],
             Self::Friction => ["lindstedt/friction/1", include_str!("schemas/friction.json")],
             Self::Lagrangian => ["lindstedt/lagrangian/1", include_str!("schemas/lagrangian.json")],
             Self::Materials => ["lindstedt/materials/1", include_str!("schemas/materials.json")],

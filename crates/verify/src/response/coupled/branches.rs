@@ -398,7 +398,7 @@ impl CoupledProblem<'_> {
         }
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
         let sizes = self.state_sizes(&orbit.kept.travel, &[]);
-        let start = &orbit.start().as_slice()[..self.states.len()];
+        let start = &orbit.start()[..self.states.len()];
         if flow.least_gap(start, orbit.parameter(), &sizes) < NEAR * NEAR {
             return Some(BranchEnd::ImpactAtStart);
         }
@@ -425,7 +425,7 @@ impl CoupledProblem<'_> {
     /// The start of an orbit, and that behind an impact at its beginning.
     fn starts_at_wall(&self, orbit: &Orbit) -> Vec<Vec<f64>> {
         let flow = self.in_phase.as_ref().unwrap_or(&self.in_time);
-        let start = orbit.start().as_slice()[..self.states.len()].to_vec();
+        let start = orbit.start()[..self.states.len()].to_vec();
         let behind = flow.behind_impact(&start, orbit.parameter());
         [Some(start), behind].into_iter().flatten().collect()
     }

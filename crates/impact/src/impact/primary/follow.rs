@@ -80,7 +80,11 @@ pub fn simulate_primary(
         match reason {
             PathEnd::Interrupted => break PrimaryStop::Interrupted,
             PathEnd::Reached | PathEnd::Event(_) => {}
-            PathEnd::StepLimit | PathEnd::Singular | PathEnd::Overflow | PathEnd::Sticks => {
+            PathEnd::StepLimit
+            | PathEnd::Singular
+            | PathEnd::Overflow
+            | PathEnd::Sticks
+            | PathEnd::PassesWall => {
                 break PrimaryStop::Singular;
             }
         }

@@ -266,7 +266,8 @@ fn crossing(
     let size = |part: f64| measure(part).abs();
     // Whether a motion follows an orbit has no small values, and is decided on both sides.
     let is_decided = index >= 4;
-    if !is_decided && !(size(inside).min(size(outside)) <= 1e-3 * scale) {
+    let is_zero = size(inside).min(size(outside)) <= 1e-3 * scale;
+    if !is_decided && !is_zero {
         return None;
     }
     if index > 0 && !is_decided {

@@ -55,7 +55,7 @@ impl ClosedFlow {
             (load.cosine * dynamic - load.sine * turn) / square,
             (load.sine * dynamic + load.cosine * turn) / square,
         ];
-        Some(Self { damping, stiffness, frequency, load: load.clone(), wave })
+        Some(Self { damping, stiffness, frequency, load: *load, wave })
     }
 
     /// The amplitude of the steady wave.
@@ -112,7 +112,7 @@ impl ClosedFlow {
     pub(super) fn negative_gap(&self, start: f64, velocity: f64, length: f64) -> Option<f64> {
         let count = (length / self.step()).ceil().max(8.0);
         // A leg so long that its samples are no longer counted fails as not followed.
-        if !(count < 1e7) {
+        if count.is_nan() || count >= 1e7 {
             return Some(f64::NAN);
         }
         let step = length / count;

@@ -101,7 +101,7 @@ impl OneImpact {
                 velocity: (e - (1.0 + e) * (1.0 - first) / determinant) / omega,
             }
         };
-        let load = wall.load.clone();
+        let load = wall.load;
         Some(Self { length, restitution: e, flow, wave: [cosine, sine], decay, load, relation })
     }
 
@@ -148,7 +148,7 @@ impl OneImpact {
             }
             Relation::Momentum { speed, velocity } => {
                 let square = amplitude * amplitude - velocity * velocity;
-                if !(square >= 0.0) {
+                if square.is_nan() || square < 0.0 {
                     return [None, None];
                 }
                 let position = square.sqrt();
@@ -283,5 +283,5 @@ pub(super) fn obstacle(walled: &WalledFlow, impact: &OrbitImpact, length: f64) -
     let contact = walled.first_contact(impact.time, state, length)?;
     // The impact at the end is the next of the orbit.
     (contact.after < length * (1.0 - 1e-7))
-        .then(|| Obstacle { wall: contact.wall, after: contact.after })
+        .then_some(Obstacle { wall: contact.wall, after: contact.after })
 }

@@ -112,7 +112,7 @@ impl<'a> Search<'a> {
         let time = from.time + contact.after;
         let [_, rate] = self.walled.gap(contact.wall, time, contact.state);
         // An impact without speed, or just after the one before, is one of an endless series.
-        if !(rate < 0.0) || contact.after < 1e-9 * self.duration {
+        if rate.is_nan() || rate >= 0.0 || contact.after < 1e-9 * self.duration {
             return None;
         }
         let acceleration_of = |wall: usize, time: f64| {

@@ -79,7 +79,7 @@ impl WalledSimulation {
                     let [_, slope, rate] = own.gap.call(&[state[0], path.end()]);
                     let gap_rate = slope * state[1] + rate;
                     // An impact without speed leaves the motion where it is: it rests on the wall.
-                    if !(gap_rate < 0.0) || path.end() <= time {
+                    if gap_rate.is_nan() || gap_rate >= 0.0 || path.end() <= time {
                         return None;
                     }
                     state[1] -= (1.0 + own.restitution) * gap_rate / slope;

@@ -43,7 +43,11 @@ const EXAMPLES: [&[&str]; 4] = [
 fn examples_print_their_impacts() {
     for arguments in EXAMPLES {
         let name = arguments[1].rsplit(['/', '.']).nth(1).expect("a name");
-        insta::assert_snapshot!(format!("walls-{name}"), printed(arguments));
+        let mut settings = insta::Settings::clone_current();
+        settings.set_snapshot_path(concat!(env!("CARGO_MANIFEST_DIR"), "/snapshots"));
+        settings.set_prepend_module_to_snapshot(false);
+        settings.set_omit_expression(true);
+        settings.bind(|| insta::assert_snapshot!(format!("walls-{name}"), printed(arguments)));
         let text =
             std::fs::read_to_string(format!("{}/{}", env!("CARGO_MANIFEST_DIR"), arguments[1]));
         let command = arguments[1..4].join(" ");

@@ -164,6 +164,9 @@ impl AtWall {
 /// The forces of walls that keep their gaps closed; `None` if they are not determined.
 fn forces(walls: &[(usize, AtWall)]) -> Option<DVector<f64>> {
     let size = walls.len();
+    if size == 0 {
+        return Some(DVector::zeros(0));
+    }
     let compliance = DMatrix::from_fn(size, size, |i, j| walls[i].1.compliance_with(&walls[j].1));
     let right = DVector::from_fn(size, |i, _| -walls[i].1.free);
     let forces = compliance.lu().solve(&right)?;

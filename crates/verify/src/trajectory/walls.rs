@@ -259,12 +259,16 @@ impl CompiledWalls {
         parts.fold(largest, f64::max)
     }
 
-    /// The first wall behind which a motion is, beyond rounding; `largest` is the largest gap of each.
+    /// The first wall behind which a motion is, beyond rounding, measured by the largest gap of any wall
+    /// so far and the positions in it: a gap may be closed all the time.
     fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
-        (0..self.walls.len()).find(|wall| {
-            let at = self.at(*wall, time, state);
-            at.gap < -BEHIND * self.size_of_gap(&at, state, largest[*wall])
-        })
+        let walls: Vec<AtWall> =
+            (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect();
+        let size = walls
+            .iter()
+            .zip(largest)
+            .fold(0.0_f64, |most, (at, largest)| most.max(self.size_of_gap(at, state, *largest)));
+        walls.iter().position(|at| at.gap < -BEHIND * size)
     }
 
     /// The start of a motion on or in front of all walls, to rounding.

@@ -292,3 +292,64 @@ fn a_sweep_has_the_impacts_of_each_motion() {
         assert_eq!(motion.state, states(&alone, 60.0));
     }
 }
+
+/// Forces that press only a moment later, chatter beside a wall that bears, corners and stacks: no motion
+/// passes a wall, or it says so.
+#[test]
+fn no_motion_passes_a_wall_unseen() {
+    let cases: [(&str, &[(&str, &str)], &[(&str, f64)]); 8] = [
+        ("x'' + x = sin(t)", &[("x < 0", "0.5")], &[]),
+        ("x'' + t = 0", &[("x > 0", "0.5")], &[]),
+        ("x'' + t^3 = 0", &[("x > 0", "0.5")], &[]),
+        ("x'' + 1 = 0", &[("x > 1 + 0.4*sin(2*t)", "0.3")], &[("x", 1.0), ("x'", 0.8)]),
+        ("x'' = 1; y'' = -1", &[("x < 1", "0.5"), ("y > 0", "0.5")], &[]),
+        (
+            "3*x'' = -1; 2*y'' = -1",
+            &[("x > 0", "0.3"), ("y > x", "0.3")],
+            &[("x", 1.0), ("y", 2.0)],
+        ),
+        ("x'' = 0; y'' = -1", &[("y > x", "0"), ("y > -x", "0")], &[("y", 1.0)]),
+        ("x'' = 0; y'' + 1 = 0", &[("x^2 + y^2 < 1", "0.5")], &[("x", 0.3)]),
+    ];
+    for (equations, walls, start) in cases {
+        let motion = begun(course(equations, walls, ""), start, 20.0).follow().expect(equations);
+        let mut seen = 0;
+        for index in 0..=2000 {
+            let time = 0.01 * f64::from(index);
+            let Some(state) = motion.states_at(time) else { continue };
+            let states = motion.course.rates.states.iter().copied().zip(state);
+            let values = states.chain([("t".into(), time)]).collect();
+            for wall in &motion.course.walls {
+                let gap = wall.gap.evaluate(&values).unwrap();
+                assert!(gap > -1e-7 || !motion.is_complete(), "{equations}: {gap} at {time}");
+            }
+            seen += 1;
+        }
+        assert!(motion.is_complete() || motion.reason() == PathEnd::PassesWall, "{equations}");
+        assert!(seen > 50, "{equations}");
+    }
+}
+
+/// An impact at the start belongs to no account, and the exponent of a motion without loss is zero.
+#[test]
+fn an_impact_at_the_start_is_before_the_account() {
+    let hit = course("x'' + x = 0", &[("x < 1", "0.5")], "");
+    let hit = begun(hit, &[("x", 1.0), ("x'", 2.0)], 10.0).follow().unwrap();
+    assert!(hit.balance.as_ref().is_some_and(|balance| balance.residual < 1e-12));
+    let free = begun(course("x'' = 0", &[("-1 < x < 1", "1")], ""), &[("x'", 3.0)], 16.0);
+    let exponent = free.follow().unwrap().lyapunov_exponent().expect("an exponent");
+    assert!(exponent.value.abs() < 0.2, "{exponent:?}");
+}
+
+/// The exponent of the logistic behaviour of an impact map: a ball without loss under a bilinear force is
+/// regular, that of a chaotic Duffing oscillator is positive, as its multipliers say.
+#[test]
+fn the_exponent_of_a_cycle_is_that_of_its_multipliers() {
+    // With one impact a period the determinant is e^2 exp(-c T), and the pair is complex: both have
+    // half of its logarithm.
+    let driven = course("x'' + x'/10 + x = cos(t)", &[("x < 1", "4/5")], "");
+    let motion = begun(driven, &[], 1000.0).follow().unwrap();
+    let exponent = motion.lyapunov_exponent().expect("an exponent");
+    let expected = 0.8_f64.ln() / (2.0 * PI) - 0.05;
+    assert!((exponent.value - expected).abs() < 0.01, "{exponent:?} {expected}");
+}

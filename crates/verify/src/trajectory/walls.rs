@@ -23,7 +23,7 @@ use crate::symbol::Symbol;
 use crate::system::{Integrator, Path, PathEnd, Solver, rate_along};
 use crate::wall::{Wall, WallError, WallImpact};
 
-/// Largest gap that counts as zero up to rounding, relative to the positions in it.
+/// Largest gap that counts as zero up to rounding, relative to the largest size of a gap.
 const ON_WALL: f64 = 1e-11;
 
 /// Largest speed towards a wall that counts as zero up to rounding, relative to the largest speed.
@@ -259,8 +259,7 @@ impl CompiledWalls {
         parts.fold(largest, f64::max)
     }
 
-    /// The first wall behind which a motion is, beyond rounding, measured by the largest gap of any wall
-    /// so far and the positions in it: a gap may be closed all the time.
+    /// The first wall behind which a motion is, beyond rounding.
     fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
         let walls: Vec<AtWall> =
             (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect();
@@ -308,13 +307,13 @@ impl CompiledWalls {
         let mut touched: Vec<usize> = resting.to_vec();
         let mut struck: Vec<usize> = Vec::new();
         let mut chatter: BTreeMap<usize, f64> = BTreeMap::new();
+        let size_of_gaps = self.size_of_gaps(time, state, largest);
         for _ in 0..MOST_AT_ONE_TIME {
             let speed =
                 state[coordinates..states].iter().fold(0.0_f64, |most, v| most.max(v.abs()));
             let closing = (0..self.walls.len()).find_map(|wall| {
                 let at = self.at(wall, time, state);
-                let seen = largest.get(wall).copied().unwrap_or(0.0);
-                let near = at.gap.abs() <= ON_WALL * self.size_of_gap(&at, state, seen);
+                let near = at.gap.abs() <= ON_WALL * size_of_gaps;
                 let on = event == WallEvent::Hit(wall) || touched.contains(&wall) || near;
                 if on && !touched.contains(&wall) {
                     touched.push(wall);

@@ -261,13 +261,16 @@ impl CompiledWalls {
 
     /// The first wall behind which a motion is, beyond rounding.
     fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
-        let walls: Vec<AtWall> =
-            (0..self.walls.len()).map(|wall| self.at(wall, time, state)).collect();
-        let size = walls
-            .iter()
-            .zip(largest)
-            .fold(0.0_f64, |most, (at, largest)| most.max(self.size_of_gap(at, state, *largest)));
-        walls.iter().position(|at| at.gap < -BEHIND * size)
+        let size = self.size_of_gaps(time, state, largest);
+        self.gaps(time, state).into_iter().position(|gap| gap < -BEHIND * size)
+    }
+
+    /// The largest size of a gap: one that is closed all the time has none of its own.
+    fn size_of_gaps(&self, time: f64, state: &[f64], largest: &[f64]) -> f64 {
+        (0..self.walls.len()).fold(0.0_f64, |most, wall| {
+            let largest = largest.get(wall).copied().unwrap_or(0.0);
+            most.max(self.size_of_gap(&self.at(wall, time, state), state, largest))
+        })
     }
 
     /// The start of a motion on or in front of all walls, to rounding.

@@ -13,6 +13,9 @@ use lindstedt::trajectory::{
 };
 use lindstedt::wall::{Wall, WallError};
 
+/// Equations, walls with their coefficients of restitution, and a start.
+type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], &'a [(&'a str, f64)]);
+
 /// A problem with walls, each with its coefficient of restitution.
 fn course(equations: &str, walls: &[(&str, &str)], values: &str) -> TrajectoryRequest {
     let course = match equations.contains(';') {
@@ -207,7 +210,7 @@ fn a_driven_oscillator_settles_on_its_periodic_impacts() {
 /// Both integrators agree on motions of several walls, resting, friction and drive.
 #[test]
 fn integrators_agree_across_impacts() {
-    let cases: [(&str, &[(&str, &str)], &[(&str, f64)]); 5] = [
+    let cases: [Case; 5] = [
         ("x'' + x'/10 + x + x^3 = 2*cos(t)", &[("-1 < x < 1.2", "0.7")], &[("x", 0.5)]),
         ("x'' + 0.2*sgn(x') + x = cos(1.3*t)", &[("x < 0.5", "0.6")], &[("x", 0.2)]),
         ("x'' + 9.81*sin(x) = 0", &[("x > -0.1", "0.6"), ("x < 1.4", "0.9")], &[("x", 1.0)]),
@@ -297,7 +300,7 @@ fn a_sweep_has_the_impacts_of_each_motion() {
 /// passes a wall, or it says so.
 #[test]
 fn no_motion_passes_a_wall_unseen() {
-    let cases: [(&str, &[(&str, &str)], &[(&str, f64)]); 8] = [
+    let cases: [Case; 8] = [
         ("x'' + x = sin(t)", &[("x < 0", "0.5")], &[]),
         ("x'' + t = 0", &[("x > 0", "0.5")], &[]),
         ("x'' + t^3 = 0", &[("x > 0", "0.5")], &[]),
@@ -341,8 +344,8 @@ fn an_impact_at_the_start_is_before_the_account() {
     assert!(exponent.value.abs() < 0.2, "{exponent:?}");
 }
 
-/// The exponent of the logistic behaviour of an impact map: a ball without loss under a bilinear force is
-/// regular, that of a chaotic Duffing oscillator is positive, as its multipliers say.
+/// The largest exponent of a periodic motion with impacts is the logarithm of its larger multiplier over
+/// the period.
 #[test]
 fn the_exponent_of_a_cycle_is_that_of_its_multipliers() {
     // With one impact a period the determinant is e^2 exp(-c T), and the pair is complex: both have

@@ -112,6 +112,20 @@ impl Problem {
     }
 }
 
+/// The text of a value that is a number or an expression.
+///
+/// # Errors
+/// [`ProblemError`] names the key.
+pub(super) fn number_or_text(value: &toml::Value, key: &str) -> Result<String, ProblemError> {
+    match value {
+        toml::Value::String(text) => Ok(text.clone()),
+        toml::Value::Integer(number) => Ok(number.to_string()),
+        // The shortest decimal that reads back to the same float is what was typed.
+        toml::Value::Float(number) if number.is_finite() => Ok(number.to_string()),
+        _ => refused(format!("{key} should be a number, or text such as \"pi/3\"")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,19 +138,5 @@ mod tests {
             values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
         assert!("[values]\nA = \"k\"".parse::<Problem>().unwrap().exact_values().is_err());
-    }
-}
-
-/// The text of a value that is a number or an expression.
-///
-/// # Errors
-/// [`ProblemError`] names the key.
-pub(super) fn number_or_text(value: &toml::Value, key: &str) -> Result<String, ProblemError> {
-    match value {
-        toml::Value::String(text) => Ok(text.clone()),
-        toml::Value::Integer(number) => Ok(number.to_string()),
-        // The shortest decimal that reads back to the same float is what was typed.
-        toml::Value::Float(number) if number.is_finite() => Ok(number.to_string()),
-        _ => refused(format!("{key} should be a number, or text such as \"pi/3\"")),
     }
 }

@@ -182,10 +182,13 @@ def simulate(
     from_: Values | None = None,
     until: float | None = None,
     step_limit: int | None = None,
+    wall: Sequence[str] | None = None,
+    restitution: Sequence[str] | None = None,
     every: Value | None = None,
     section: str | None = None,
     after: float | None = None,
     sample: Sequence[float] | None = None,
+    lyapunov: bool = False,
     integrator: Literal["taylor", "runge-kutta", "both"] | None = None,
     chain: bool = False,
     sweep: Values | None = None,
@@ -206,12 +209,18 @@ def simulate(
             what is left out is 0.
         until: How long it is followed; 50 without it.
         step_limit: Steps of the integrator after which it ends; 250 000 without it.
+        wall: A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d", "-1
+            < x < 1"); repeatable.
+        restitution: The speed after an impact over that before, between 0 and 1: one for all
+            walls, or one for each.
         every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
             section): 2*pi/Omega.
         section: Look at it where an expression of its coordinates, velocities and the time
-            grows through zero: x', "x - 0.1".
+            grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts.
         after: Look at it from this time on, when it has settled.
         sample: Report the state at this time (repeatable).
+        lyapunov: Give the largest Lyapunov exponent of an equation or a mechanism of one's own,
+            with its standard error; without it where six digits are lost on the way.
         integrator: The method: power series with the contact in a variable in which it is
             analytic; Runge-Kutta, one smooth phase at a time; or both, and how far they differ.
         chain: Do not integrate: swing and contact in closed form, impact after impact to rest,
@@ -233,7 +242,7 @@ def simulate(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("simulate", problem, {"from_": from_, "until": until, "step_limit": step_limit, "every": every, "section": section, "after": after, "sample": sample, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("simulate", problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def response(
@@ -245,6 +254,8 @@ def response(
     of: str | None = None,
     order: int | None = None,
     periods: int | None = None,
+    wall: Sequence[str] | None = None,
+    restitution: Sequence[str] | None = None,
     tolerance: float | None = None,
     timeout: float | None = None,
     at: Values | None = None,
@@ -267,6 +278,10 @@ def response(
             the tolerance, 64 at most; of multiple-scales its order.
         periods: Periods of the drive in a period of the motion: 2 for motions after a period
             doubling, 3 for a third of the frequency.
+        wall: A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d", "-1
+            < x < 1"); repeatable.
+        restitution: The speed after an impact over that before, between 0 and 1: one for all
+            walls, or one for each.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
         timeout: Give up after so many seconds.
         at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -277,7 +292,7 @@ def response(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("response", problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def absorber(
@@ -736,10 +751,13 @@ class EquationCommands:
         from_: Values | None = None,
         until: float | None = None,
         step_limit: int | None = None,
+        wall: Sequence[str] | None = None,
+        restitution: Sequence[str] | None = None,
         every: Value | None = None,
         section: str | None = None,
         after: float | None = None,
         sample: Sequence[float] | None = None,
+        lyapunov: bool = False,
         integrator: Literal["taylor", "runge-kutta", "both"] | None = None,
         chain: bool = False,
         sweep: Values | None = None,
@@ -758,12 +776,18 @@ class EquationCommands:
                 what is left out is 0.
             until: How long it is followed; 50 without it.
             step_limit: Steps of the integrator after which it ends; 250 000 without it.
+            wall: A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d",
+                "-1 < x < 1"); repeatable.
+            restitution: The speed after an impact over that before, between 0 and 1: one for
+                all walls, or one for each.
             every: Look at an equation or a mechanism of one's own once in this time (Poincaré's
                 section): 2*pi/Omega.
             section: Look at it where an expression of its coordinates, velocities and the time
-                grows through zero: x', "x - 0.1".
+                grows through zero: x', "x - 0.1"; or just before each impact on a wall: impacts.
             after: Look at it from this time on, when it has settled.
             sample: Report the state at this time (repeatable).
+            lyapunov: Give the largest Lyapunov exponent of an equation or a mechanism of one's
+                own, with its standard error; without it where six digits are lost on the way.
             integrator: The method: power series with the contact in a variable in which it is
                 analytic; Runge-Kutta, one smooth phase at a time; or both, and how far they differ.
             chain: Do not integrate: swing and contact in closed form, impact after impact to
@@ -786,7 +810,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("simulate", self.problem, {"from_": from_, "until": until, "step_limit": step_limit, "every": every, "section": section, "after": after, "sample": sample, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("simulate", self.problem, {"from_": from_, "until": until, "step_limit": step_limit, "wall": wall, "restitution": restitution, "every": every, "section": section, "after": after, "sample": sample, "lyapunov": lyapunov, "integrator": integrator, "chain": chain, "sweep": sweep, "baseline": baseline, "jobs": jobs, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def response(
         self,
@@ -797,6 +821,8 @@ class EquationCommands:
         of: str | None = None,
         order: int | None = None,
         periods: int | None = None,
+        wall: Sequence[str] | None = None,
+        restitution: Sequence[str] | None = None,
         tolerance: float | None = None,
         timeout: float | None = None,
         at: Values | None = None,
@@ -817,6 +843,10 @@ class EquationCommands:
                 tenth of the tolerance, 64 at most; of multiple-scales its order.
             periods: Periods of the drive in a period of the motion: 2 for motions after a
                 period doubling, 3 for a third of the frequency.
+            wall: A rigid wall, by the side on which motions are allowed ("x < 1", "x - y > -d",
+                "-1 < x < 1"); repeatable.
+            restitution: The speed after an impact over that before, between 0 and 1: one for
+                all walls, or one for each.
             tolerance: The relative error up to which a verdict is a pass; 0.01 without it.
             timeout: Give up after so many seconds.
             at: Values of symbols whose names are options or no words, `{"small": 1}`.
@@ -827,7 +857,7 @@ class EquationCommands:
             Refused: The problem is refused, with the term and a way forward.
             UsageError: An option has a value that it cannot have.
         """
-        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+        return ask("response", self.problem, {"method": method, "vary": vary, "along": along, "of": of, "order": order, "periods": periods, "wall": wall, "restitution": restitution, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
     def stability(
         self,

@@ -978,6 +978,25 @@ Section.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Wall(Document):
+    """A rigid wall.
+
+    Attributes:
+        gap: The gap, zero at the wall and positive in front of it.
+        restitution: The coefficient of restitution.
+    """
+
+    gap: str
+    restitution: str
+
+
+Wall.FIELDS = (
+    ("gap", "gap", None),
+    ("restitution", "restitution", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Axis(Document):
     """A parameter and its values.
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 from .._answer import Answer
 from .._document import Document, several
-from .common import MotionSample, Section
+from .common import MotionSample, Section, Wall
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +40,110 @@ EnergyAccount.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LyapunovExponent(Document):
+    """The largest Lyapunov exponent of a motion.
+
+    Attributes:
+        value: The exponent, per unit of time.
+        standard_error: Its standard error.
+        from_: The time from which on the motion counts.
+    """
+
+    value: float
+    standard_error: float
+    from_: float
+
+
+LyapunovExponent.FIELDS = (
+    ("value", "value", None),
+    ("standard_error", "standard_error", None),
+    ("from_", "from", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WallImpact(Document):
+    """An impact on a wall.
+
+    Attributes:
+        t: The time.
+        wall: The wall, counted from 0.
+        speed: The rate at which the gap closes before the impact: a speed where the gap is a
+            distance.
+        departure: The speed at which it opens after the impact; 0 for the one after which the
+            rest of an accumulation is summed.
+        energy_lost: The energy that the impact takes; null where no energy is accounted for.
+    """
+
+    t: float
+    wall: int
+    speed: float
+    departure: float
+    energy_lost: float | None
+
+
+WallImpact.FIELDS = (
+    ("t", "t", None),
+    ("wall", "wall", None),
+    ("speed", "speed", None),
+    ("departure", "departure", None),
+    ("energy_lost", "energy_lost", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WallRest(Document):
+    """A stretch of time on which a motion rests on a wall.
+
+    Attributes:
+        wall: The wall, counted from 0.
+        from_: The time at which it begins.
+        until: The time at which the wall no longer presses, or the motion ends.
+        after_chatter: Whether infinitely many impacts came before it.
+    """
+
+    wall: int
+    from_: float
+    until: float
+    after_chatter: bool
+
+
+WallRest.FIELDS = (
+    ("wall", "wall", None),
+    ("from_", "from", None),
+    ("until", "until", None),
+    ("after_chatter", "after_chatter", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WallsDocument(Document):
+    """Rigid walls, the impacts on them and the rests.
+
+    Attributes:
+        walls: The walls.
+        impacts: The impacts in order; of an accumulation those before its sum.
+        rests: The stretches of time on which the motion rests on a wall.
+        order_matters: The first time at which several walls were hit at once and the order of the
+            impacts matters; left out if there is none.
+    """
+
+    walls: tuple[Wall, ...]
+    impacts: tuple[WallImpact, ...]
+    rests: tuple[WallRest, ...]
+    order_matters: float | None
+
+
+WallsDocument.FIELDS = (
+    ("walls", "walls", several(Wall.from_json)),
+    ("impacts", "impacts", several(WallImpact.from_json)),
+    ("rests", "rests", several(WallRest.from_json)),
+    ("order_matters", "order_matters", None),
+)
+WallsDocument.OPTIONAL = frozenset(['order_matters'])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Answer):
     """A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
     are those of the values given.
@@ -61,8 +165,11 @@ class Motion(Answer):
             displacement; null where it was not asked for.
         known_until: The time until which the states are known to six digits; beyond it a start
             displaced by 1e-12 of it leads elsewhere. Left out where they are known to the end.
+        lyapunov: The largest Lyapunov exponent. Left out where the states are known to the end
+            and it was not asked for.
         held: The stretches of time, from when until when, on which dry friction holds something:
             at rest, on a belt or on another body.
+        walls: The walls with the impacts on them; left out without a wall.
         stopped: Why it ends where it does.
         complete: Whether it was followed as long as asked, its energy is accounted for and the
             other integrator, where asked for, agrees.
@@ -80,7 +187,9 @@ class Motion(Answer):
     energy: EnergyAccount | None
     difference: float | None
     known_until: float | None
+    lyapunov: LyapunovExponent | None
     held: tuple[tuple[float, float], ...]
+    walls: WallsDocument | None
     stopped: str
     complete: bool
 
@@ -98,8 +207,10 @@ Motion.FIELDS = (
     ("energy", "energy", EnergyAccount.from_json),
     ("difference", "difference", None),
     ("known_until", "known_until", None),
+    ("lyapunov", "lyapunov", LyapunovExponent.from_json),
     ("held", "held", several(tuple)),
+    ("walls", "walls", WallsDocument.from_json),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
-Motion.OPTIONAL = frozenset(['known_until'])
+Motion.OPTIONAL = frozenset(['known_until', 'lyapunov', 'walls'])

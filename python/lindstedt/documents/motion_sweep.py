@@ -19,6 +19,7 @@ class SweptMotion(Document):
         final_state: Those at the end.
         extremes: The least and the greatest value of each coordinate.
         section: The states on the section; null where none was asked for.
+        impacts: The number of impacts on walls; left out without a wall.
         stopped: Why it ends where it does.
         complete: Whether it was followed as long as asked.
     """
@@ -27,6 +28,7 @@ class SweptMotion(Document):
     final_state: MotionSample
     extremes: dict[str, tuple[float, float]]
     section: Section | None
+    impacts: int | None
     stopped: str
     complete: bool
 
@@ -36,9 +38,11 @@ SweptMotion.FIELDS = (
     ("final_state", "final_state", MotionSample.from_json),
     ("extremes", "extremes", mapped(tuple)),
     ("section", "section", Section.from_json),
+    ("impacts", "impacts", None),
     ("stopped", "stopped", None),
     ("complete", "complete", None),
 )
+SweptMotion.OPTIONAL = frozenset(['impacts'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from .._answer import Answer
 from .._document import Document, mapped, several
-from .common import Constant
+from .common import Constant, Wall
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -94,7 +94,7 @@ class ResponseBifurcation(Document):
         criticality: Whether the motions that come off are stable, where that is known.
     """
 
-    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
+    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre", "grazing"]
     branch: int
     parameter: float
     frequency: float
@@ -162,7 +162,7 @@ class EquilibriumChange(Document):
             known.
     """
 
-    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
+    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre", "grazing"]
     parameter: float
     value: float
     criticality: Criticality | None
@@ -227,7 +227,7 @@ class BifurcationCurve(Document):
         points: Its points in order.
     """
 
-    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre"]
+    kind: Literal["fold", "branch-point", "period-doubling", "neimark-sacker", "hopf", "centre", "grazing"]
     points: tuple[BifurcationCurvePoint, ...]
 
 
@@ -511,6 +511,9 @@ class Response(Answer):
             which is not listed.
         stuck: Of each point of a branch the part of a period in which dry friction holds it;
             empty for a branch that nothing holds.
+        walls: The walls; left out without one.
+        impacts: Of each point of a branch the number of impacts in a period; left out without a
+            wall.
         bifurcations: Where branches change.
         equilibria: The equilibria of coupled equations that nothing drives, a branch each. Left
             out where there are none.
@@ -551,6 +554,8 @@ class Response(Answer):
     branches: tuple[tuple[ResponsePoint, ...], ...]
     mirrored: tuple[bool, ...]
     stuck: tuple[tuple[float, ...], ...]
+    walls: tuple[Wall, ...] | None
+    impacts: tuple[tuple[int, ...], ...] | None
     bifurcations: tuple[ResponseBifurcation, ...]
     equilibria: tuple[EquilibriumBranch, ...] | None
     along: str | None
@@ -583,6 +588,8 @@ Response.FIELDS = (
     ("branches", "branches", several(several(ResponsePoint.from_json))),
     ("mirrored", "mirrored", tuple),
     ("stuck", "stuck", several(tuple)),
+    ("walls", "walls", several(Wall.from_json)),
+    ("impacts", "impacts", several(tuple)),
     ("bifurcations", "bifurcations", several(ResponseBifurcation.from_json)),
     ("equilibria", "equilibria", several(EquilibriumBranch.from_json)),
     ("along", "along", None),
@@ -597,4 +604,4 @@ Response.FIELDS = (
     ("exhausted", "exhausted", None),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'of', 'ripple', 'stable_motions'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'impacts', 'of', 'ripple', 'stable_motions', 'walls'])

@@ -102,6 +102,9 @@ fn method(response: &ResponseDiagram) -> &'static str {
         return "shooting";
     }
     match (response.by_map, response.jumps) {
+        (true, true) if !response.question.walls.is_empty() => {
+            "the map of a period from impact to impact"
+        }
         (true, true) => "the map of a period from jump to jump of the force",
         (true, false) => "shooting, across the corners of the force",
         (false, _) => "harmonic balance",

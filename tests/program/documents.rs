@@ -158,10 +158,11 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/optimize", ".toml") {
         add(&["optimize", &file.to_string_lossy()]);
     }
-    for (file, start) in [("bouncing-ball", "x=1"), ("newtons-cradle", "p=-1")] {
+    for (file, start) in [("impact-damper", "x=-1.5"), ("newtons-cradle", "p=-1")] {
         let file = format!("{}/examples/walls/{file}.toml", env!("CARGO_MANIFEST_DIR"));
-        add(&["simulate", &file, "--from", start, "--lyapunov", "--until", "2"]);
+        add(&["simulate", &file, "--from", start, "--until", "2"]);
     }
+    add(&["simulate", "x'' + x'/5 + x = 0", "--from", "x=1", "--lyapunov"]);
     let wall = ["--wall", "x < 1", "--restitution", "0.8", "--vary", "F=0.5:0.7"];
     add(&[&["response", "x'' + x'/10 + x = F*cos(t)"][..], &wall].concat());
     for file in files("examples/response", ".toml") {

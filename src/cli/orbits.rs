@@ -63,7 +63,7 @@ impl Work for OrbitsArguments {
     }
 }
 
-/// What was computed beside the laws.
+/// The results beside the laws.
 enum Computed {
     Nothing,
     Found(FoundOrbits),

@@ -113,8 +113,8 @@ fn a_ball_on_a_table_keeps_step_between_the_classical_limits() {
     }
 }
 
-/// Where two orbits merge both have the multiplier 1, which the quadratic for the speed knows nothing
-/// of; at the period doubling one multiplier is -1.
+/// Both orbits have the multiplier 1 at the fold, which the quadratic for the speed knows nothing of; at
+/// the period doubling one multiplier is -1.
 #[test]
 fn multipliers_are_one_at_folds_and_minus_one_at_doublings() {
     let beam = question(BEAM, "x < d");

@@ -42,7 +42,7 @@ mod sweep;
 
 pub use chart::{CHART_SIZE, ChartPoint, OrbitChart, OrbitCurve, chart_orbits};
 pub use equation::{
-    CompiledImpact, Harmonic, ImpactEquation, ImpactNumbers, OrbitWall, WallNumbers,
+    BiasedHarmonic, CompiledImpact, ImpactEquation, ImpactNumbers, OrbitWall, WallNumbers,
 };
 pub use error::OrbitError;
 pub use family::{OrbitChange, OrbitFamily};

@@ -146,7 +146,7 @@ pub struct MultiplierDocument {
 pub struct OrbitSweepDocument {
     /// The parameter.
     pub parameter: String,
-    /// Where it begins and ends.
+    /// The beginning and the end of its range.
     pub range: [f64; 2],
     /// The branches.
     pub branches: Vec<OrbitBranchDocument>,
@@ -198,11 +198,11 @@ pub struct OrbitChangeDocument {
 pub struct OrbitChartDocument {
     /// The parameter across.
     pub across: String,
-    /// Where it begins and ends.
+    /// The beginning and the end of its range.
     pub across_range: [f64; 2],
     /// The parameter upwards.
     pub upwards: String,
-    /// Where it begins and ends.
+    /// The beginning and the end of its range.
     pub upwards_range: [f64; 2],
     /// Points in a row, which lie equally far from one end of its range to the other.
     pub columns: usize,

@@ -62,7 +62,7 @@ pub struct ResponseDocument {
     /// The walls; left out without one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallDocument>,
-    /// Of each point of a branch the number of impacts in a period; left out without a wall.
+    /// The number of impacts in a period at each point of a branch; left out without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub impacts: Vec<Vec<usize>>,
     /// Where branches change.

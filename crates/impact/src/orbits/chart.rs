@@ -132,9 +132,9 @@ pub fn chart_orbits(
 struct Measures {
     grazing: f64,
     fold: f64,
-    /// Of the faster and the slower orbit.
+    /// The test function of the multiplier -1, for the faster and the slower orbit.
     minus_one: [f64; 2],
-    /// Of both, 1 where a motion follows the orbit and -1 where it does not.
+    /// For both orbits, 1 where a motion follows the orbit and -1 where it does not.
     admissible: [f64; 2],
 }
 

@@ -21,7 +21,7 @@ use crate::wall::Wall;
 
 /// A constant and a wave, `constant + cosine cos(omega t) + sine sin(omega t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Harmonic<T> {
+pub struct BiasedHarmonic<T> {
     /// The constant.
     pub constant: T,
     /// The factor of the cosine.
@@ -30,7 +30,7 @@ pub struct Harmonic<T> {
     pub sine: T,
 }
 
-impl Harmonic<Expr> {
+impl BiasedHarmonic<Expr> {
     /// Whether nothing of it moves.
     pub fn is_still(&self) -> bool {
         self.cosine.is_zero() && self.sine.is_zero()
@@ -50,9 +50,9 @@ pub struct OrbitWall {
     /// below.
     pub side: i8,
     /// The gap without the coordinate.
-    pub offset: Harmonic<Expr>,
+    pub offset: BiasedHarmonic<Expr>,
     /// The right side of the equation of the gap.
-    pub load: Harmonic<Expr>,
+    pub load: BiasedHarmonic<Expr>,
 }
 
 /// A linear driven oscillator with walls.
@@ -67,7 +67,7 @@ pub struct ImpactEquation {
     /// The frequency omega of the drive or of a moving wall.
     pub frequency: Expr,
     /// The right side of the equation.
-    pub load: Harmonic<Expr>,
+    pub load: BiasedHarmonic<Expr>,
     /// One wall, or one on each side.
     pub walls: Vec<OrbitWall>,
 }
@@ -270,7 +270,10 @@ struct FirstWave {
 }
 
 /// Reads a sum of constants and waves of one frequency.
-fn harmonic(sum: &Expr, frequency: &mut Option<FirstWave>) -> Result<Harmonic<Expr>, OrbitError> {
+fn harmonic(
+    sum: &Expr,
+    frequency: &mut Option<FirstWave>,
+) -> Result<BiasedHarmonic<Expr>, OrbitError> {
     let t = Symbol::new("t");
     let expanded = sum.expand()?;
     let (mut constant, mut cosine, mut sine) = (vec![], vec![], vec![]);
@@ -303,7 +306,7 @@ fn harmonic(sum: &Expr, frequency: &mut Option<FirstWave>) -> Result<Harmonic<Ex
         }
     }
     let [constant, cosine, sine] = [constant, cosine, sine].map(Expr::sum);
-    Ok(Harmonic { constant, cosine, sine })
+    Ok(BiasedHarmonic { constant, cosine, sine })
 }
 
 /// The side of a wall, and its gap without the coordinate, which has the factor 1 or -1.
@@ -311,7 +314,7 @@ fn place(
     wall: &Wall,
     x: Symbol,
     frequency: &mut Option<FirstWave>,
-) -> Result<(i8, Harmonic<Expr>), OrbitError> {
+) -> Result<(i8, BiasedHarmonic<Expr>), OrbitError> {
     wall.check(&[x])?;
     let nonlinear = || OrbitError::NonlinearWall { gap: wall.gap.clone(), coordinate: x };
     let slope = wall.gap.differentiate(x)?.expand()?;
@@ -330,15 +333,15 @@ fn place(
 /// by its place.
 fn load_of_gap(
     side: i8,
-    offset: &Harmonic<Expr>,
-    load: &Harmonic<Expr>,
+    offset: &BiasedHarmonic<Expr>,
+    load: &BiasedHarmonic<Expr>,
     [damping, stiffness, frequency]: [&Expr; 3],
-) -> Result<Harmonic<Expr>, ExprError> {
+) -> Result<BiasedHarmonic<Expr>, ExprError> {
     let side = Expr::from(i64::from(side));
     let dynamic = stiffness - &frequency.integer_power(2)?;
     let turn = damping * frequency;
     let sum = |own: &Expr, added: Expr| (&(&side * own) + &added).expand();
-    Ok(Harmonic {
+    Ok(BiasedHarmonic {
         constant: sum(&load.constant, stiffness * &offset.constant)?,
         cosine: sum(&load.cosine, &(&dynamic * &offset.cosine) + &(&turn * &offset.sine))?,
         sine: sum(&load.sine, &(&dynamic * &offset.sine) - &(&turn * &offset.cosine))?,
@@ -361,7 +364,7 @@ impl CompiledImpact {
     pub fn at(&self, arguments: &[f64]) -> Result<ImpactNumbers, OrbitError> {
         let mut values = vec![0.0; 6 + 7 * self.sides.len()];
         self.list.call(arguments, &mut Vec::new(), &mut values);
-        let harmonic = |at: usize| Harmonic {
+        let harmonic = |at: usize| BiasedHarmonic {
             constant: values[at],
             cosine: values[at + 1],
             sine: values[at + 2],
@@ -405,7 +408,7 @@ pub struct ImpactNumbers {
     /// The frequency omega.
     pub frequency: f64,
     /// The right side of the equation.
-    pub load: Harmonic<f64>,
+    pub load: BiasedHarmonic<f64>,
     /// The walls.
     pub walls: Vec<WallNumbers>,
 }
@@ -416,14 +419,14 @@ pub struct WallNumbers {
     /// The sign s of the coordinate in the gap.
     pub side: f64,
     /// The gap without the coordinate.
-    pub offset: Harmonic<f64>,
+    pub offset: BiasedHarmonic<f64>,
     /// The right side of the equation of the gap.
-    pub load: Harmonic<f64>,
+    pub load: BiasedHarmonic<f64>,
     /// The coefficient of restitution.
     pub restitution: f64,
 }
 
-impl Harmonic<f64> {
+impl BiasedHarmonic<f64> {
     /// The value at a phase of the wave.
     pub fn value(&self, phase: f64) -> f64 {
         let (sine, cosine) = phase.sin_cos();

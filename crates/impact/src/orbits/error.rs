@@ -87,7 +87,7 @@ pub enum OrbitError {
     /// A number of periods or impacts is zero or too large.
     #[error("{what} must lie between 1 and {most}, not {value}")]
     Count {
-        /// What is counted.
+        /// The quantity that is counted.
         what: &'static str,
         /// The number.
         value: u32,

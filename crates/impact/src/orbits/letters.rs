@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::equation::{Harmonic, ImpactEquation};
+use super::equation::{BiasedHarmonic, ImpactEquation};
 use super::error::OrbitError;
 use super::orbit::OrbitKind;
 use crate::expr::{Expr, ExprError, parse_expression};
@@ -105,7 +105,7 @@ fn free_motion(question: &ImpactEquation, kind: OrbitKind) -> Result<FreeMotion,
     })
 }
 
-fn in_time(load: &Harmonic<Expr>, frequency: &Expr) -> Result<Expr, ExprError> {
+fn in_time(load: &BiasedHarmonic<Expr>, frequency: &Expr) -> Result<Expr, ExprError> {
     let phase = frequency * &Expr::symbol("t");
     Ok(Expr::sum([load.constant.clone(), &load.cosine * &phase.cos()?, &load.sine * &phase.sin()?]))
 }
@@ -113,7 +113,7 @@ fn in_time(load: &Harmonic<Expr>, frequency: &Expr) -> Result<Expr, ExprError> {
 /// Formulas that are written with the letters of the head of `one_impact` and put into those of
 /// the question.
 struct Formulas {
-    /// What each letter of the texts stands for.
+    /// The expression for each letter of the texts.
     letters: BTreeMap<Symbol, Expr>,
     /// The names of the question, and those given so far.
     taken: Vec<Symbol>,

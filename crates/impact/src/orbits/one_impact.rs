@@ -35,7 +35,7 @@ pub(super) struct OneImpact {
     /// exp(-c T).
     decay: f64,
     /// The force on the gap when the wave is left out.
-    load: super::equation::Harmonic<f64>,
+    load: super::equation::BiasedHarmonic<f64>,
     relation: Relation,
 }
 

@@ -26,7 +26,7 @@ struct Station {
 }
 
 /// The impacts, after the first, of a run of the map, and its derivative.
-struct Run {
+struct ImpactSequence {
     stations: Vec<Station>,
     derivative: [[f64; 2]; 2],
 }
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     }
 
     /// The map over all impacts of an orbit.
-    fn run(&self, start: Station) -> Option<Run> {
+    fn run(&self, start: Station) -> Option<ImpactSequence> {
         let mut derivative = [[1.0, 0.0], [0.0, 1.0]];
         let (mut stations, mut now) = (Vec::new(), start);
         for _ in 0..self.impacts {
@@ -146,7 +146,7 @@ impl<'a> Search<'a> {
             stations.push(next);
             now = next;
         }
-        Some(Run { stations, derivative })
+        Some(ImpactSequence { stations, derivative })
     }
 
     /// The impact after many others.
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
     }
 
     /// The orbit of a run that returns to its start.
-    fn orbit(&self, run: &Run) -> ImpactOrbit {
+    fn orbit(&self, run: &ImpactSequence) -> ImpactOrbit {
         let omega = self.walled.flow.frequency;
         let period = self.duration / f64::from(self.periods);
         // From the fastest impact on, which lies in the first period.
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
 }
 
 /// Newton's method from a guess; the orbit's run, if it converges.
-fn guess_to_orbit(search: &Search, guess: Station) -> Option<Run> {
+fn guess_to_orbit(search: &Search, guess: Station) -> Option<ImpactSequence> {
     const STEPS: usize = 30;
     let omega = search.walled.flow.frequency;
     let mut now = guess;

@@ -15,7 +15,7 @@ use crate::values::Values;
 pub struct VaryingParameter {
     /// The parameter.
     pub name: Symbol,
-    /// Where it begins and ends.
+    /// The beginning and the end of its range.
     pub range: [f64; 2],
 }
 

@@ -94,8 +94,8 @@ pub(super) struct Program {
     /// Places of the series with higher orders, and of those that are only a number.
     changing: Vec<usize>,
     numbers: Vec<usize>,
-    /// Those of the series with higher orders that are not zero beyond any order, and the order
-    /// beyond which all others are.
+    /// The series with higher orders that do not vanish beyond any order, and the order beyond
+    /// which all others do.
     endless: Vec<usize>,
     longest: usize,
     /// The place of the slope of each variable, if it is needed.

@@ -35,7 +35,7 @@ const ABOVE: i32 = 3;
 const SAMPLES: usize = 8;
 
 /// A motion X and one of its harmonics.
-struct Harmonic<'a> {
+struct AddedHarmonic<'a> {
     driven: &'a Driven,
     /// The coefficients of X, the harmonic itself left out.
     known: DVector<f64>,
@@ -73,7 +73,7 @@ pub(super) fn guesses(
     if !(size > 0.0 && size.is_finite()) || number > balance.core.harmonics {
         return vec![];
     }
-    let harmonic = Harmonic::new(balance, known, parameter, number);
+    let harmonic = AddedHarmonic::new(balance, known, parameter, number);
     let amplitude = |step: i32| size * 10_f64.powf(f64::from(step) / f64::from(EACH_DECADE));
     let phase = |index: usize| TAU * index as f64 / PHASES as f64;
     // A row has the phases at one amplitude; the mean goes on from one amplitude to the next.
@@ -114,7 +114,7 @@ fn root_within(corners: [Option<Residuals>; 4]) -> Option<f64> {
     is_root.then(|| corners.iter().map(|corner| corner.mean).sum::<f64>() / corners.len() as f64)
 }
 
-impl<'a> Harmonic<'a> {
+impl<'a> AddedHarmonic<'a> {
     fn new(
         balance: &'a DrivenBalance<'a>,
         known: &DVector<f64>,
@@ -256,7 +256,7 @@ mod tests {
             .expect("a request");
         let balance = DrivenBalance::new(&asked.driven, 3);
         let still = DVector::zeros(balance.core.size());
-        let harmonic = Harmonic::new(&balance, &still, 0.02, 1);
+        let harmonic = AddedHarmonic::new(&balance, &still, 0.02, 1);
         let found = harmonic.residuals(0.5, 0.3, 0.0).expect("residuals");
         assert!((found.mean + 0.1 * 0.5 * 0.25).abs() < 1e-3, "{}", found.mean);
     }

@@ -142,7 +142,7 @@ impl Held {
 }
 
 /// The state of a run.
-struct Run<'a> {
+struct EventRun<'a> {
     surfaces: &'a JumpSurfaces,
     sizes: &'a [f64],
     parameter: f64,
@@ -178,7 +178,7 @@ pub(super) fn follow(
     unit: Option<f64>,
     options: &IntegrationOptions,
 ) -> Result<SlidingRun, SlidingStop> {
-    let mut run = Run::new(surfaces, start, from, parameter, sizes, unit);
+    let mut run = EventRun::new(surfaces, start, from, parameter, sizes, unit);
     let options = IntegrationOptions {
         maximum_step: options.maximum_step.min((to - from) / LEAST_STEPS),
         ..*options
@@ -288,7 +288,7 @@ pub(super) fn is_on_surface(
     parameter: f64,
 ) -> bool {
     let sizes = vec![largest_of(state); state.len()];
-    let run = Run::new(surfaces, state, time, parameter, &sizes, None);
+    let run = EventRun::new(surfaces, state, time, parameter, &sizes, None);
     let is_near = |index: usize| run.height(index).abs() <= AT_REST * run.size_of_height(index);
     (0..surfaces.arguments.len()).any(is_near)
 }
@@ -308,7 +308,7 @@ pub(super) fn linearised(
     parameter: f64,
 ) -> Option<(DVector<f64>, DMatrix<f64>)> {
     let sizes = vec![largest_of(state); state.len()];
-    let mut run = Run::new(surfaces, state, time, parameter, &sizes, None);
+    let mut run = EventRun::new(surfaces, state, time, parameter, &sizes, None);
     run.begin().ok()?;
     let (all, slopes) = run.slopes(&run.here())?;
     Some((all.column(0).into_owned(), slopes))
@@ -344,7 +344,7 @@ fn solved(matrix: DMatrix<f64>, right: DVector<f64>) -> Option<DVector<f64>> {
     if is_regular { factors.solve(&right) } else { None }
 }
 
-impl<'a> Run<'a> {
+impl<'a> EventRun<'a> {
     /// The state at the start, on no surface yet.
     fn new(
         surfaces: &'a JumpSurfaces,

@@ -53,6 +53,11 @@ pub enum WallError {
     /// A velocity occurs in a gap.
     #[error("the wall `{0} = 0` contains the velocity `{1}`: a wall has a position")]
     Velocity(Expr, Symbol),
+    /// A wall in equations of which one is of first order.
+    #[error(
+        "the wall `{0} = 0` turns velocities round, but the equation of `{1}` is of first order"
+    )]
+    FirstOrder(Expr, Symbol),
     /// A wall in coupled equations without a mass matrix.
     #[error(
         "the wall `{0} = 0` needs masses: the coefficients of the accelerations are no symmetric matrix, so that no momentum is known"
@@ -136,19 +141,19 @@ impl Wall {
         }
     }
 
-    /// The law of impact in equations of these coordinates, with the matrix of the coefficients of the
-    /// accelerations; for one coordinate it may be left out, since its mass cancels.
+    /// The law of impact in equations of these coordinates and states, with the matrix of the
+    /// coefficients of the accelerations; for one coordinate it may be left out, since its mass cancels.
     ///
     /// # Errors
-    /// [`WallError`] for a gap without a coordinate or with a velocity, or coefficients that are not a
-    /// mass matrix.
+    /// [`WallError`] for a gap without a coordinate or with a velocity, a coordinate without a velocity
+    /// among the states, or coefficients that are not a mass matrix.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::wall::Wall;
     ///
     /// let table = &Wall::parse("x > Z*sin(w*t)", &"e".parse()?)?[0];
-    /// let impact = table.impact(&["x".into()], None)?;
+    /// let impact = table.impact(&["x".into()], &["x".into(), "x'".into()], None)?;
     /// let after = impact.velocities_after(&["x".into()], &table.restitution)?;
     /// // The speed relative to the table is turned round.
     /// let relative = (&after[0] - &"w*Z*cos(w*t)".parse()?).expand()?;
@@ -159,9 +164,13 @@ impl Wall {
     pub fn impact(
         &self,
         coordinates: &[Symbol],
+        states: &[Symbol],
         mass: Option<&[Vec<Expr>]>,
     ) -> Result<WallImpact, WallError> {
         self.check(coordinates)?;
+        if let Some(name) = coordinates.iter().find(|name| !states.contains(&name.derivative())) {
+            return Err(WallError::FirstOrder(self.gap.clone(), *name));
+        }
         let normal: Vec<Expr> = coordinates
             .iter()
             .map(|name| self.gap.differentiate(*name))

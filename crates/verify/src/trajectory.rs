@@ -15,12 +15,14 @@
 mod energy;
 mod hold;
 mod pulse;
+mod resting;
 mod root;
 mod section;
 mod sensitivity;
 mod surplus;
 mod sweep;
 mod two_sided;
+mod wall_run;
 mod walls;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -45,11 +47,13 @@ pub use sensitivity::{DISPLACEMENT, LyapunovExponent};
 pub use sweep::{SweptMotion, sweep};
 
 use hold::Layout;
+use resting::resting_equations;
 pub(crate) use root::roots_across_corners;
 use section::OnSection;
 pub(crate) use surplus::of_one_size as shares_of_one_size;
 pub(crate) use two_sided::by_sides;
-use walls::{CompiledWalls, WORK_OF_WALLS, WallRun, resting_equations};
+use wall_run::WallRun;
+use walls::{CompiledWalls, WORK_OF_WALLS};
 pub use walls::{Impact, WallRecord, WallRest};
 
 /// An initial value problem: equations, initial state and duration.
@@ -164,7 +168,7 @@ pub enum TrajectoryError {
     /// The mechanism has no accelerations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// A wall that is none.
+    /// A bound that is not a wall.
     #[error(transparent)]
     Wall(#[from] WallError),
     /// A start behind a wall.
@@ -175,11 +179,6 @@ pub enum TrajectoryError {
         /// Its value at the start.
         value: f64,
     },
-    /// A wall in equations of first order.
-    #[error(
-        "the wall `{0} = 0` needs velocities, but the equations have coordinates of first order"
-    )]
-    WallWithoutVelocity(Expr),
     /// A wall whose gap cannot be differentiated.
     #[error("the gap `{0}` of a wall has no second rate along the motion")]
     WallWithCorner(Expr),

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::MOST_HARMONICS;
 use crate::decimal::decimal;
-use crate::expr::{EvaluationError, Expr, ExprError};
+use crate::expr::{EvaluationError, ExprError};
 use crate::oscillator::OscillatorError;
 use crate::symbol::Symbol;
 use crate::wall::WallError;
@@ -162,12 +162,7 @@ pub enum ResponseError {
         "branches of motions with impacts are followed where something drives the motion: time `t` does not occur in the equations"
     )]
     WallsWithoutDrive,
-    /// A wall in equations of first order.
-    #[error(
-        "the wall `{0} = 0` needs velocities, but the equations have coordinates of first order"
-    )]
-    WallWithoutVelocity(Expr),
-    /// A wall that is none.
+    /// A bound that is not a wall.
     #[error(transparent)]
     Wall(#[from] WallError),
     /// No family of free motions has frequencies in the range.

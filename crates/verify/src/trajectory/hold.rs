@@ -45,7 +45,7 @@ const CLEARLY: f64 = 1e-3;
 const MOST_HOLDS: usize = 10_000;
 
 /// Number of consecutive segments of length zero after which the motion is stuck.
-const IDLE: usize = 8;
+pub(super) const IDLE: usize = 8;
 
 /// A surface u = 0 on which the rates jump.
 #[derive(Clone, Debug)]

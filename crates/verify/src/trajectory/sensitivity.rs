@@ -17,7 +17,8 @@
 //! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
 //! standard error is that of the means of ten parts of the motion.
 
-use super::walls::{Impact, WallRun};
+use super::wall_run::WallRun;
+use super::walls::Impact;
 use super::{ACCOUNTS, Trajectory, TrajectoryRequest};
 use crate::system::PathEnd;
 

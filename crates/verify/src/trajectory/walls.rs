@@ -1,10 +1,9 @@
-//! Impacts on rigid walls, their accumulation, and rest on a wall.
+//! Impacts on rigid walls at an instant, their accumulation, and the walls on which a motion rests.
 //!
 //! ```text
-//! flight:    q'' = f(q, q', t) until a gap g falls through zero
 //! impact:    q' -> q' - (1 + e) d g'/(n.d),  n = dg/dq,  d = M^-1 n         g' -> -e g'
 //! chatter:   impacts of speed v, e v, e^2 v, ... are over after v (1 + e + e^2 + ...) 2/|g''| = 2 v/(|g''| (1 - e))
-//! rest:      q'' = f + sum_i d_i lambda_i,  g_i'' = 0 for every wall i that bears, until a lambda_i falls through zero
+//! bearing:   sum_j (n_i.d_j) lambda_j = -g_i'',  lambda_i > 0 for every wall i that bears
 //! ```
 //!
 //! (B. Brogliato, *Nonsmooth Mechanics*, 3rd ed., Springer 2016, chapters 4 and 7, for the law of
@@ -16,12 +15,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Ready, TrajectoryError, TrajectoryRequest, TrajectorySegment};
-use crate::expr::{CompiledList, Expr, ExprError};
-use crate::mechanics::{MechanicsError, Rates, linear};
+use super::resting::{WallEquations, equations};
+use super::{TrajectoryError, TrajectoryRequest, TrajectorySegment};
+use crate::expr::{CompiledList, Expr};
 use crate::symbol::Symbol;
-use crate::system::{Integrator, Path, PathEnd, Solver, rate_along};
-use crate::wall::{Wall, WallError, WallImpact};
+use crate::system::rate_along;
+use crate::wall::WallError;
 
 /// Largest gap that counts as zero up to rounding, relative to the largest size of a gap.
 const ON_WALL: f64 = 1e-11;
@@ -91,34 +90,13 @@ pub struct WallRecord {
 
 /// The event after which a motion goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum WallEvent {
+pub(super) enum WallEvent {
     /// It begins.
     Start,
     /// The gap of this wall has fallen to zero.
     Hit(usize),
     /// The force of this wall has fallen to zero.
     Released(usize),
-}
-
-/// A wall with the expressions that impacts and rest need.
-#[derive(Clone, Debug)]
-struct WallEquations {
-    impact: WallImpact,
-    /// g'' without the force of any wall.
-    free: Expr,
-}
-
-impl WallEquations {
-    fn new(course: &TrajectoryRequest, wall: &Wall) -> Result<Self, TrajectoryError> {
-        if course.rates.states.len() != 2 * course.coordinates.len() {
-            return Err(TrajectoryError::WallWithoutVelocity(wall.gap.clone()));
-        }
-        let impact = wall.impact(&course.coordinates, course.mass.as_deref())?;
-        let Rates { states, right } = &course.rates;
-        let free = rate_along(&impact.rate, Symbol::new("t"), states, right);
-        let free = free.ok_or_else(|| TrajectoryError::WallWithCorner(wall.gap.clone()))?;
-        Ok(Self { impact, free })
-    }
 }
 
 /// The walls of a course, ready for impacts.
@@ -131,7 +109,7 @@ pub(super) struct CompiledWalls {
     /// The energy; `None` if there is none.
     energy: Option<CompiledList>,
     /// The index among all states of the work of the walls; `None` if it is not accounted for.
-    work: Option<usize>,
+    pub(super) work: Option<usize>,
     /// The parameters, in the order of the arguments, and their values.
     names: Vec<Symbol>,
     numbers: Vec<f64>,
@@ -215,7 +193,7 @@ impl CompiledWalls {
         }))
     }
 
-    /// These walls with the numbers of a course that differs in its numbers alone.
+    /// Returns the walls with the numbers of a course that differs in its numbers alone.
     pub(super) fn with_numbers(&self, course: &TrajectoryRequest) -> Result<Self, TrajectoryError> {
         let numbers = self.names.iter().map(|name| course.values.get(name).copied());
         Ok(Self {
@@ -260,7 +238,7 @@ impl CompiledWalls {
     }
 
     /// The first wall behind which a motion is, beyond rounding.
-    fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
+    pub(super) fn passed(&self, time: f64, state: &[f64], largest: &[f64]) -> Option<usize> {
         let size = self.size_of_gaps(time, state, largest);
         self.gaps(time, state).into_iter().position(|gap| gap < -BEHIND * size)
     }
@@ -297,7 +275,7 @@ impl CompiledWalls {
     /// Carries out the impacts at a state after this event, and returns the walls on which the motion
     /// rests from there on. `resting` are those on which it rested before, `largest` is the largest gap
     /// of each wall so far.
-    fn settle(
+    pub(super) fn settle(
         &self,
         time: f64,
         state: &mut [f64],
@@ -486,7 +464,7 @@ impl CompiledWalls {
 
     /// Raises the largest gap of each wall to those on these stretches, which are looked at in some
     /// places.
-    fn note_largest(&self, stretch: &[TrajectorySegment], largest: &mut [f64]) {
+    pub(super) fn note_largest(&self, stretch: &[TrajectorySegment], largest: &mut [f64]) {
         const PLACES: u32 = 4;
         for piece in stretch {
             for place in 1..PLACES {
@@ -506,248 +484,8 @@ impl CompiledWalls {
     }
 }
 
-/// A motion that is followed from impact to impact.
-pub(super) struct WallRun<'a> {
-    course: &'a TrajectoryRequest,
-    /// The equations of flight, with the walls.
-    flight: &'a Ready,
-    integrator: Integrator,
-    /// The equations of rest on walls, by their indices.
-    rest: BTreeMap<Vec<usize>, Ready>,
-    from: f64,
-    state: Vec<f64>,
-    resting: Vec<usize>,
-    /// The largest gap of each wall so far.
-    largest: Vec<f64>,
-    /// Number of stretches of length zero in a row.
-    idle: usize,
-    steps: usize,
-    /// The reason why it has ended; `None` while it goes on.
-    reason: Option<PathEnd>,
-    pub(super) pieces: Vec<TrajectorySegment>,
-    record: WallRecord,
-}
-
-impl<'a> WallRun<'a> {
-    /// Begins a motion at a time, with the state there.
-    ///
-    /// # Errors
-    /// A start behind a wall.
-    pub(super) fn new(
-        course: &'a TrajectoryRequest,
-        flight: &'a Ready,
-        (from, mut state): (f64, Vec<f64>),
-        integrator: Integrator,
-    ) -> Result<Self, TrajectoryError> {
-        let mut record = WallRecord::default();
-        let (mut resting, mut largest) = (vec![], vec![]);
-        if let Some(walls) = &flight.walls {
-            walls.check_start(from, &state)?;
-            resting = walls.settle(from, &mut state, WallEvent::Start, &[], &[], &mut record);
-            largest = walls.gaps(from, &state);
-            // The account begins behind an impact at the start.
-            if let Some(work) = walls.work {
-                state[work] = 0.0;
-            }
-        }
-        Ok(Self {
-            course,
-            flight,
-            integrator,
-            rest: BTreeMap::new(),
-            from,
-            state,
-            resting,
-            largest,
-            idle: 0,
-            steps: 0,
-            reason: None,
-            pieces: vec![],
-            record,
-        })
-    }
-
-    /// Whether it has ended.
-    pub(super) fn has_ended(&self) -> bool {
-        self.reason.is_some()
-    }
-
-    /// The next integration: from where it is to the end, or to the next impact or release.
-    ///
-    /// # Errors
-    /// Equations of rest that cannot be formed.
-    pub(super) fn next_flight(&mut self) -> Result<(&Solver, [f64; 2], &[f64]), TrajectoryError> {
-        self.prepare()?;
-        let solver = &self.equations().solver;
-        Ok((solver, [self.from, self.course.duration], &self.state))
-    }
-
-    /// Prepares the equations of the walls on which it rests.
-    fn prepare(&mut self) -> Result<(), TrajectoryError> {
-        if !self.resting.is_empty() && !self.rest.contains_key(&self.resting) {
-            let ready = self.course.ready_on(&self.resting, self.integrator)?;
-            self.rest.insert(self.resting.clone(), ready);
-        }
-        Ok(())
-    }
-
-    /// The equations of flight, or of rest on walls.
-    fn equations(&self) -> &Ready {
-        self.rest.get(&self.resting).unwrap_or(self.flight)
-    }
-
-    /// Goes on to the next impact or release, or to the end; the path of the next integration is given
-    /// if it has been followed.
-    ///
-    /// # Errors
-    /// [`TrajectoryError`].
-    pub(super) fn advance(&mut self, path: Option<Path>) -> Result<(), TrajectoryError> {
-        self.prepare()?;
-        let state = std::mem::take(&mut self.state);
-        let (stretch, reason) =
-            self.course.pieces(self.equations(), path, self.from, state, self.integrator)?;
-        self.steps += stretch.iter().map(|piece| piece.path.step_count()).sum::<usize>();
-        let end = stretch.last().map_or(self.from, TrajectorySegment::end);
-        let last = stretch.last().and_then(|piece| piece.states_at(end));
-        let recorded = stretch.last().map_or(0, |piece| piece.recorded);
-        let flight = self.flight;
-        if let Some(walls) = &flight.walls {
-            walls.note_largest(&stretch, &mut self.largest);
-        }
-        let passed = flight.walls.as_ref().is_some_and(|walls| {
-            let middle = 0.5 * (self.from + end);
-            let middle = stretch
-                .iter()
-                .find(|piece| piece.end() >= middle)
-                .and_then(|piece| Some((middle, piece.states_at(middle)?)));
-            let places = middle.into_iter().chain(last.clone().map(|state| (end, state)));
-            places
-                .into_iter()
-                .any(|(time, state)| walls.passed(time, &state, &self.largest).is_some())
-        });
-        self.pieces.extend(stretch);
-        if passed {
-            self.reason = Some(PathEnd::PassesWall);
-            return Ok(());
-        }
-        let (Some(walls), Some(last), PathEnd::Event(event)) = (&flight.walls, last, reason) else {
-            self.reason = Some(reason);
-            return Ok(());
-        };
-        self.idle = if end > self.from { 0 } else { self.idle + 1 };
-        if self.idle > IDLE || self.steps >= self.course.step_limit {
-            let stuck = self.idle > IDLE;
-            self.reason = Some(if stuck { PathEnd::Sticks } else { PathEnd::StepLimit });
-            return Ok(());
-        }
-        (self.from, self.state) = (end, last);
-        let guard = event - recorded;
-        let event = match self.resting.contains(&guard) {
-            true => WallEvent::Released(guard),
-            false => WallEvent::Hit(guard),
-        };
-        let largest = &self.largest;
-        let record = &mut self.record;
-        self.resting =
-            walls.settle(self.from, &mut self.state, event, &self.resting, largest, record);
-        Ok(())
-    }
-
-    /// Goes on to the end.
-    ///
-    /// # Errors
-    /// [`TrajectoryError`].
-    pub(super) fn complete(&mut self) -> Result<(), TrajectoryError> {
-        while !self.has_ended() {
-            self.advance(None)?;
-        }
-        Ok(())
-    }
-
-    /// The pieces, the reason why it ended, and the impacts.
-    pub(super) fn finish(self) -> (Vec<TrajectorySegment>, PathEnd, WallRecord) {
-        let Self { pieces, mut record, .. } = self;
-        let end = pieces.last().map_or(0.0, TrajectorySegment::end);
-        for rest in record.rests.iter_mut().filter(|rest| rest.until.is_infinite()) {
-            rest.until = end.max(rest.from);
-        }
-        (pieces, self.reason.unwrap_or(PathEnd::Interrupted), record)
-    }
-}
-
-/// Number of consecutive stretches of length zero after which the motion is stuck.
-const IDLE: usize = 8;
-
 /// The coefficient of restitution of each wall.
 fn restitutions(course: &TrajectoryRequest) -> Result<Vec<f64>, TrajectoryError> {
     let values = &course.values;
     Ok(course.walls.iter().map(|wall| wall.restitution_at(values)).collect::<Result<_, _>>()?)
-}
-
-fn equations(course: &TrajectoryRequest) -> Result<Vec<WallEquations>, TrajectoryError> {
-    course.walls.iter().map(|wall| WallEquations::new(course, wall)).collect()
-}
-
-/// The equations of a motion that rests on some walls.
-pub(super) struct RestingEquations {
-    /// The rates of all states.
-    pub(super) rates: Rates,
-    /// The power of the walls, which moving ones have.
-    pub(super) power: Expr,
-    /// The functions at whose fall through zero a flight or a rest ends, one for each wall: its gap,
-    /// or its force.
-    pub(super) guards: Vec<Expr>,
-}
-
-/// The equations of a motion that rests on these walls.
-///
-/// # Errors
-/// A wall that is none; forces that the equations do not determine.
-pub(super) fn resting_equations(
-    course: &TrajectoryRequest,
-    resting: &[usize],
-) -> Result<RestingEquations, TrajectoryError> {
-    let walls = equations(course)?;
-    let mut guards: Vec<Expr> = walls.iter().map(|wall| wall.impact.gap.clone()).collect();
-    let mut rates = course.rates.clone();
-    let bearing: Vec<&WallEquations> = resting.iter().map(|index| &walls[*index]).collect();
-    let mut power = Vec::new();
-    if let [only] = bearing.as_slice()
-        && course.coordinates.len() == 1
-    {
-        // x'' = -(g'' - n f)/n, in which the force f of flight cancels.
-        let held = held_acceleration(course, only)?;
-        let force = Expr::divide(&(&held - &rates.right[1]), &only.impact.direction[0])?;
-        guards[resting[0]] = force.clone();
-        power.push(&only.impact.normal[0] * Expr::from(rates.states[1]) * force);
-        rates.right[1] = held;
-    } else if !bearing.is_empty() {
-        let matrix: Vec<Vec<Expr>> = bearing
-            .iter()
-            .map(|one| bearing.iter().map(|other| one.impact.compliance(&other.impact)).collect())
-            .collect();
-        let right: Vec<Expr> = bearing.iter().map(|wall| -&wall.free).collect();
-        let singular = || MechanicsError::Singular(matrix.iter().flatten().cloned().sum());
-        let forces = linear::solution(&matrix, &right, singular)?;
-        let count = course.coordinates.len();
-        for ((index, wall), force) in resting.iter().zip(&bearing).zip(&forces) {
-            for (k, direction) in wall.impact.direction.iter().enumerate() {
-                rates.right[count + k] = &rates.right[count + k] + &(direction * force);
-            }
-            let closing = wall.impact.normal.iter().zip(&rates.states[count..]);
-            power.extend(closing.map(|(n, velocity)| n * Expr::from(*velocity) * force));
-            guards[*index] = force.clone();
-        }
-    }
-    Ok(RestingEquations { rates, power: Expr::sum(power), guards })
-}
-
-/// The acceleration of one coordinate that stays on a wall.
-fn held_acceleration(course: &TrajectoryRequest, wall: &WallEquations) -> Result<Expr, ExprError> {
-    let [position, velocity] = [course.rates.states[0], course.rates.states[1]];
-    let rest = Expr::sum([
-        wall.impact.rate.differentiate(Symbol::new("t"))?,
-        wall.impact.rate.differentiate(position)? * Expr::from(velocity),
-    ]);
-    Ok(-Expr::divide(&rest, &wall.impact.normal[0])?)
 }

@@ -590,10 +590,7 @@ fn flow_wall(
     states: &[Symbol],
     coordinates: &[Symbol],
 ) -> Result<FlowWall, ResponseError> {
-    if states.len() != 2 * coordinates.len() {
-        return Err(ResponseError::WallWithoutVelocity(wall.gap.clone()));
-    }
-    let impact = wall.impact(coordinates, Some(mass))?;
+    let impact = wall.impact(coordinates, states, Some(mass))?;
     let velocities = impact.velocities_after(coordinates, &wall.restitution)?;
     let positions = coordinates.iter().copied().map(Expr::from);
     Ok(FlowWall { gap: impact.gap, after: positions.chain(velocities).collect() })

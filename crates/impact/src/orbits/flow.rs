@@ -10,7 +10,7 @@
 //! with `cosh` and `sinh` where the motion is overdamped, `S = tau exp(-beta tau)` where it is
 //! critically damped, and `r` the motion from rest under a unit force.
 
-use super::equation::{Harmonic, ImpactNumbers, WallNumbers};
+use super::equation::{BiasedHarmonic, ImpactNumbers, WallNumbers};
 use crate::numeric::ode::root::{BisectionStop, bisect};
 
 /// A linear driven motion without walls, in closed form.
@@ -19,7 +19,7 @@ pub(super) struct ClosedFlow {
     damping: f64,
     stiffness: f64,
     pub(super) frequency: f64,
-    load: Harmonic<f64>,
+    load: BiasedHarmonic<f64>,
     /// U and V of the steady wave.
     pub(super) wave: [f64; 2],
 }
@@ -42,7 +42,7 @@ impl ClosedFlow {
     /// no steady wave exists.
     pub(super) fn new(
         [damping, stiffness, frequency]: [f64; 3],
-        load: &Harmonic<f64>,
+        load: &BiasedHarmonic<f64>,
     ) -> Option<Self> {
         let (dynamic, turn) = (stiffness - frequency * frequency, damping * frequency);
         let size = dynamic.hypot(turn);

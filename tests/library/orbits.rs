@@ -3,9 +3,11 @@
 
 use lindstedt::orbits::{
     FoundOrbits, ImpactEquation, ImpactOrbit, OrbitChange, OrbitError, OrbitFamily, OrbitKind,
-    OrbitRequest, OrbitStability, OrbitSweep, VaryingParameter, WalledSimulation, chart_orbits,
-    find_orbits, laws, sweep_orbits,
+    OrbitRequest, OrbitStability, OrbitSweep, VaryingParameter, chart_orbits, find_orbits, laws,
+    sweep_orbits,
 };
+use lindstedt::system::{Integrator, PathEnd};
+use lindstedt::trajectory::{PreparedTrajectory, TrajectoryRequest};
 use lindstedt::wall::Wall;
 use lindstedt::{Oscillator, Values, Verdict};
 
@@ -197,9 +199,24 @@ fn random(random: &mut Random) -> (ImpactEquation, Values) {
     (own, at)
 }
 
-fn simulation(own: &ImpactEquation, at: &Values) -> WalledSimulation {
-    let walls: Vec<Wall> = own.walls.iter().map(|wall| wall.wall.clone()).collect();
-    WalledSimulation::new(&own.oscillator, &walls, at).expect("a simulation")
+/// A motion between walls, impact by impact.
+struct Simulation(PreparedTrajectory);
+
+impl Simulation {
+    fn new(own: &ImpactEquation, at: &Values) -> Self {
+        let walls = own.walls.iter().map(|wall| wall.wall.clone()).collect();
+        let mut course = TrajectoryRequest::of_equation(&own.oscillator).with_walls(walls);
+        course.values = at.numbers();
+        Self(course.prepared(Integrator::Taylor).expect("a simulation"))
+    }
+
+    /// Time, wall and speed of each impact; `None` if the motion ends early.
+    fn follow(&self, times: [f64; 2], start: [f64; 2]) -> Option<Vec<(f64, usize, f64)>> {
+        let motion = self.0.follow(times, &start).ok()?;
+        let impacts = motion.walls.impacts.iter();
+        let impacts = impacts.map(|impact| (impact.time, impact.wall, impact.speed)).collect();
+        (motion.reason == PathEnd::Reached).then_some(impacts)
+    }
 }
 
 /// The distance of an impact from the nearest one of an orbit: phase and relative speed.
@@ -221,7 +238,7 @@ fn simulations_stay_on_stable_orbits_and_settle_on_listed_ones() {
         let request = OrbitRequest { periods: [1, 4], ..OrbitRequest::default() };
         let all = find_orbits(&own, &at, &request).expect("orbits");
         let period = std::f64::consts::TAU / all.frequency;
-        let simulation = simulation(&own, &at);
+        let simulation = Simulation::new(&own, &at);
         for judged in all.orbits.iter().filter(|judged| judged.orbit.is_admissible()) {
             let orbit = &judged.orbit;
             let verdict = judged.verdict.as_ref().unwrap_or_else(|| panic!("{number}: {at:?}"));
@@ -241,7 +258,7 @@ fn simulations_stay_on_stable_orbits_and_settle_on_listed_ones() {
             let motion = simulation
                 .follow([impact.time, end], [place, velocity])
                 .unwrap_or_else(|| panic!("{number}: {at:?} {judged:?}"));
-            let last = *motion.impacts.last().expect("an impact");
+            let last = *motion.last().expect("an impact");
             assert!(distance(orbit, all.frequency, last) < 1e-7, "{number}: {at:?} {judged:?}");
             stayed += 1;
         }
@@ -251,7 +268,7 @@ fn simulations_stay_on_stable_orbits_and_settle_on_listed_ones() {
         let start = [place + side * (0.01 + 2.0 * source.unit()), 4.0 * source.unit() - 2.0];
         let Some(motion) = simulation.follow([0.0, 400.0 * period], start) else { continue };
         let late: Vec<_> =
-            motion.impacts.iter().filter(|impact| impact.0 > 380.0 * period).copied().collect();
+            motion.iter().filter(|impact| impact.0 > 380.0 * period).copied().collect();
         let [.., (before, _, slow), (last, wall, speed)] = late[..] else { continue };
         let turns = (last - before) / period;
         let is_settled = (turns - turns.round()).abs() < 1e-9
@@ -315,7 +332,7 @@ fn motions_beyond_a_period_doubling_are_found_by_the_search() {
         let verdict = own.verdict.as_ref().expect("a verdict");
         assert!(verdict.return_error < 1e-6, "{own:?}");
     }
-    let simulation = simulation(&ball, &values(at));
+    let simulation = Simulation::new(&ball, &values(at));
     let period = std::f64::consts::TAU / 60.0;
     // Just after an impact of the orbit, two per cent too fast: it settles on the orbit.
     let impact = stable[0].orbit.impacts[0];
@@ -324,7 +341,7 @@ fn motions_beyond_a_period_doubling_are_found_by_the_search() {
     let end = impact.time + 800.0 * period;
     let motion =
         simulation.follow([impact.time, end], [0.0045 * phase.sin(), velocity]).expect("a motion");
-    let last = *motion.impacts.last().expect("an impact");
+    let last = *motion.last().expect("an impact");
     let nearest =
         stable.iter().map(|own| distance(&own.orbit, 60.0, last)).fold(f64::INFINITY, f64::min);
     assert!(nearest < 1e-7, "{nearest}: {last:?} {stable:?}");

@@ -37,7 +37,6 @@ mod multipliers;
 mod one_impact;
 mod orbit;
 mod search;
-mod simulation;
 mod sweep;
 
 pub use chart::{CHART_SIZE, ChartPoint, OrbitChart, OrbitCurve, chart_orbits};
@@ -50,12 +49,13 @@ pub use judge::OrbitVerdict;
 pub use letters::{OrbitLaws, OrbitRelation};
 pub use multipliers::OrbitStability;
 pub use orbit::{ImpactOrbit, Obstacle, OrbitImpact, OrbitKind};
-pub use simulation::{SimulatedMotion, WalledSimulation};
 pub use sweep::{
     BranchPoint, OrbitBranch, OrbitChangePoint, OrbitSweep, VaryingParameter, sweep_orbits,
 };
 
 use crate::interrupt::Interrupt;
+use crate::system::Integrator;
+use crate::trajectory::TrajectoryRequest;
 use crate::values::Values;
 use crate::verify::{DEFAULT_TOLERANCE, Verdict};
 use crate::wall::Wall;
@@ -247,7 +247,10 @@ fn judged(
     request: &OrbitRequest,
 ) -> Result<Vec<JudgedImpactOrbit>, OrbitError> {
     let walls: Vec<Wall> = question.walls.iter().map(|wall| wall.wall.clone()).collect();
-    let simulation = WalledSimulation::new(&question.oscillator, &walls, values)?;
+    let mut course = TrajectoryRequest::of_equation(&question.oscillator).with_walls(walls);
+    course.values = values.numbers();
+    course.interrupt = request.interrupt;
+    let simulation = course.prepared(Integrator::Taylor)?;
     let walled =
         WalledFlow::new(numbers).ok_or(OrbitError::Resonance(question.frequency.clone()))?;
     let judged = orbits.into_iter().map(|orbit| {

@@ -14,6 +14,7 @@
 
 mod energy;
 mod hold;
+mod prepared;
 mod pulse;
 mod resting;
 mod root;
@@ -42,6 +43,7 @@ use crate::system::{
 
 use crate::wall::{Wall, WallError};
 
+pub use prepared::{PreparedTrajectory, TrajectoryEnd};
 pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::{DISPLACEMENT, LyapunovExponent};
 pub use sweep::{SweptMotion, sweep};

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::symbol::Symbol;
-use crate::system::SystemError;
+use crate::trajectory::TrajectoryError;
 use crate::wall::WallError;
 
 /// The reason why impact orbits are not derived or not computed.
@@ -22,7 +22,7 @@ pub enum OrbitError {
     Wall(#[from] WallError),
     /// The simulation that judges an orbit cannot begin.
     #[error("the simulation beside the closed form does not begin: {0}")]
-    Simulation(#[from] SystemError),
+    Simulation(#[from] TrajectoryError),
     /// A term is not linear in the coordinate and its velocity.
     #[error("the term `{0}` is not linear with constant coefficients")]
     Nonlinear(String),

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 
 use super::multipliers::multipliers;
 use super::orbit::ImpactOrbit;
-use super::simulation::WalledSimulation;
+use crate::system::PathEnd;
+use crate::trajectory::PreparedTrajectory;
 use crate::verify::Verdict;
 
 /// An orbit beside a simulation that started on it.
@@ -26,7 +27,7 @@ pub struct OrbitVerdict {
 /// Judges an orbit; the start is position and velocity of the coordinate just after the first
 /// impact. `None` if the simulation does not reach the end of the period.
 pub(super) fn judge(
-    simulation: &WalledSimulation,
+    simulation: &PreparedTrajectory,
     orbit: &ImpactOrbit,
     start: [f64; 2],
     frequency: f64,
@@ -38,20 +39,24 @@ pub(super) fn judge(
     let next = orbit.impacts.get(1).map_or(first.time + period, |impact| impact.time);
     // The section lies within a leg, where a displaced start is a start as any other.
     let section = 0.5 * (first.time + next);
-    let at_section = simulation.follow([first.time, section], start)?;
-    if !at_section.impacts.is_empty() {
+    let follow = |times: [f64; 2], state: [f64; 2]| {
+        let motion = simulation.follow(times, &state).ok()?;
+        let end = <[f64; 2]>::try_from(motion.state).ok()?;
+        (motion.reason == PathEnd::Reached).then_some((end, motion.walls.impacts.len()))
+    };
+    let (begin, early) = follow([first.time, section], start)?;
+    if early > 0 {
         return Some(failed());
     }
-    let begin = at_section.end;
-    let advance = |state: [f64; 2]| simulation.follow([section, section + period], state);
-    let motion = advance(begin)?;
-    let distance = ((motion.end[0] - begin[0]) * frequency).hypot(motion.end[1] - begin[1]);
+    let advance = |state: [f64; 2]| follow([section, section + period], state);
+    let (end, impacts) = advance(begin)?;
+    let distance = ((end[0] - begin[0]) * frequency).hypot(end[1] - begin[1]);
     let return_error = distance / speed;
-    let end_of = |state: [f64; 2]| Some(advance(state)?.end);
+    let end_of = |state: [f64; 2]| Some(advance(state)?.0);
     let found = map_multipliers(begin, [speed / frequency, speed], end_of);
     let multiplier_error = found.map(|found| farthest(&found, &orbit.multipliers));
     let size = orbit.multipliers.iter().map(|own| own.norm()).fold(1.0, f64::max);
-    let is_alike = motion.impacts.len() == orbit.impacts.len()
+    let is_alike = impacts == orbit.impacts.len()
         && return_error <= tolerance
         && multiplier_error.is_some_and(|error| error <= tolerance * size);
     Some(OrbitVerdict {

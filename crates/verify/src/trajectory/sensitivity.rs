@@ -17,9 +17,8 @@
 //! Impacts and friction are passed by both motions, so that no derivative across them is needed. The
 //! standard error is that of the means of ten parts of the motion.
 
-use super::wall_run::WallRun;
 use super::walls::Impact;
-use super::{ACCOUNTS, Trajectory, TrajectoryRequest};
+use super::{ACCOUNTS, Trajectory};
 use crate::system::PathEnd;
 
 /// The relative displacement of the start: larger than rounding, and so small that differences grow
@@ -95,22 +94,16 @@ impl Trajectory {
                 *size = size.max(value.abs());
             }
         }
-        let course = TrajectoryRequest { energy: None, section: None, ..self.course.clone() };
-        let ready = course.ready(self.integrator).ok()?;
+        let prepared = self.course.clone().prepared(self.integrator).ok()?;
         let mut away: Vec<f64> = sizes.iter().map(|size| APART * size).collect();
         let mut growths = Vec::new();
         for (index, pair) in reference.windows(2).enumerate() {
             let [begin, end] = pair else { continue };
             let [now, then] = [index as u32, index as u32 + 1].map(time);
-            let leg = TrajectoryRequest { duration: then, ..course.clone() };
             let displaced = |sign: f64| {
                 let start = begin.iter().zip(&away).map(|(value, away)| value + sign * away);
-                let start = (now, start.collect());
-                let mut run = WallRun::new(&leg, &ready, start, self.integrator).ok()?;
-                run.complete().ok()?;
-                let (pieces, reason, _) = run.finish();
-                let state = pieces.last()?.states_at(then)?;
-                (reason == PathEnd::Reached).then_some((state, sign))
+                let motion = prepared.follow([now, then], &start.collect::<Vec<f64>>()).ok()?;
+                (motion.reason == PathEnd::Reached).then_some((motion.state, sign))
             };
             // A start behind a wall is mirrored.
             let (state, sign) = displaced(1.0).or_else(|| displaced(-1.0))?;

@@ -117,6 +117,7 @@ fn bad_walls_are_refused_with_a_way_forward() {
         (&["--restitution", "0.5"], "belongs to a wall"),
         (&["--wall", "x < 1", "--restitution", "1.5"], "lies between 0"),
         (&["--wall", "x = 1", "--restitution", "1"], "no `<` or `>`"),
+        (&["--wall", "x << 1", "--restitution", "1"], "a side of the inequality is empty"),
         (&["--wall", "x < 0.2", "--restitution", "1"], "begins behind a wall"),
         (&["--wall", "1 < 2", "--restitution", "1"], "contains no coordinate: it needs one of `x`"),
         (&["--wall", "x' < 2", "--restitution", "1"], "contains the velocity `x'`"),

@@ -864,7 +864,7 @@ pub fn in_words(end: PathEnd) -> &'static str {
         PathEnd::StepLimit => "after as many steps as were allowed",
         PathEnd::Singular => "where a state or its rate has no value, or no next step",
         PathEnd::PassesWall => {
-            "where it passes a wall: impacts on several walls accumulate there, which is not followed"
+            "where it would pass a wall: impacts there follow each other faster than rounding resolves"
         }
         PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
         PathEnd::Sticks => {

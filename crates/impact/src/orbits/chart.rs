@@ -127,50 +127,28 @@ pub fn chart_orbits(
     Ok(chart)
 }
 
-/// Quantities of a family that are zero where its orbits change; NaN where they have no meaning.
-#[derive(Clone, Copy, Debug)]
-struct Measures {
-    grazing: f64,
-    fold: f64,
-    /// The test function of the multiplier -1, for the faster and the slower orbit.
-    minus_one: [f64; 2],
-    /// For both orbits, 1 where a motion follows the orbit and -1 where it does not.
-    admissible: [f64; 2],
-}
+/// Quantities of a family that are zero where its orbits change, by the index of [`measure`].
+type Measures = [f64; 6];
 
-impl Measures {
-    const NONE: Self = Self {
-        grazing: f64::NAN,
-        fold: f64::NAN,
-        minus_one: [f64::NAN; 2],
-        admissible: [f64::NAN; 2],
+/// A quantity that is zero where orbits change, NaN where it has no meaning: 0 grazing, 1 the fold; of
+/// the faster and of the slower orbit 2 and 3 the multiplier -1, then 4 and 5 whether a motion follows
+/// the orbit, 1, or not, -1.
+fn measure(
+    family: OrbitFamily,
+    numbers: &ImpactNumbers,
+    relation: &OneImpact,
+    index: usize,
+) -> f64 {
+    let of_state = |index: usize, measure: &dyn Fn(&ImpactState) -> f64| {
+        relation.states()[index].as_ref().map_or(f64::NAN, measure)
     };
-
-    /// The measures of which an orbit has both.
-    const COUNT: usize = 6;
-
-    fn new(family: OrbitFamily, numbers: &ImpactNumbers, relation: &OneImpact) -> Self {
-        let states = relation.states();
-        let measure = |of: &dyn Fn(&ImpactState) -> f64| {
-            states.each_ref().map(|state| state.as_ref().map_or(f64::NAN, of))
-        };
-        let follows = |state: &ImpactState| family.is_admissible(numbers, relation, state);
-        Self {
-            grazing: relation.grazing().unwrap_or(f64::NAN),
-            fold: relation.fold(),
-            minus_one: measure(&|state| relation.period_doubling(state)),
-            admissible: measure(&|state| if follows(state) { 1.0 } else { -1.0 }),
-        }
-    }
-
-    /// Grazing, fold; of the faster and of the slower orbit the multiplier -1, then a second impact.
-    fn get(&self, index: usize) -> f64 {
-        match index {
-            0 => self.grazing,
-            1 => self.fold,
-            2 | 3 => self.minus_one[index - 2],
-            index => self.admissible[index - 4],
-        }
+    match index {
+        0 => relation.grazing().unwrap_or(f64::NAN),
+        1 => relation.fold(),
+        2 | 3 => of_state(index - 2, &|state| relation.period_doubling(state)),
+        index => of_state(index - 4, &|state| {
+            if family.is_admissible(numbers, relation, state) { 1.0 } else { -1.0 }
+        }),
     }
 }
 
@@ -185,10 +163,11 @@ fn look(
     let measures = families.iter().map(|family| {
         let own = numbers.as_ref().and_then(|numbers| Some((numbers, family.relation(numbers)?)));
         let (mut orbits, mut stable) = (0, 0);
-        let measures = own.as_ref().map_or(Measures::NONE, |(numbers, relation)| {
-            let measures = Measures::new(*family, numbers, relation);
-            for (state, admissible) in relation.states().iter().zip(measures.admissible) {
-                if let Some(state) = state.as_ref().filter(|_| admissible > 0.0) {
+        let measures = own.as_ref().map_or([f64::NAN; 6], |(numbers, relation)| {
+            let measures: Measures =
+                std::array::from_fn(|index| measure(*family, numbers, relation, index));
+            for (state, admissible) in relation.states().iter().zip(&measures[4..]) {
+                if let Some(state) = state.as_ref().filter(|_| *admissible > 0.0) {
                     orbits += 1;
                     stable += u8::from(family.stability(relation, state) == OrbitStability::Stable);
                 }
@@ -212,7 +191,7 @@ fn curves(
     let [columns, _] = chart.size;
     let mut curves: Vec<OrbitCurve> = Vec::new();
     for (number, family) in chart.families.iter().enumerate() {
-        for index in 0..Measures::COUNT {
+        for index in 0..measures[0][number].len() {
             let change = match index {
                 0 => OrbitChange::Grazing,
                 1 => OrbitChange::Fold,
@@ -225,7 +204,7 @@ fn curves(
             if change == OrbitChange::Grazing && curves.iter().any(is_known) {
                 continue;
             }
-            let values: Vec<f64> = measures.iter().map(|own| own[number].get(index)).collect();
+            let values: Vec<f64> = measures.iter().map(|own| own[number][index]).collect();
             let zero = |[column, row]: [usize; 2], [right, upper]: [usize; 2]| {
                 let from = chart.place(row * columns + column);
                 let to = chart.place(upper * columns + right);
@@ -255,15 +234,14 @@ fn crossing(
         let relation = family.relation(&numbers)?;
         Some((numbers, relation))
     };
-    let measure = |part: f64| {
-        relation(part)
-            .map_or(f64::NAN, |(numbers, own)| Measures::new(family, &numbers, &own).get(index))
+    let at = |part: f64| {
+        relation(part).map_or(f64::NAN, |(numbers, own)| measure(family, &numbers, &own, index))
     };
-    let (first, last) = (measure(0.0), measure(1.0));
-    let holds = |part: f64| (measure(part) > 0.0) == (first > 0.0);
+    let (first, last) = (at(0.0), at(1.0));
+    let holds = |part: f64| (at(part) > 0.0) == (first > 0.0);
     let [inside, outside] = bisect(holds, 0.0, 1.0, BisectionStop::Halvings(HALVINGS));
     let scale = first.abs().max(last.abs());
-    let size = |part: f64| measure(part).abs();
+    let size = |part: f64| at(part).abs();
     // Whether a motion follows an orbit has no small values, and is decided on both sides.
     let is_decided = index >= 4;
     let is_zero = size(inside).min(size(outside)) <= 1e-3 * scale;

@@ -60,6 +60,11 @@ pub fn parse_inequality(text: &str) -> Result<Vec<Expr>, ParseError> {
     loop {
         let first = text.len() - rest.len();
         let end = rest.find(is_sign).unwrap_or(rest.len());
+        if rest[..end].trim().is_empty() {
+            let span = first..(first + end).max(first + 1).min(text.len());
+            let help = "an inequality has an expression on each side, such as `x < 1`";
+            return Err(ParseError::new(text, span, "a side of the inequality is empty", help));
+        }
         let side = parse_expression(&rest[..end]).map_err(|error| error.within(text, first))?;
         sides.push(side);
         let Some(sign) = rest[end..].chars().next() else { break };

@@ -240,7 +240,7 @@ class OrbitSweep(Document):
 
     Attributes:
         parameter: The parameter.
-        range: Where it begins and ends.
+        range: The beginning and the end of its range.
         branches: The branches.
         changes: The places where orbits change, in order of the parameter.
     """
@@ -320,9 +320,9 @@ class OrbitChart(Document):
 
     Attributes:
         across: The parameter across.
-        across_range: Where it begins and ends.
+        across_range: The beginning and the end of its range.
         upwards: The parameter upwards.
-        upwards_range: Where it begins and ends.
+        upwards_range: The beginning and the end of its range.
         columns: Points in a row, which lie equally far from one end of its range to the other.
         rows: Rows, likewise.
         families: The kinds of orbits.

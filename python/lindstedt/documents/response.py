@@ -512,7 +512,7 @@ class Response(Answer):
         stuck: Of each point of a branch the part of a period in which dry friction holds it;
             empty for a branch that nothing holds.
         walls: The walls; left out without one.
-        impacts: Of each point of a branch the number of impacts in a period; left out without a
+        impacts: The number of impacts in a period at each point of a branch; left out without a
             wall.
         bifurcations: Where branches change.
         equilibria: The equilibria of coupled equations that nothing drives, a branch each. Left

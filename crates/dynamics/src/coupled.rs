@@ -6,7 +6,7 @@
 //! ```
 //!
 //! In: the text, or the equations of a mechanism. Out: the coordinates, in the order of the equations
-//! in which their derivatives occur first, and the rates of all states, which are the coordinates, then the velocities of
+//! to which they belong, and the rates of all states, which are the coordinates, then the velocities of
 //! those of second order. Accelerations may be coupled: the highest derivatives follow from linear
 //! equations (L. Meirovitch, *Fundamentals of Vibrations*, 2001, section 7.2).
 
@@ -30,7 +30,7 @@ pub const MOST_COUPLED: usize = 64;
 pub struct CoupledEquations {
     /// The left and the right side of each equation.
     pub equations: Vec<(Expr, Expr)>,
-    /// The coordinates, in the order of the equations in which their derivatives occur first.
+    /// The coordinates: those of a mechanism in its order, others as [`Self::new`] orders them.
     pub coordinates: Vec<Symbol>,
     /// The coordinates, then the velocities of those of second order; and the rates of each.
     pub rates: Rates,
@@ -148,7 +148,8 @@ impl CoupledEquations {
     /// [`CoupledError`].
     pub fn of_mechanism(equations: &EquationsOfMotion) -> Result<Self, CoupledError> {
         let sides = equations.left.iter().map(|left| (left.clone(), Expr::zero())).collect();
-        Ok(Self { energy: Some(equations.energy.clone()), ..Self::new(sides)? })
+        let found = Self::in_order(sides, equations.coordinates.clone())?;
+        Ok(Self { energy: Some(equations.energy.clone()), ..found })
     }
 
     /// The equations with expressions in place of names, in their energy too.
@@ -162,16 +163,69 @@ impl CoupledEquations {
             .map(|(left, right)| Ok((left.substitute_all(values)?, right.substitute_all(values)?)));
         let energy = self.energy.as_ref().map(|energy| energy.substitute_all(values));
         let sides = sides.collect::<Result<_, ExprError>>()?;
-        Ok(Self { energy: energy.transpose()?, ..Self::new(sides)? })
+        let found = Self::in_order(sides, self.coordinates.clone())?;
+        Ok(Self { energy: energy.transpose()?, ..found })
     }
 
-    /// Solves equations, given by their sides, for the highest derivatives.
+    /// Solves equations, given by their sides, for the highest derivatives. The coordinates are in the
+    /// order in which the matrix of these is symmetric and may be a mass matrix, if there is one, and
+    /// else in the order in which they occur.
     ///
     /// # Errors
     /// [`CoupledError`].
     pub fn new(equations: Vec<(Expr, Expr)>) -> Result<Self, CoupledError> {
+        let found = Self::in_order(equations, vec![])?;
+        match found.symmetric_order()? {
+            Some(order) => Self::in_order(found.equations, order),
+            None => Ok(found),
+        }
+    }
+
+    /// The order of the coordinates, another one than theirs, in which the matrix is symmetric and the
+    /// greatest of its entries are on its diagonal, as those of a positive definite matrix are. The
+    /// sizes are those at rest, with numbers in place of the parameters.
+    fn symmetric_order(&self) -> Result<Option<Vec<Symbol>>, ExprError> {
+        let count = self.coordinates.len();
+        let size = |row: usize, column: usize| {
+            linear::size_at_rest(&self.matrix[row][column], &self.rates.states)
+        };
+        let sizes: Vec<Vec<f64>> =
+            (0..count).map(|row| (0..count).map(|column| size(row, column)).collect()).collect();
+        let mut own: Vec<Option<usize>> = vec![None; count];
+        for _ in 0..count {
+            let open = (0..count).filter(|row| own[*row].is_none());
+            let pairs = open.flat_map(|row| (0..count).map(move |column| (row, column)));
+            let free = pairs.filter(|(_, column)| !own.contains(&Some(*column)));
+            // Of equal entries the first.
+            let largest = free.reduce(|best, next| {
+                if sizes[next.0][next.1] > sizes[best.0][best.1] { next } else { best }
+            });
+            let Some((row, column)) = largest else { return Ok(None) };
+            own[row] = Some(column);
+        }
+        let order: Vec<usize> = own.into_iter().flatten().collect();
+        if order.is_sorted() {
+            return Ok(None);
+        }
+        for row in 0..count {
+            for other in 0..row {
+                let [one, two] =
+                    [(row, other), (other, row)].map(|(i, j)| &self.matrix[i][order[j]]);
+                if !(one - two).expand()?.is_zero() {
+                    return Ok(None);
+                }
+            }
+        }
+        Ok(Some(order.into_iter().map(|column| self.coordinates[column]).collect()))
+    }
+
+    /// Solves equations for the highest derivatives of these coordinates, then of others in the order
+    /// in which they occur.
+    fn in_order(
+        equations: Vec<(Expr, Expr)>,
+        mut coordinates: Vec<Symbol>,
+    ) -> Result<Self, CoupledError> {
         let residuals: Vec<Expr> = equations.iter().map(|(left, right)| left - right).collect();
-        let mut coordinates: Vec<Symbol> = Vec::new();
         let mut derivatives = BTreeSet::new();
         for (left, right) in &equations {
             for side in [left, right] {
@@ -183,6 +237,8 @@ impl CoupledEquations {
                 }
             }
         }
+        // Values put into a coordinate's terms may leave none of its derivatives.
+        coordinates.retain(|name| derivatives.iter().any(|own| own.coordinate() == *name));
         if let Some(name) = derivatives.iter().find(|name| name.primes() > 2) {
             return Err(CoupledError::Order(*name));
         }
@@ -203,7 +259,9 @@ impl CoupledEquations {
                 false => name.derivative(),
             })
             .collect();
-        let (matrix, found) = solved(&residuals, &highest)?;
+        let moving: Vec<Symbol> =
+            coordinates.iter().flat_map(|name| [*name, name.derivative()]).collect();
+        let (matrix, found) = solved(&residuals, &highest, &moving)?;
         let velocities: Vec<Symbol> = coordinates
             .iter()
             .filter(|name| is_second(name))
@@ -262,10 +320,12 @@ impl CoupledEquations {
     }
 }
 
-/// The matrix of the highest derivatives, and these from linear equations.
+/// The matrix of the highest derivatives, and these from linear equations; `moving` are the
+/// coordinates and velocities.
 fn solved(
     residuals: &[Expr],
     highest: &[Symbol],
+    moving: &[Symbol],
 ) -> Result<(Vec<Vec<Expr>>, Vec<Expr>), CoupledError> {
     let zeros = highest.iter().map(|name| (*name, Expr::zero())).collect();
     let mut matrix = Vec::new();
@@ -286,7 +346,7 @@ fn solved(
         right.push(-residual.substitute_all(&zeros)?);
     }
     let singular = || MechanicsError::Singular(residuals[0].clone());
-    let found = linear::solution(&matrix, &right, singular)
+    let found = linear::solution(&matrix, &right, moving, singular)
         .map_err(|_| CoupledError::Singular(highest.to_vec()))?;
     Ok((matrix, found))
 }
@@ -306,6 +366,25 @@ mod tests {
         ] {
             let parsed = CoupledEquations::parse(equations).expect("equations");
             assert_eq!(parsed.has_damping(), Ok(expected), "{equations}");
+        }
+    }
+
+    /// The matrix is then the mass matrix, which impacts and energies need: a symmetric one in another
+    /// order of the rows would give others.
+    #[test]
+    fn coordinates_are_in_the_order_of_their_own_equations() {
+        for (text, order) in [
+            ("x'' + 2*y'' + y = 0; 2*x'' + y'' + x = 0", "y x"),
+            ("2*x'' + y'' + x = 0; x'' + 2*y'' + y = 0", "x y"),
+            ("y'' + 20*y + b''*b = 0; b'' + y''*b + 9*b = 0", "y b"),
+            ("x'' + y'' + y = 0; 3*x'' + y'' + x = 0", "y x"),
+            ("c'' + a''/2 + c = 0; a'' + c''/2 + b''/3 + a = 0; b'' + a''/3 + b = 0", "c a b"),
+            // No order is symmetric: as they occur.
+            ("x'' + 5*y'' + y = 0; 2*x'' + 3*y'' + x = 0", "x y"),
+        ] {
+            let found = CoupledEquations::parse(text).expect(text);
+            let names: Vec<String> = found.coordinates.iter().map(ToString::to_string).collect();
+            assert_eq!(names.join(" "), order, "{text}");
         }
     }
 

@@ -190,7 +190,7 @@ impl Wall {
                     }
                 }
                 let singular = || MechanicsError::Singular(mass.iter().flatten().cloned().sum());
-                linear::solution(mass, &normal, singular)?
+                linear::solution(mass, &normal, states, singular)?
             }
         };
         Ok(WallImpact { gap: self.gap.clone(), rate, normal, direction })

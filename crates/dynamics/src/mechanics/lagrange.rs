@@ -73,7 +73,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, Mech
     }
     let singular = || MechanicsError::Singular(mechanism.kinetic.clone());
     // This fails if the mass matrix is singular, so that an acceleration would not follow.
-    linear::solution(&mass, &rest, singular)?;
+    linear::solution(&mass, &rest, &[], singular)?;
     let mut equations = EquationsOfMotion {
         coordinates: coordinates.clone(),
         mass,
@@ -181,7 +181,7 @@ impl EquationsOfMotion {
     /// [`MechanicsError`] if the mass matrix is singular.
     pub fn accelerations(&self) -> Result<Vec<Expr>, MechanicsError> {
         let right: Vec<Expr> = self.rest.iter().map(|rest| -rest).collect();
-        linear::solution(&self.mass, &right, || {
+        linear::solution(&self.mass, &right, &[], || {
             MechanicsError::Singular(self.mass.iter().flatten().cloned().sum())
         })
     }

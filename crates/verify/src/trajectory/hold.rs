@@ -648,7 +648,7 @@ fn sliding(
         return Ok(None);
     }
     let singular = || crate::mechanics::MechanicsError::Singular(Expr::zero());
-    let Ok(found) = linear::solution(&matrix, &rest, singular) else {
+    let Ok(found) = linear::solution(&matrix, &rest, &[], singular) else {
         return Ok(None);
     };
     let shares: Vec<(usize, Expr)> = held.iter().copied().zip(found).collect();

@@ -79,7 +79,7 @@ pub(super) fn resting_equations(
             .collect();
         let right: Vec<Expr> = bearing.iter().map(|wall| -&wall.free).collect();
         let singular = || MechanicsError::Singular(matrix.iter().flatten().cloned().sum());
-        let forces = linear::solution(&matrix, &right, singular)?;
+        let forces = linear::solution(&matrix, &right, &rates.states, singular)?;
         let count = course.coordinates.len();
         for ((index, wall), force) in resting.iter().zip(&bearing).zip(&forces) {
             for (k, direction) in wall.impact.direction.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::driven::values_in_words;
 use super::{Block, Document, percent, size_in_percent};
 use crate::absorber::AbsorberLaws;
-use crate::absorber_verdict::JudgedAbsorber;
+use crate::absorber_verdict::{AbsorberDecay, JudgedAbsorber};
 use crate::decimal::decimal;
 use crate::derivation::DerivationLine;
 use crate::expr::Expr;
@@ -104,6 +104,16 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
             decimal(motion.end),
             size_in_percent(motion.largest_distance)
         )));
+        if let Some(AbsorberDecay { amplitudes: [first, last], formula, truth }) = motion.decay {
+            blocks.push(Block::Note(format!(
+                "in that motion Z falls from {} to {} in a time of {}, by the formula of t in {} ({}); its error falls with mu",
+                decimal(first),
+                decimal(last),
+                decimal(truth),
+                decimal(formula),
+                percent(formula / truth - 1.0)
+            )));
+        }
     }
     let within = size_in_percent(judged.tolerance);
     blocks.push(Block::Facts(vec![(

@@ -491,6 +491,21 @@ fn a_light_sink_slides_along_its_manifold() {
     assert!((light.end / end - 1.0).abs() < 0.06, "{light:?} {end}");
 }
 
+/// The time in which the ball slows down, by the energy that its impacts take: the error falls with the
+/// mass of the ball.
+#[test]
+fn a_ball_decays_along_its_manifold_as_its_impacts_take_energy() {
+    for r in ["3/10", "13/20"] {
+        let error = |mu: &str| {
+            let judged = judged(AbsorberKind::ImpactSink, &format!("r = {r}, b = 1, mu = {mu}"));
+            let decay = judged.motion.and_then(|motion| motion.decay).expect("a decay");
+            decay.formula / decay.truth - 1.0
+        };
+        let (heavy, light) = (error("1/500"), error("1/2000"));
+        assert!(heavy.abs() < 0.03 && light.abs() < 0.3 * heavy.abs(), "{r}: {heavy} {light}");
+    }
+}
+
 #[test]
 fn values_outside_their_range_are_refused() {
     for (kind, at, words) in [

@@ -113,6 +113,21 @@ pub struct AbsorberMotionDocument {
     /// The largest distance of its two amplitudes from those on the manifold, over those of the
     /// start.
     pub largest_distance: f64,
+    /// The time that it takes; null where there is no formula of it.
+    #[serde(default)]
+    pub decay: Option<AbsorberDecayDocument>,
+}
+
+/// The time in which the amplitude of a sink falls, on a simulated motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberDecay"))]
+pub struct AbsorberDecayDocument {
+    /// The amplitudes of the sink at the start and at the end.
+    pub amplitudes: [f64; 2],
+    /// The time by the formula, in units of 1/(the frequency of the main mass).
+    pub formula: f64,
+    /// The time of the simulated motion.
+    pub truth: f64,
 }
 
 /// The document of kind `absorber`.
@@ -185,6 +200,11 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
             start: motion.start,
             end: motion.end,
             largest_distance: motion.largest_distance,
+            decay: motion.decay.map(|decay| AbsorberDecayDocument {
+                amplitudes: decay.amplitudes,
+                formula: decay.formula,
+                truth: decay.truth,
+            }),
         }),
         verdict: judged.and_then(|judged| Some(judged.verdict?.name().to_owned())),
         tolerance: judged.map(|judged| judged.tolerance),

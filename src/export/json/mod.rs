@@ -54,8 +54,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use absorber::{
-    AbsorberDesignDocument, AbsorberDocument, AbsorberFormulaDocument, AbsorberMotionDocument,
-    AbsorberRelationDocument, absorber,
+    AbsorberDecayDocument, AbsorberDesignDocument, AbsorberDocument, AbsorberFormulaDocument,
+    AbsorberMotionDocument, AbsorberRelationDocument, absorber,
 };
 pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};

@@ -18,6 +18,12 @@
 //! ```
 //!
 //! The motion is stable between the multiplier 1 of this map, where C is least, and the multiplier -1.
+//!
+//! Each impact takes `mu/(1 + mu) (1 - r^2) (v - U)^2/2` from the energy `C^2/2`, so that along the manifold
+//!
+//! ```text
+//! d(C^2)/dt = -mu/(1 + mu) (1 - r^2) (v - U)^2/pi = -16 mu s Z^2/((1 + mu) pi^3)
+//! ```
 
 use std::ops::Bound;
 
@@ -28,7 +34,7 @@ use super::{
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{Polynomial, RationalFunction};
-use crate::expr::Expr;
+use crate::expr::{Expr, Function};
 use crate::modes::by_powers;
 use crate::solution::Definition;
 use crate::symbol::Symbol;
@@ -89,6 +95,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
     let directions =
         expr("s").integer_power(2)? + Expr::divide(&kappa, &Expr::pi())?.integer_power(2)?;
     let highest = highest_speed * directions.sqrt()?;
+    let time = decay_time(&times_pi_parts(c1, c2)?, &loss)?;
     let formula = |name: &'static str, symbol: &str, formula: Expr| AbsorberFormula {
         name,
         symbol: of(symbol),
@@ -107,6 +114,8 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
             (of("r"), "coefficient of restitution"),
             (of("C"), "amplitude of the main mass"),
             (of("Z"), "amplitude of the ball, which flies to and fro at the speed 2*Z/pi"),
+            (of("Z_0"), "its amplitude at t = 0"),
+            (of("mu"), "mass of the ball over that of the main mass"),
         ],
         definitions: vec![Definition { symbol: of("s"), meaning: loss.to_expr(of("r"))? }],
         relations: vec![
@@ -124,6 +133,11 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                 left: expr("C").integer_power(2)?,
                 right: square,
                 words: "motions with two impacts a period, by C^2 = X^2 + U^2",
+            },
+            AbsorberRelation {
+                left: expr("t"),
+                right: time,
+                words: "decay along them, by the energy that impacts take, to first order in mu",
             },
         ],
         designs: vec![
@@ -149,6 +163,35 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
         validity: "a light ball, whose impacts take little from the main mass in a period; an impact takes no time; where r is below 0.09 or so, the ball \
                    hits the same wall twice before C_max is reached",
     })
+}
+
+/// `d(C^2)/dZ = p + q Z` as its coefficients p and q, from those of `pi^2 C^2`.
+fn times_pi_parts(first: &Polynomial, second: &Polynomial) -> Result<[Expr; 2], AbsorberError> {
+    let over = Monomial::power_of(Symbol::new("pi"), -2);
+    let [constant, slope] = [first, second].map(|part| part.times_monomial(&over));
+    Ok([Expr::from(&constant), Expr::from(2) * Expr::from(&slope)])
+}
+
+/// The time in which the amplitude of the ball falls from `Z_0` to Z: the integral of
+/// `-(p + q Z)/(rate of C^2) dZ`, where the rate is a number times `Z^2`.
+fn decay_time([p, q]: &[Expr; 2], loss: &RationalFunction) -> Result<Expr, AbsorberError> {
+    let none = || AbsorberError::NoClosedForm(WHAT);
+    let expr = |name: &str| Expr::symbol(name);
+    let letter = Symbol::new("r");
+    let one = RationalFunction::number(ratio(1, 1));
+    let r =
+        RationalFunction::from_polynomial(&Polynomial::symbol(letter), letter).ok_or_else(none)?;
+    // (1 - r^2) (v - U)^2 = number s v^2 with U = -s v: the number does not depend on r.
+    let gap = one.sum(loss);
+    let taken = one.difference(&r.product(&r)).product(&gap.product(&gap));
+    let number = taken.quotient(loss).ok_or_else(none)?.to_expr(letter)?;
+    // v^2 = 4 Z^2/pi^2, and an impact every pi.
+    let mass = Expr::divide(&(Expr::one() + expr("mu")), &expr("mu"))?;
+    let scale = Expr::divide(&Expr::pi().integer_power(3)?, &(Expr::from(4) * number * expr("s")))?;
+    let [before, now] = [expr("Z_0"), expr("Z")];
+    let fallen = Expr::function(Function::Log, vec![Expr::divide(&before, &now)?])?;
+    let inverse = Expr::divide(&Expr::one(), &now)? - Expr::divide(&Expr::one(), &before)?;
+    Ok(mass * scale * (q * &fallen + p * &inverse))
 }
 
 /// `s = -U/v` in r, from the condition of restitution `-v - U = -r (v - U)`.

@@ -16,6 +16,7 @@ mod impact_sink;
 mod nonlinear;
 mod tuned;
 
+use std::collections::BTreeMap;
 use std::ops::{Bound, RangeBounds as _};
 
 use thiserror::Error;
@@ -285,10 +286,20 @@ impl AbsorberLaws {
 impl AbsorberLaws {
     /// The value of a formula at these values; `None` if it has no finite one.
     pub fn value(&self, formula: &Expr, values: &Values) -> Option<f64> {
-        let known = values.with(Symbol::new("pi"), std::f64::consts::PI);
+        self.value_of_numbers(formula, values.numbers())
+    }
+
+    fn value_of_numbers(&self, formula: &Expr, mut known: BTreeMap<Symbol, f64>) -> Option<f64> {
+        known.insert(Symbol::new("pi"), std::f64::consts::PI);
         let defined = defined_values(&self.definitions, &|name| known.get(&name).copied()).ok()?;
-        let known = known.into_iter().chain(defined).collect();
+        known.extend(defined);
         formula.evaluate(&known).ok().filter(|value| value.is_finite())
+    }
+
+    /// The value of the right side of the relation with this left side, with numbers for its letters.
+    pub fn relation_value(&self, left: &Expr, numbers: BTreeMap<Symbol, f64>) -> Option<f64> {
+        let relation = self.relations.iter().find(|relation| relation.left == *left)?;
+        self.value_of_numbers(&relation.right, numbers)
     }
 
     /// The value of the formula with these names of design and quantity.

@@ -9,8 +9,9 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{AbsorberCurve, AbsorberCurveKind, AbsorberMotion, Truth};
+use super::{AbsorberCurve, AbsorberCurveKind, AbsorberDecay, AbsorberMotion, Truth};
 use crate::absorber::AbsorberLaws;
+use crate::expr::Expr;
 use crate::numeric::ode::newton::{Progress, newton};
 use crate::numeric::ode::root::{find_minimum, find_root};
 use crate::symbol::Symbol;
@@ -247,15 +248,18 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
         .map(|step| end * f64::from(step) / 2_000.0)
         .map(|ball| (manifold(ball), ball))
         .collect();
-    let motion = AbsorberMotion::along(&points, &slide, words);
+    let decay = decay(laws, at, start.ball(), &slide);
+    let slide: Vec<(f64, f64)> = slide.into_iter().map(|(_, point)| point).collect();
+    let motion = AbsorberMotion::along(&points, &slide, words)
+        .map(|motion| AbsorberMotion { decay, ..motion });
     let curves = curves(&manifold, balls, end, slide);
     Truth { values, curves, motion, lowest_peak: None }
 }
 
 impl BallInCavity {
-    /// The amplitudes of the main mass and of the ball, impact by impact, of masses set free, until
-    /// the ball has less than an amplitude or loses step.
-    fn slide(&self, start: MotionAtPhase, least_ball: f64) -> Vec<(f64, f64)> {
+    /// The time and the amplitudes of the main mass and of the ball, impact by impact, of masses set
+    /// free, until the ball has less than an amplitude or loses step.
+    fn slide(&self, start: MotionAtPhase, least_ball: f64) -> Vec<(f64, (f64, f64))> {
         const MOST: usize = 20_000;
         let (sine, cosine) = start.phase.sin_cos();
         let mut state = AfterImpact {
@@ -274,10 +278,28 @@ impl BallInCavity {
                 break;
             }
             state = next;
-            found.push((state.x.hypot(state.x_rate), ball));
+            found.push((state.t, (state.x.hypot(state.x_rate), ball)));
         }
         found
     }
+}
+
+/// The time in which the ball falls from its amplitude at the start to the amplitude b, at which it turns
+/// where the main mass passes its middle; `None` if it does not.
+fn decay(
+    laws: &AbsorberLaws,
+    at: &Values,
+    first: f64,
+    slide: &[(f64, (f64, f64))],
+) -> Option<AbsorberDecay> {
+    let last = at.get(Symbol::new("b"))?;
+    let pair = slide.windows(2).find(|pair| pair[0].1.1 >= last && pair[1].1.1 < last)?;
+    let [(before, (_, high)), (after, (_, low))] = [pair[0], pair[1]];
+    let truth = before + (after - before) * (high - last) / (high - low);
+    let mut numbers = at.with(Symbol::new("Z_0"), first);
+    numbers.insert(Symbol::new("Z"), last);
+    let formula = laws.relation_value(&Expr::symbol("t"), numbers)?;
+    Some(AbsorberDecay { amplitudes: [first, last], formula, truth })
 }
 
 /// The manifold by its stability, and the motion along it.

@@ -81,6 +81,19 @@ pub struct AbsorberMotion {
     /// The largest distance of its two amplitudes from those on the manifold, over those of the
     /// start.
     pub largest_distance: f64,
+    /// The time that it takes, where there is a formula of it.
+    pub decay: Option<AbsorberDecay>,
+}
+
+/// The time in which the amplitude of a sink falls, on a simulated motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AbsorberDecay {
+    /// The amplitudes of the sink at the start and at the end.
+    pub amplitudes: [f64; 2],
+    /// The time by the formula, in units of 1/(the frequency of the main mass).
+    pub formula: f64,
+    /// The time of the simulated motion.
+    pub truth: f64,
 }
 
 impl AbsorberMotion {
@@ -94,7 +107,7 @@ impl AbsorberMotion {
             each.fold(f64::INFINITY, f64::min) / size
         };
         let largest_distance = motion.iter().map(distance).fold(0.0, f64::max);
-        Some(Self { words, start: first.0, end: last.0, largest_distance })
+        Some(Self { words, start: first.0, end: last.0, largest_distance, decay: None })
     }
 }
 

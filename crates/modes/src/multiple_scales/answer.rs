@@ -79,7 +79,9 @@ pub struct SlowMotion {
     /// The frequency of which that of the single drive is a multiple, and those of the modes that are
     /// [locked](Self::locked) to it.
     pub base: Option<Expr>,
-    /// The number of drive periods in a period of that frequency.
+    /// The frequency of the single drive.
+    pub drive: Option<Expr>,
+    /// The number of drive periods in a period of the base.
     pub periods: Option<usize>,
     /// Whether the reference frequency of each mode is a multiple of the base.
     pub locked: Vec<bool>,
@@ -140,10 +142,15 @@ impl SlowMotion {
         self.base.is_some() && locked > 0 && self.slow_phases.len() == locked
     }
 
-    /// Whether a steady motion is periodic with the drive: no other mode moves.
-    pub fn is_periodic(&self, state: &SlowSteadyState) -> bool {
+    /// The frequency of a steady motion that is periodic with the drive: no mode moves that it does not
+    /// lock. `None` for other motions.
+    pub fn driven_frequency(&self, state: &SlowSteadyState) -> Option<&Expr> {
+        if state.amplitudes.iter().all(|a| *a == 0.0) {
+            return self.base.as_ref().or(self.drive.as_ref());
+        }
         let mut modes = self.locked.iter().zip(&state.amplitudes);
-        self.base.is_some() && modes.all(|(locked, a)| *a == 0.0 || (*locked && self.is_driven()))
+        let is_periodic = modes.all(|(locked, a)| *a == 0.0 || (*locked && self.is_driven()));
+        self.base.as_ref().filter(|_| is_periodic)
     }
 
     /// The slow equations of the system in which everything small is multiplied by a factor, each term
@@ -462,6 +469,10 @@ impl Derivation<'_> {
             shapes: (0..form.frequencies.len()).map(columns).collect(),
             references: reference.references.iter().map(|nu| Expr::from(&round(nu))).collect(),
             base: base.map(|(place, _)| Expr::from(&round(&reference.bases[place]))),
+            drive: match reference.drives.as_slice() {
+                [wave] => Some(Expr::from(&round(&sum_of_bases(wave, &reference.bases)))),
+                _ => None,
+            },
             periods: base.map(|(_, periods)| periods),
             locked: reference
                 .own

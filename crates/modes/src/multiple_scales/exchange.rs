@@ -13,8 +13,6 @@
 //! H. E. Rowe, *Proc. IRE* 44 (1956) 904; A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley
 //! 1979, section 6.2.
 
-use std::f64::consts::PI;
-
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
 
@@ -48,8 +46,16 @@ pub struct SlowInvariants {
 pub struct EnergyExchange {
     /// The parameter m of K(m).
     pub parameter: f64,
-    /// The period, a number times K(m).
+    /// The period, `factor` times K(m).
     pub period: f64,
+    /// The factor of K(m).
+    pub factor: f64,
+    /// The coefficients of f in `(ds/dt)^2 = f(s)`, the lowest first; s is zero at the start.
+    pub rate_squared: Vec<f64>,
+    /// The zeros of f between which s goes to and fro.
+    pub ends: [f64; 2],
+    /// The square of each amplitude, linear in s: its value at the start and its slope.
+    pub squares: Vec<[f64; 2]>,
     /// The least and the greatest amplitude of each mode.
     pub amplitudes: Vec<[f64; 2]>,
 }
@@ -307,7 +313,7 @@ impl SlowInvariants {
         let potential = drift.iter().zip(1..).map(|(own, power)| -own / f64::from(power));
         let rest: Vec<f64> = std::iter::once(start).chain(potential).collect();
         let f = difference(&squared, &times(&rest, &rest));
-        let Oscillation { ends, parameter, period } = oscillation(&f)?;
+        let Oscillation { ends, parameter, factor, period } = oscillation(&f)?;
         let range = |square: &Vec<f64>| {
             let mut own = ends.map(|s| square[0] + square[1] * s);
             own.sort_by(f64::total_cmp);
@@ -315,7 +321,16 @@ impl SlowInvariants {
             let largest = own[1];
             own.map(|square| if square <= 1e-13 * largest { 0.0 } else { square.sqrt() })
         };
-        Some(EnergyExchange { parameter, period, amplitudes: squares.iter().map(range).collect() })
+        let last = f.iter().rposition(|own| *own != 0.0)?;
+        Some(EnergyExchange {
+            parameter,
+            period,
+            factor,
+            ends,
+            amplitudes: squares.iter().map(range).collect(),
+            squares: squares.iter().map(|square| [square[0], square[1]]).collect(),
+            rate_squared: f.into_iter().take(last + 1).collect(),
+        })
     }
 }
 
@@ -352,6 +367,7 @@ fn difference(one: &[f64], other: &[f64]) -> Vec<f64> {
 struct Oscillation {
     ends: [f64; 2],
     parameter: f64,
+    factor: f64,
     period: f64,
 }
 
@@ -389,18 +405,17 @@ fn oscillation(f: &[f64]) -> Option<Oscillation> {
     };
     let [b, a] = ends;
     let others: Vec<f64> = zeros.iter().copied().filter(|zero| *zero != a && *zero != b).collect();
-    let (parameter, half) = match (degree, others.as_slice()) {
+    let (parameter, product) = match (degree, others.as_slice()) {
         // A harmonic oscillation.
-        (2, []) => (0.0, PI / (-leading).sqrt()),
+        (2, []) => (0.0, 1.0),
         (3, [c]) => {
             let distance = if leading < 0.0 { a - c } else { c - b };
-            let parameter = (a - b) / distance;
-            (parameter, 2.0 * elliptic(parameter)? / (leading.abs() * distance).sqrt())
+            ((a - b) / distance, distance)
         }
         (4, [c, d]) => {
             // (u - c)(u - d) has one sign between the ends; the cross ratio of all four decides.
             let [low, high] = [c.min(*d), c.max(*d)];
-            let (parameter, product) = if high <= b || low >= a {
+            if high <= b || low >= a {
                 // Both on one side.
                 let (near, away) = if high <= b { (high, low) } else { (low, high) };
                 let (end, other) = if high <= b { (a, b) } else { (b, a) };
@@ -409,8 +424,7 @@ fn oscillation(f: &[f64]) -> Option<Oscillation> {
             } else {
                 let product = (high - b) * (a - low);
                 ((a - b) * (high - low) / product, product)
-            };
-            (parameter, 2.0 * elliptic(parameter)? / (leading * product).abs().sqrt())
+            }
         }
         (4, []) => {
             // f = leading (s - a)(s - b)(s^2 + p s + q)
@@ -421,15 +435,18 @@ fn oscillation(f: &[f64]) -> Option<Oscillation> {
             let product = distance(a) * distance(b);
             let parameter =
                 ((a - b).powi(2) - (distance(a) - distance(b)).powi(2)) / (4.0 * product);
-            (parameter, 2.0 * elliptic(parameter)? / (leading.abs() * product).sqrt())
+            (parameter, product)
         }
         _ => return None,
     };
-    Some(Oscillation { ends, parameter, period: 2.0 * half })
+    let factor = 4.0 / (leading * product).abs().sqrt();
+    Some(Oscillation { ends, parameter, factor, period: factor * elliptic(parameter)? })
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     /// The period is the integral of ds/sqrt(f), by Gauss and Chebyshev, for zeros in every position.

@@ -359,9 +359,19 @@ impl SlowNumbers {
             (0..count).map(|mode| Complex::new(place[2 * mode], place[2 * mode + 1])).collect();
         let scale = moving.iter().map(|b| b.norm()).fold(0.0, f64::max);
         let at_rest = |b: &Complex<f64>| b.norm() <= 1e-10 * scale;
-        // Where a mode is at rest its phase says nothing, and a rate that is open may be anything.
-        if squares.min() <= 1e-14 * squares.max() && !moving.iter().any(at_rest) && scale > 0.0 {
-            return None;
+        // Where a mode is at rest its phase says nothing, and a rate that is open may be anything: the
+        // motion is one of a family if the modes that move leave one of their own numbers open.
+        if scale > 0.0 && squares.min() <= 1e-14 * squares.max() {
+            let at_work: Vec<usize> = (0..count).filter(|mode| !at_rest(&moving[*mode])).collect();
+            let rows: Vec<usize> =
+                at_work.iter().flat_map(|mode| [2 * mode, 2 * mode + 1]).collect();
+            let columns: Vec<usize> =
+                rows.iter().copied().chain(2 * count..slopes.ncols()).collect();
+            let own = slopes.select_rows(&rows).select_columns(&columns);
+            let squares = (&own * own.transpose()).symmetric_eigenvalues();
+            if squares.min() <= 1e-14 * squares.max() {
+                return None;
+            }
         }
         let square = slopes.columns(0, 2 * count).into_owned();
         let largest = square.norm();

@@ -315,7 +315,7 @@ impl ResponseDiagram {
             let last = known.last().map_or(&[][..], |(_, states)| states.as_slice());
             let starts = if index == 0 { FIRST } else { OTHERS } * slow.amplitudes.len();
             let found = numbers.steady_states_near(last, starts, question.interrupt).isolated;
-            for state in found.iter().filter(|state| slow.is_periodic(state)) {
+            for state in found.iter().filter(|state| slow.driven_frequency(state).is_some()) {
                 states.push(listed.state(&slow, parameter, state)?);
             }
             known.push((parameter, found));
@@ -331,7 +331,7 @@ impl ResponseDiagram {
             let found = numbers.steady_states_near(start, 0, question.interrupt);
             let found = found.isolated.into_iter();
             found
-                .filter(|state| state.is_stable() && slow.is_periodic(state))
+                .filter(|state| state.is_stable() && slow.driven_frequency(state).is_some())
                 .filter_map(|state| listed.state(&slow, parameter, &state).ok()?.peak)
                 .collect()
         };

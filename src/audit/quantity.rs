@@ -18,6 +18,7 @@ use crate::impact::{
     ContactSpeed, Form, Impact, ImpactProblem, Integrator, Model, PhaseReading, Settings, Setup,
     Start, ThreePhases, course, hertz, three_phases,
 };
+use crate::interrupt::Interrupt;
 use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
 use crate::method::{Options, solve};
@@ -508,7 +509,8 @@ impl EvaluationScope<'_, '_> {
             .chain(system.equations.parameters.iter().copied())
             .collect();
         let at = exact(&self.all(&needed)?)?;
-        judge_mode(system, mode, &at, DEFAULT_TOLERANCE).map_err(|error| refused(&error))
+        judge_mode(system, mode, &at, DEFAULT_TOLERANCE, Interrupt::default())
+            .map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.

@@ -530,7 +530,10 @@ pub(super) fn with_values(
     problem: &Problem,
 ) -> Result<Numbered, Failure> {
     let values = exact_values(at, problem.values_of_motion())?;
+    // A name that cancels in the equation of a mechanism may have a value, which changes nothing.
+    let values = values.map(|values| values.split(&problem.cancelled).1);
     let values = values
+        .filter(|values| !values.is_empty())
         .map(|values| as_meant(&values, |name| oscillator.resolve_symbol(name)))
         .transpose()?;
     let notes = notes_on_names(&oscillator, values.as_ref());

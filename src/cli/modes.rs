@@ -8,6 +8,7 @@ use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
 use crate::problem::{Order, Problem, ReadingCommand};
 use crate::report::{self, ModesReport};
 use crate::solution::{AmplitudeConvention, Degrees, Method};
+use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
 
@@ -42,9 +43,14 @@ pub(super) fn run(
     let tolerance = tolerance(&arguments.common);
     let asked =
         values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
-    let judged = match asked {
-        true => judged(&modes, &values.unwrap_or_default(), tolerance)?,
-        false => vec![],
+    let needs_verdict = arguments.common.draws() || arguments.common.tolerance.is_some();
+    let (judged, missing) = match asked {
+        true => match judged(&modes, &values.unwrap_or_default(), tolerance) {
+            // The formulas are an answer without their verdict.
+            Err(VerificationError::Missing(names)) if !needs_verdict => (vec![], names),
+            judged => (judged.map_err(|error| unjudged(&error))?, vec![]),
+        },
+        false => (vec![], vec![]),
     };
     let report = ModesReport { modes: &modes, judged: &judged, tolerance };
     let answer = Answer {
@@ -68,18 +74,34 @@ pub(super) fn run(
     let verdicts = judged.iter().map(passes);
     let reached = modes.modes.iter().flatten().map(|mode| mode.order).min();
     let stopped = reached.filter(|reached| *reached < modes.order);
+    let late = session::supervision().interrupt.is_requested() && stopped.is_none() && asked;
+    let without_verdict = (!missing.is_empty()).then(|| without_verdict(&modes, &missing));
     Ok(Outcome {
         verdict: (!judged.is_empty())
             .then(|| Verdict::from_passed(verdicts.into_iter().all(|passes| passes))),
-        note: stopped.map(|reached| {
-            format!(
+        note: match stopped {
+            Some(reached) => Some(format!(
                 "warning: stopped early, what there is is kept: order {reached} of {}",
                 modes.order
-            )
-        }),
-        partial: stopped.is_some(),
+            )),
+            None if late => Some("warning: stopped early, what there is is kept".to_owned()),
+            None => without_verdict,
+        },
+        partial: stopped.is_some() || late,
         ..answer.outcome(&arguments.common)?
     })
+}
+
+/// Which values a verdict on modes lacks.
+fn without_verdict(modes: &NormalModes, missing: &[Symbol]) -> String {
+    let amplitudes: Vec<Symbol> =
+        modes.modes.iter().flatten().map(|mode| mode.amplitude.symbol()).collect();
+    let written = |name: &Symbol| match amplitudes.contains(name) {
+        true => format!("`{}`, the amplitude", name.written()),
+        false => format!("`{}`", name.written()),
+    };
+    let names: Vec<String> = missing.iter().map(written).collect();
+    format!("note: not judged, values are needed for: {}", names.join(", "))
 }
 
 /// The number of harmonics of a balance without a choice.
@@ -228,24 +250,29 @@ fn no_formula(modes: &NormalModes) -> Option<ModeError> {
     reasons.all(|reason| reason.is_some()).then_some(first)
 }
 
-/// The verdict on each mode that has a formula; `None` for the others. Missing values are refused, a
-/// mode whose true motion was not found is said.
+/// The verdict on each mode that has a formula; `None` for the others. A mode whose true motion was not
+/// found is said.
+///
+/// # Errors
+/// Missing or unknown values.
 fn judged(
     modes: &NormalModes,
     at: &Values,
     tolerance: f64,
-) -> Result<Vec<Result<JudgedMode, String>>, Failure> {
+) -> Result<Vec<Result<JudgedMode, String>>, VerificationError> {
+    let interrupt = session::supervision().interrupt;
     let mut all = Vec::new();
     for mode in modes.modes.iter().flatten() {
-        match judge_mode(&modes.system, mode, at, tolerance) {
+        match judge_mode(&modes.system, mode, at, tolerance, interrupt) {
             Ok(judged) => all.push(Ok(judged)),
             Err(
                 error @ (VerificationError::NoMode { .. }
+                | VerificationError::Interrupted
                 | VerificationError::NoBalance { .. }
                 | VerificationError::VanishingDivisor { .. }
                 | VerificationError::NoValue { .. }),
             ) => all.push(Err(error.to_string())),
-            Err(error) => return Err(unjudged(&error)),
+            Err(error) => return Err(error),
         }
     }
     Ok(all)

@@ -108,7 +108,9 @@ pub(super) fn run(
     let judged = match asked {
         true => {
             let values = values.unwrap_or_default();
-            match judge_slow_motion(&slow, &values, tolerance(&arguments.common)) {
+            let interrupt = session::supervision().interrupt;
+            let tolerance = tolerance(&arguments.common);
+            match judge_slow_motion(&slow, &values, tolerance, interrupt) {
                 Ok(judged) => Some(judged),
                 // The formulas are an answer without their verdict.
                 Err(VerificationError::NoSystem(reason)) => {
@@ -151,12 +153,15 @@ pub(super) fn run(
         }
         },
     };
+    let stopped = asked && session::supervision().interrupt.is_requested();
+    let early = || "warning: stopped early, what there is is kept".to_owned();
     Ok(Outcome {
         verdict: match lost {
             Some(_) => Some(Verdict::Fail),
             None => judged.as_ref().and_then(|judged| judged.verdict),
         },
-        note: lost,
+        note: lost.or_else(|| stopped.then(early)),
+        partial: stopped,
         ..answer.outcome(&arguments.common)?
     })
 }

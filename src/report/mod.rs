@@ -380,3 +380,26 @@ pub struct MethodRow<'a> {
     /// The hbar with which it was evaluated.
     pub hbar: Option<(Symbol, f64)>,
 }
+
+/// A polynomial in a variable with decimal coefficients, the lowest first.
+pub(super) fn in_powers_of(variable: &str, coefficients: &[f64]) -> String {
+    let mut text = String::new();
+    for (power, number) in coefficients.iter().enumerate().filter(|(_, number)| **number != 0.0) {
+        let sign = match (text.is_empty(), *number < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let size = decimal(number.abs());
+        text += &match power {
+            0 => format!("{sign}{size}"),
+            1 => format!("{sign}{size}*{variable}"),
+            _ => format!("{sign}{size}*{variable}^{power}"),
+        };
+    }
+    match text.is_empty() {
+        true => "0".to_owned(),
+        false => text,
+    }
+}

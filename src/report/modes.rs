@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use num_traits::Zero;
 
-use super::{Block, Document, percent, size_in_percent};
+use super::{Block, Document, in_powers_of, percent, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
 use crate::exact::{Polynomial, Polynomials};
@@ -216,7 +216,7 @@ fn one_mode<'a>(
         ))
     }));
     blocks.extend(judged.map(|judged| match judged {
-        Ok(judged) => Block::Facts(facts(judged)),
+        Ok(judged) => Block::Facts(facts(report, mode, judged)),
         Err(reason) => Block::Note(reason.clone()),
     }));
     let coefficients = judged.iter().flat_map(|judged| judged.as_ref().ok());
@@ -261,11 +261,20 @@ fn amplitude_in_words(mode: &NonlinearMode, coordinates: &[Symbol]) -> String {
     }
 }
 
-fn facts(judged: &JudgedMode) -> Vec<(&'static str, String)> {
+fn facts(
+    report: &ModesReport,
+    mode: &NonlinearMode,
+    judged: &JudgedMode,
+) -> Vec<(&'static str, String)> {
     let within = significant(100.0 * judged.tolerance, 3);
     let number = |value: Option<f64>| value.map_or("not real".to_owned(), decimal);
     let mut facts =
         vec![("omega", number(judged.frequency)), ("true omega", decimal(judged.true_frequency))];
+    // The formula has letters where the equations have.
+    if !(judged.law.is_empty() || report.modes.system.equations.parameters.is_empty()) {
+        let law = in_powers_of(mode.amplitude.symbol().written(), &judged.law);
+        facts.insert(0, ("omega^2 in numbers", law));
+    }
     facts.extend(judged.relative_error.map(|error| ("relative error", percent(error))));
     facts.push((
         "largest deviation",

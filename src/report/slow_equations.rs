@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::driven::values_in_words;
-use super::{Block, Document, Heading, size_in_percent};
+use super::{Block, Document, Heading, in_powers_of, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
 use crate::expr::{Expr, ExprError};
@@ -211,8 +211,23 @@ fn beside_true_motions<'a>(slow: &SlowMotion, judged: &JudgedSlowMotion) -> Vec<
                 "its period",
                 match exchange.parameter {
                     0.0 => format!("{period}, trigonometric"),
-                    m => format!("{period}, a multiple of K(m) at m = {}", decimal(m)),
+                    m => {
+                        format!("{period} = {}*K(m), m = {}", decimal(exchange.factor), decimal(m))
+                    }
                 },
+            ));
+            let squares = slow.amplitudes.iter().zip(&exchange.squares);
+            let squares = squares
+                .filter(|(_, [_, slope])| *slope != 0.0)
+                .map(|(name, square)| format!("{name}^2 = {}", in_powers_of("s", square)));
+            facts.push(("their squares", squares.collect::<Vec<_>>().join(", ")));
+            let [low, high] = exchange.ends.map(decimal);
+            facts.push((
+                "with the variable s",
+                format!(
+                    "s'^2 = {}, from 0 on to and fro between {low} and {high}",
+                    in_powers_of("s", &exchange.rate_squared)
+                ),
             ));
         }
         facts.extend(slope);

@@ -7,6 +7,7 @@
 //! - Two equal cubic oscillators: A. F. Vakakis, R. H. Rand, *Int. J. Non-Linear Mech.* 27 (1992) 861.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use lindstedt::expr::{CompiledList, Expr, parse_expression};
 use lindstedt::method::{Options, solve};
@@ -16,7 +17,7 @@ use lindstedt::multiple_scales::{
 };
 use lindstedt::solution::Method;
 use lindstedt::verify::{JudgedSteadyMotion, judge_slow_motion};
-use lindstedt::{Oscillator, Symbol, Values, Verdict};
+use lindstedt::{Interrupt, Oscillator, Symbol, Values, Verdict};
 use num_complex::Complex;
 
 fn options(order: Option<usize>, resonance: &str) -> MultipleScalesOptions {
@@ -249,6 +250,7 @@ fn the_second_mode_saturates_whatever_the_force() {
             .parse()
             .expect("values"),
         0.01,
+        Interrupt::default(),
     )
     .expect("judged");
     let stable: Vec<_> = judged.steady.iter().filter(|motion| motion.state.is_stable()).collect();
@@ -308,7 +310,7 @@ fn transients_are_followed_at_both_orders() {
     let error = |order: usize| {
         let found = slow(pair, "", Some(order));
         let at = "a1 = 1/40, a2 = 1/200".parse().expect("values");
-        let judged = judge_slow_motion(&found, &at, 0.01).expect("judged");
+        let judged = judge_slow_motion(&found, &at, 0.01, Interrupt::default()).expect("judged");
         judged.transient.expect("a transient").error
     };
     let [first, second] = [1, 2].map(error);
@@ -344,7 +346,9 @@ fn the_deviation_falls_with_the_order() {
         (RING_OF_FIVE, "", 2, "a1 = 1/30, a2 = 1/20, a3 = 1/30, a4 = 1/30, a5 = 1/40", 2.0),
     ] {
         let found = slow(equations, resonance, Some(order));
-        let judged = judge_slow_motion(&found, &at.parse().expect("values"), 0.2).expect("judged");
+        let judged =
+            judge_slow_motion(&found, &at.parse().expect("values"), 0.2, Interrupt::default())
+                .expect("judged");
         let measured = judged.slope.expect(equations);
         assert!((measured - slope).abs() < 0.1, "{equations}, order {order}: {measured}");
         if judged.transient.is_none() {
@@ -439,6 +443,17 @@ fn no_steady_motion_is_passed_over() {
         &[("eps", 0.05)],
     );
     assert!(found.has_families && found.isolated.is_empty(), "{found:?}");
+    // Nor those with a mode at rest.
+    for equations in [
+        "x'' + x + 0.1*x^3 = 0; y'' + 1.05*y + 0.1*y^3 + 0.1*(y - x) = 0",
+        "x'' + x + 0.1*y*z = 0; y'' + 2.25*y + 0.2*x*z = 0; z'' + 6.25*z + 0.3*x*y = 0",
+        "x'' + x + 0.3*x^3 + 0.2*x^2*y = 0; y'' + 9*y + 0.1*x^3 = 0",
+    ] {
+        let (found, _) = states(equations, &[]);
+        let moving =
+            found.isolated.iter().filter(|state| state.amplitudes.iter().any(|a| *a > 0.0));
+        assert!(found.has_families && moving.count() == 0, "{equations}: {found:?}");
+    }
     // The same in other units.
     let at = |scale: f64| {
         let system = format!(
@@ -470,6 +485,32 @@ fn no_steady_motion_is_passed_over() {
     }
 }
 
+/// Rest under a parametric drive is a motion like any other, and so is the one without modes that a drive
+/// far from them leaves.
+#[test]
+fn motions_without_modes_are_compared() {
+    for (equations, resonance, at) in [
+        (
+            "x'' + x'/50 + 2*x - y + x^3/2 + h*x*cos(Omega*t) = 0; y'' + y'/50 + 2*y - x = 0",
+            "Omega = 2*omega1",
+            "h = 1/50, Omega = 11/5",
+        ),
+        (
+            "x'' + x'/50 + x + 3*x*y/10 = F*cos(Omega*t); y'' + y'/50 + 144*y/25 + 3*x^2/10 = 0",
+            "Omega = omega2 - omega1",
+            "F = 1/50, Omega = 7/5",
+        ),
+    ] {
+        let found = slow(equations, resonance, None);
+        let at = at.parse().expect("values");
+        let judged = judge_slow_motion(&found, &at, 0.01, Interrupt::default()).expect(equations);
+        let [only] = judged.steady.as_slice() else { panic!("{equations}: {:?}", judged.steady) };
+        assert!(only.state.amplitudes.iter().all(|a| *a == 0.0) && only.compared, "{only:?}");
+        assert!(only.error.is_some_and(|error| error < 0.01), "{only:?}");
+        assert_eq!((only.truly_stable, judged.verdict), (Some(true), Some(Verdict::Pass)));
+    }
+}
+
 /// Along the slow equations of several resonances, by Runge and Kutta, the constants stay what they are,
 /// the amplitudes go between the ends of the exchange, and they come back after its period.
 #[test]
@@ -485,7 +526,8 @@ fn modes_exchange_their_energy_in_the_period_of_the_closed_form() {
         let invariants = slow.invariants().unwrap_or_else(|| panic!("{equations}: no constants"));
         let values: Values =
             format!("a1 = {}, a2 = {}, phi1 = {}", at[0], at[1], at[2]).parse().expect("values");
-        let judged = judge_slow_motion(&slow, &values, 0.05).expect(equations);
+        let judged =
+            judge_slow_motion(&slow, &values, 0.05, Interrupt::default()).expect(equations);
         let exchange = judged.transient.and_then(|transient| transient.exchange);
         let exchange = exchange.unwrap_or_else(|| panic!("{equations}: no exchange"));
         let numbers = slow.in_numbers(&|_| None).expect("numbers");
@@ -517,6 +559,17 @@ fn modes_exchange_their_energy_in_the_period_of_the_closed_form() {
         for (before, after) in first.iter().zip(of(&state)) {
             assert!((before - after).abs() < 1e-10 * before.abs(), "{equations}: {before} {after}");
         }
+        // The closed form of the period: the integral of ds/sqrt(f) to and fro, by the angle of
+        // s = (a + b)/2 + (a - b)/2 cos, over which the mean is exact.
+        let [b, a] = exchange.ends;
+        let mean: f64 = (0..400)
+            .map(|k| {
+                let s = 0.5 * (a + b) + 0.5 * (a - b) * (PI * (f64::from(k) + 0.5) / 400.0).cos();
+                let f = exchange.rate_squared.iter().rev().fold(0.0, |sum, own| sum * s + own);
+                ((a - s) * (s - b) / f).sqrt() / 400.0
+            })
+            .sum();
+        assert!((2.0 * PI * mean / exchange.period - 1.0).abs() < 1e-6, "{equations}");
         let [low, high] = exchange.amplitudes[0];
         assert!(high - low > 0.01 * high, "{equations}: nothing is exchanged");
         assert!(

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use lindstedt::Values;
 use lindstedt::catalog::{CATALOG, CatalogEntry, find, methods};
 use lindstedt::coupled::CoupledEquations;
 use lindstedt::exact::Polynomial;
@@ -11,6 +10,7 @@ use lindstedt::method::{Options, solve};
 use lindstedt::modes::{FreeSystem, ModeOptions, derive};
 use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::{Verdict, judge, judge_mode, needed_values};
+use lindstedt::{Interrupt, Values};
 use lindstedt::{Oscillator, Solution};
 
 #[test]
@@ -57,7 +57,7 @@ fn modes_of_coupled_entries_are_the_true_ones() {
                 let value = if name.name() == "W" { "3/2" } else { "1/2" };
                 at.insert(*name, value.parse().expect("a number")).expect("a value");
             }
-            let judged = judge_mode(&system, mode, &at, 1e-3)
+            let judged = judge_mode(&system, mode, &at, 1e-3, Interrupt::default())
                 .unwrap_or_else(|error| panic!("{} {}: {error}", entry.name, mode.number));
             let context = format!("{} {}: {judged:?}", entry.name, mode.number);
             assert_eq!(judged.verdict, Verdict::Pass, "{context}");

@@ -12,7 +12,7 @@ use lindstedt::modes::{FreeSystem, ModeOptions, derive};
 use lindstedt::report::ModesReport;
 use lindstedt::solution::{AmplitudeConvention, Method, defined_values};
 use lindstedt::verify::{judge, judge_mode};
-use lindstedt::{Options, Oscillator, Symbol, Values, solve};
+use lindstedt::{Interrupt, Options, Oscillator, Symbol, Values, solve};
 use serde_json::Value;
 
 fn run(arguments: &[&str]) -> Output {
@@ -291,7 +291,8 @@ fn modes() -> Vec<Case> {
                 polynomial.evaluate(value).expect(equations)
             };
             let omega = number(&mode.frequency_squared).sqrt();
-            let judged = judge_mode(&system, mode, &numbers, 0.01).expect(equations);
+            let judged =
+                judge_mode(&system, mode, &numbers, 0.01, Interrupt::default()).expect(equations);
             let by_judge = judged.frequency.expect("a frequency");
             assert!((omega - by_judge).abs() < 1e-14 * omega, "{equations}");
             for (name, series) in system.equations.coordinates.iter().zip(&mode.motion) {

@@ -111,6 +111,10 @@ pub struct ModeVerification {
     pub at: Map<Constant>,
     /// omega by the formula; null if its square is not positive.
     pub omega: Option<f64>,
+    /// The coefficients of omega^2 in powers of the amplitude with numbers for all letters, the
+    /// constant first; left out where the formula is no polynomial of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub law: Vec<f64>,
     /// The coefficients that a balance has at the values; left out for a series.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub coefficients: Map<f64>,
@@ -236,6 +240,7 @@ fn verification(judged: &JudgedMode) -> ModeVerification {
     ModeVerification {
         at: constants(&judged.at),
         omega: finite(judged.frequency),
+        law: judged.law.clone(),
         coefficients: named(judged.coefficients.iter().copied()),
         true_omega: judged.true_frequency,
         relative_error: finite(judged.relative_error),

@@ -166,10 +166,22 @@ pub struct TransientDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "EnergyExchange"))]
 pub struct ExchangeDocument {
-    /// The period, a number times K(m).
+    /// The period, `factor` times K(m).
     pub period: f64,
+    /// The factor of K(m).
+    #[serde(default)]
+    pub factor: f64,
     /// The parameter m of the complete elliptic integral K(m).
     pub parameter: f64,
+    /// The coefficients of f in s'^2 = f(s), the lowest first; s is zero at the start.
+    #[serde(default)]
+    pub rate_squared: Vec<f64>,
+    /// The zeros of f between which s goes to and fro.
+    #[serde(default)]
+    pub ends: [f64; 2],
+    /// The square of each amplitude, linear in s: its value at the start and its slope.
+    #[serde(default)]
+    pub squares: Map<[f64; 2]>,
     /// The least and the greatest amplitude of each mode.
     pub amplitudes: Map<[f64; 2]>,
 }
@@ -298,7 +310,11 @@ fn steady(report: &SlowReport, motion: &JudgedSteadyMotion) -> SlowSteadyDocumen
 fn transient(report: &SlowReport, judged: &JudgedTransient) -> TransientDocument {
     let exchange = judged.exchange.as_ref().map(|exchange| ExchangeDocument {
         period: exchange.period,
+        factor: exchange.factor,
         parameter: exchange.parameter,
+        rate_squared: exchange.rate_squared.clone(),
+        ends: exchange.ends,
+        squares: named(report.slow.amplitudes.iter().zip(exchange.squares.iter().copied())),
         amplitudes: named(report.slow.amplitudes.iter().zip(exchange.amplitudes.iter().copied())),
     });
     TransientDocument { until: judged.until, error: judged.error, exchange }

@@ -221,7 +221,7 @@ pub enum ModelError {
     Restitution(f64),
     /// A restitution without a speed at which it holds.
     #[error(
-        "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
+        "[contact] restitution is that at a speed, and without damping, the pivot at rest, this motion touches no barrier, or starts inside one: give \
          `at_speed`, in m/s beside numbers in SI units and otherwise in rad times omega"
     )]
     NoSpeed,

@@ -169,17 +169,32 @@ impl ModeError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Equations(error) => error.help(),
-            Self::FirstOrder(_) | Self::Gyroscopic(_) => Some(
+            Self::FirstOrder(_) => Some(
                 "`lindstedt response` finds the motions with such terms in numbers; without the term there are modes"
+                    .to_owned(),
+            ),
+            Self::Gyroscopic(_) => Some(
+                "`lindstedt simulate` follows motions with such forces, and with a drive `lindstedt response` has their resonance curves; without the term there are modes"
                     .to_owned(),
             ),
             Self::Damped(_) | Self::Driven(_) => Some(
                 "--method multiple-scales has the slow equations with such terms; without them there are modes".to_owned(),
             ),
+            Self::NotAtRest(_, force) if !force.symbols().is_empty() => {
+                let names: Vec<String> =
+                    force.symbols().iter().map(|name| format!("`{}`", name.written())).collect();
+                Some(format!(
+                    "no derivative of {} occurs: if it is a coordinate, check how it is written; else count each coordinate from the place of rest, x0 + x for x",
+                    names.join(", ")
+                ))
+            }
             Self::NotAtRest(..) => Some(
                 "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
             ),
-            Self::NotTwo(_) | Self::EvenDegree(_) | Self::NotPolynomial(_) | Self::NoClosedForm => Some(
+            Self::EvenDegree(_) => Some(
+                "--order 2 balances several harmonics, by numbers at an amplitude; --method multiple-scales has slow equations; `lindstedt response --vary omega=FROM:TO` finds the modes in numbers".to_owned(),
+            ),
+            Self::NotTwo(_) | Self::NotPolynomial(_) | Self::NoClosedForm => Some(
                 "--order 2 balances several harmonics, by numbers at an amplitude; without --method the modes are series in the amplitude; `lindstedt response --vary omega=FROM:TO` finds them in numbers".to_owned(),
             ),
             Self::Taylor(_) => Some(
@@ -190,7 +205,7 @@ impl ModeError {
                 letters.iter().map(|name| format!("{}=1", name.written())).collect::<Vec<_>>().join(",")
             )),
             Self::EqualFrequencies { .. } => Some(
-                "--method multiple-scales has the slow equations of both modes, --method harmonic-balance similar ones of two masses; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
+                "--method multiple-scales has the slow equations of both modes, --method harmonic-balance similar ones of two masses where every force is of odd degree; `lindstedt response --vary omega=FROM:TO` finds the motions in numbers"
                     .to_owned(),
             ),
             Self::InternalResonance { .. } => Some(
@@ -198,9 +213,9 @@ impl ModeError {
                     .to_owned(),
             ),
             Self::Approximant { .. } => Some("other degrees may have one: --order 1,1".to_owned()),
-            Self::NoStiffness { .. } => Some(
-                "`lindstedt response --vary omega=FROM:TO` finds the motions in numbers".to_owned(),
-            ),
+            Self::NoStiffness { .. } => {
+                Some("`lindstedt simulate` follows the motions from any start".to_owned())
+            }
             _ => None,
         }
     }

@@ -277,6 +277,8 @@ impl NumberModes {
             .find(|(other, root)| *other != index && root.value == *value);
         match equal {
             Some((other, _)) if value.is_positive() => {
+                // One that has fewer shapes than modes is defective.
+                self.mode_of_basis(index)?;
                 let (number, other, square) = (index + 1, other + 1, self.square_in_words(index));
                 Err(ModeError::EqualFrequencies { number, other, square })
             }

@@ -107,6 +107,9 @@ pub enum VerificationError {
         /// The amplitude up to which the motions were followed.
         reached: f64,
     },
+    /// The search was interrupted.
+    #[error("stopped before the true motion was found")]
+    Interrupted,
     /// A balance of harmonics has no motion of a mode at the amplitude.
     #[error(
         "the balance of mode {number} was not solved: the search, in steps of {} from rest on, came to {}, where it turns back or has no motion near", amplitude.written(), decimal(*reached)

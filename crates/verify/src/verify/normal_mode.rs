@@ -16,7 +16,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{Verdict, VerificationError};
 use crate::coupled::Energy;
-use crate::exact::Doubles;
+use crate::exact::{Doubles, Polynomial};
+use crate::interrupt::Interrupt;
 use crate::modes::{BalanceStart, FreeSystem, ModeInNumbers, NearResonance, NonlinearMode};
 use crate::numeric::continuation::in_amplitude;
 use crate::series::FourierSeries;
@@ -38,6 +39,9 @@ pub struct JudgedMode {
     pub tolerance: f64,
     /// omega by the formula; `None` if its square is not positive.
     pub frequency: Option<f64>,
+    /// The coefficients of `omega^2` in powers of the amplitude with numbers for all letters, the constant
+    /// first; none where the formula is no polynomial of it.
+    pub law: Vec<f64>,
     /// The coefficients that a balance of harmonics has at the values; none of a series.
     pub coefficients: Vec<(Symbol, f64)>,
     /// omega of the true motion.
@@ -90,20 +94,23 @@ impl Motion {
     }
 }
 
-/// Judges a mode at values of the amplitude and of all parameters.
+/// Judges a mode at values of the amplitude and of all parameters. Its true motions are followed until
+/// the interrupt is requested.
 ///
 /// # Errors
-/// [`VerificationError`] for missing or unknown values, and where no true motion was found.
+/// [`VerificationError`] for missing or unknown values, where no true motion was found, and where the
+/// search was interrupted.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
+/// use lindstedt::Interrupt;
 /// use lindstedt::modes::{FreeSystem, ModeOptions, derive};
 /// use lindstedt::verify::judge_mode;
 ///
 /// let pair = FreeSystem::parse("x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0")?;
 /// let modes = derive(&pair, &ModeOptions::default())?;
 /// let mode = modes.modes[0].as_ref().expect("no resonance");
-/// let judged = judge_mode(&modes.system, mode, &"a = 1/2".parse()?, 0.01)?;
+/// let judged = judge_mode(&modes.system, mode, &"a = 1/2".parse()?, 0.01, Interrupt::default())?;
 /// assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-4));
 /// assert!(judged.slope.is_some_and(|slope| (slope - 6.0).abs() < 0.1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -113,6 +120,7 @@ pub fn judge_mode(
     mode: &NonlinearMode,
     at: &Values,
     tolerance: f64,
+    interrupt: Interrupt,
 ) -> Result<JudgedMode, VerificationError> {
     let amplitude = mode.amplitude.symbol();
     let numbers = checked(system, amplitude, at)?;
@@ -120,7 +128,10 @@ pub fn judge_mode(
     if size == 0.0 {
         return Err(VerificationError::AtRest);
     }
-    let truth = TrueMode::new(system, mode, &numbers)?;
+    if let Some(divisor) = vanishing_divisor(mode, &numbers) {
+        return Err(VerificationError::VanishingDivisor { number: mode.number, divisor });
+    }
+    let truth = TrueMode::new(system, mode, &numbers, interrupt)?;
     let balanced = balanced_motions(mode, &truth, &numbers)?;
     let formula = formula_at(mode, &truth, &numbers, &balanced)?;
     let motions = truth.followed_to(size, mode.number, amplitude)?;
@@ -175,6 +186,7 @@ pub fn judge_mode(
         balance.coefficients.iter().flatten().copied().zip(harmonics).collect()
     });
     Ok(JudgedMode {
+        law: law(mode, &numbers)?,
         coefficients,
         backbone,
         at: at.clone(),
@@ -188,6 +200,29 @@ pub fn judge_mode(
         paths: [by_formula, whole.path],
         verdict: Verdict::from_passed(relative_error.is_some_and(|error| error.abs() <= tolerance)),
     })
+}
+
+/// The coefficients of `omega^2` in powers of the amplitude.
+fn law(
+    mode: &NonlinearMode,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Vec<f64>, VerificationError> {
+    let amplitude = mode.amplitude.symbol();
+    if mode.balance.is_some() || mode.approximant.is_some() {
+        return Ok(vec![]);
+    }
+    // The value of each term where the amplitude is one is its coefficient.
+    let unit = numbers.iter().map(|(name, value)| (*name, *value)).chain([(amplitude, 1.0)]);
+    let values = symbol_values(mode, &unit.collect())?;
+    let mut coefficients = Vec::new();
+    for (monomial, number) in mode.frequency_squared.terms() {
+        let power = usize::try_from(monomial.exponent(amplitude)).unwrap_or(0);
+        let term = Polynomial::term(monomial.clone(), number.clone());
+        let term = term.evaluate(|name| values.get(&name).copied());
+        coefficients.resize(coefficients.len().max(power + 1), 0.0);
+        coefficients[power] += term.map_err(|name| VerificationError::Missing(vec![name]))?;
+    }
+    Ok(coefficients)
 }
 
 /// The exponent of an error from its values at rising parts of an amplitude: from the smallest part at
@@ -263,6 +298,31 @@ fn symbol_values(
         .collect())
 }
 
+/// The first divisor of the formula that is zero at the values, within rounding; `None` if there is none.
+fn vanishing_divisor(mode: &NonlinearMode, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
+    let rounded = |value: f64| (value, f64::EPSILON * value.abs());
+    let mut known: BTreeMap<Symbol, (f64, f64)> =
+        numbers.iter().map(|(name, value)| (*name, rounded(*value))).collect();
+    known.insert(Symbol::new("pi"), rounded(PI));
+    let harmonics = mode.motion.iter().flat_map(|series| series.harmonics());
+    let coefficients: Vec<Polynomial> = harmonics
+        .flat_map(|(_, cosine, sine)| [cosine, sine])
+        .chain([mode.frequency_squared.clone()])
+        .collect();
+    let divides = |name: Symbol| {
+        let least = coefficients.iter().filter_map(|own| own.exponent_range(name));
+        least.into_iter().any(|(least, _)| least < 0)
+    };
+    for Definition { symbol, meaning } in &mode.definitions {
+        let (value, error) = meaning.evaluate_rounded(&|name| known.get(&name).copied())?;
+        if value.abs() <= error && divides(*symbol) {
+            return Some(*symbol);
+        }
+        known.insert(*symbol, (value, error));
+    }
+    None
+}
+
 /// The motions by a balance of harmonics up to an amplitude; none of a series.
 fn balanced_motions(
     mode: &NonlinearMode,
@@ -318,16 +378,6 @@ fn formula_at(
         series.map(Doubles, |coefficient, _| coefficient.evaluate(value_of).unwrap_or(f64::NAN))
     });
     let motion: Vec<FourierSeries<Doubles>> = motion.collect();
-    let is_number = |series: &FourierSeries<Doubles>| series.evaluate(0.0).is_finite();
-    if !(frequency_squared.is_finite() && motion.iter().all(is_number)) {
-        let zero = mode.definitions.iter().find(|own| values.get(&own.symbol) == Some(&0.0));
-        if let Some(Definition { symbol, .. }) = zero {
-            return Err(VerificationError::VanishingDivisor {
-                number: mode.number,
-                divisor: *symbol,
-            });
-        }
-    }
     Ok(ModeInNumbers { frequency_squared, motion })
 }
 
@@ -341,17 +391,20 @@ pub(super) struct TrueMode {
     linear_frequency: f64,
     along: usize,
     amplitude: AmplitudeConvention,
+    interrupt: Interrupt,
 }
 
 /// The equations with numbers.
 fn solver(
     system: &FreeSystem,
     values: &BTreeMap<Symbol, f64>,
+    interrupt: Interrupt,
 ) -> Result<Solver, VerificationError> {
     let rates = &system.equations.rates;
+    let options = SystemOptions { step_limit: 20_000, interrupt, ..SystemOptions::default() };
     Ok(System::new(&rates.states, Symbol::new("t"), &rates.right, values)
         .map_err(|error| VerificationError::NoSystem(error.to_string()))?
-        .solver(&[], &SystemOptions { step_limit: 20_000, ..SystemOptions::default() }))
+        .solver(&[], &options))
 }
 
 impl TrueMode {
@@ -359,6 +412,7 @@ impl TrueMode {
         system: &FreeSystem,
         mode: &NonlinearMode,
         numbers: &BTreeMap<Symbol, f64>,
+        interrupt: Interrupt,
     ) -> Result<Self, VerificationError> {
         let values = symbol_values(mode, numbers)?;
         let constants = defined_values(&system.constants, &|name| values.get(&name).copied())
@@ -367,20 +421,21 @@ impl TrueMode {
             let constant = constants.iter().find(|(known, _)| *known == name);
             values.get(&name).copied().or_else(|| constant.map(|(_, value)| *value))
         };
-        let number = |polynomial: &crate::exact::Polynomial| {
+        let number = |polynomial: &Polynomial| {
             polynomial.evaluate(value_of).map_err(|name| VerificationError::Missing(vec![name]))
         };
-        let all = |entries: &[crate::exact::Polynomial]| -> Result<Vec<f64>, VerificationError> {
+        let all = |entries: &[Polynomial]| -> Result<Vec<f64>, VerificationError> {
             entries.iter().map(number).collect()
         };
         let (shape, projection) = (all(&mode.linear.shape)?, all(&mode.linear.modal)?);
         Ok(Self {
-            solver: solver(system, &values)?,
+            solver: solver(system, &values, interrupt)?,
             shape,
             projection,
             linear_frequency: number(&mode.linear.square)?.sqrt(),
             along: mode.along,
             amplitude: mode.amplitude,
+            interrupt,
         })
     }
 
@@ -393,12 +448,13 @@ impl TrueMode {
         let values = numbers.iter().map(|(name, value)| (*name, *value));
         let values = values.chain([(Symbol::new("pi"), PI)]).collect();
         Ok(Self {
-            solver: solver(system, &values)?,
+            solver: solver(system, &values, Interrupt::default())?,
             shape: vec![0.0; count],
             projection: vec![0.0; count],
             linear_frequency: f64::NAN,
             along: 0,
             amplitude: AmplitudeConvention::Initial,
+            interrupt: Interrupt::default(),
         })
     }
 
@@ -424,7 +480,14 @@ impl TrueMode {
         };
         let near = |guess: DVector<f64>, part: f64| self.motion_near(guess, part * amplitude);
         in_amplitude(linear, near, |motion| &motion.unknowns).map_err(|reached| {
-            VerificationError::NoMode { number, amplitude: symbol, reached: reached * amplitude }
+            match self.interrupt.is_requested() {
+                true => VerificationError::Interrupted,
+                false => VerificationError::NoMode {
+                    number,
+                    amplitude: symbol,
+                    reached: reached * amplitude,
+                },
+            }
         })
     }
 

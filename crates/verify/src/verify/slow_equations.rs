@@ -87,13 +87,15 @@ pub struct JudgedTransient {
 }
 
 /// Judges slow equations at values of all parameters: steady motions by shooting, and, where values of
-/// the amplitudes are given, the motion from them by integration.
+/// the amplitudes are given, the motion from them by integration. Once the interrupt is requested, no
+/// further steady motions are sought, nor the slope.
 ///
 /// # Errors
 /// [`VerificationError`] for missing or unknown values.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
+/// use lindstedt::Interrupt;
 /// use lindstedt::multiple_scales::{CoupledSystem, MultipleScalesOptions, derive};
 /// use lindstedt::verify::judge_slow_motion;
 ///
@@ -102,7 +104,8 @@ pub struct JudgedTransient {
 /// )?;
 /// let resonance = Some("omega2 = 2*omega1, Omega = omega2".to_owned());
 /// let slow = derive(&system, &MultipleScalesOptions { resonance, ..Default::default() })?;
-/// let judged = judge_slow_motion(&slow, &"F = 1/125, Omega = 2".parse()?, 0.02)?;
+/// let at = "F = 1/125, Omega = 2".parse()?;
+/// let judged = judge_slow_motion(&slow, &at, 0.02, Interrupt::default())?;
 /// let stable: Vec<_> = judged.steady.iter().filter(|motion| motion.state.is_stable()).collect();
 /// assert!((stable[0].state.amplitudes[1] - 0.1).abs() < 1e-12, "saturation");
 /// assert!(stable[0].error.is_some_and(|error| error < 0.02));
@@ -112,8 +115,9 @@ pub fn judge_slow_motion(
     slow: &SlowMotion,
     at: &Values,
     tolerance: f64,
+    interrupt: Interrupt,
 ) -> Result<JudgedSlowMotion, VerificationError> {
-    let truth = TrueMotion::new(slow, at)?;
+    let truth = TrueMotion::new(slow, at, interrupt)?;
     let mut polar = slow.amplitudes.iter().chain(&slow.phases);
     let started = polar.any(|name| truth.numbers.contains_key(name));
     let transient = if started { Some(truth.transient(None)?) } else { None };
@@ -121,7 +125,7 @@ pub fn judge_slow_motion(
     let steady = match started {
         true => vec![],
         false => {
-            let states = truth.slow_numbers.steady_states(Interrupt::default());
+            let states = truth.slow_numbers.steady_states(interrupt);
             has_families = states.has_families;
             states.isolated.into_iter().map(|state| truth.judged(state)).collect()
         }
@@ -136,14 +140,14 @@ pub fn judge_slow_motion(
     let slope = match &transient {
         Some(transient) => slope(slow, transient.error, |smaller, halvings| {
             let longer = 2.0_f64.powi(halvings * i32::try_from(slow.small_order).unwrap_or(1));
-            let truth = TrueMotion::new(smaller, at).ok()?;
+            let truth = TrueMotion::new(smaller, at, interrupt).ok()?;
             Some(truth.transient(Some(transient.until * longer)).ok()?.error)
         }),
         None => {
             let stable = |motion: &&JudgedSteadyMotion| motion.state.is_stable();
             steady.iter().find(stable).and_then(|motion| {
                 slope(slow, motion.error?, |smaller, _| {
-                    let truth = TrueMotion::new(smaller, at).ok()?;
+                    let truth = TrueMotion::new(smaller, at, interrupt).ok()?;
                     truth.judged(truth.nearest(&motion.state)?).error
                 })
             })
@@ -176,7 +180,10 @@ fn slope(
 struct TrueMotion<'a> {
     slow: &'a SlowMotion,
     numbers: BTreeMap<Symbol, f64>,
+    /// The values of the parameters and of what the formulas name.
+    named: BTreeMap<Symbol, f64>,
     slow_numbers: SlowNumbers,
+    interrupt: Interrupt,
     /// The equations alone, and with their variations.
     solver: Solver,
     varied: Solver,
@@ -187,11 +194,14 @@ struct TrueMotion<'a> {
     rates: CompiledList,
     /// The reference frequency of each mode.
     references: Vec<f64>,
-    base: Option<f64>,
 }
 
 impl<'a> TrueMotion<'a> {
-    fn new(slow: &'a SlowMotion, at: &Values) -> Result<Self, VerificationError> {
+    fn new(
+        slow: &'a SlowMotion,
+        at: &Values,
+        interrupt: Interrupt,
+    ) -> Result<Self, VerificationError> {
         let equations = &slow.system.equations;
         let mut known = equations.parameters.clone();
         known.extend(slow.amplitudes.iter().chain(&slow.phases));
@@ -222,7 +232,7 @@ impl<'a> TrueMotion<'a> {
         let t = Symbol::new("t");
         let failed = |error: &dyn std::fmt::Display| VerificationError::NoSystem(error.to_string());
         let rates = &equations.rates;
-        let options = SystemOptions { step_limit: 200_000, ..SystemOptions::default() };
+        let options = SystemOptions { step_limit: 200_000, interrupt, ..SystemOptions::default() };
         let solver = System::new(&rates.states, t, &rates.right, &named)
             .map_err(|error| failed(&error))?
             .solver(&[], &options);
@@ -233,8 +243,6 @@ impl<'a> TrueMotion<'a> {
             .map_err(|error| failed(&error))?
             .solver(&[], &options);
         let motion = motion_and_velocity(slow, &named).map_err(|error| failed(&error))?;
-        let base = slow.base.as_ref().map(|base| base.evaluate(&named)).transpose();
-        let base = base.map_err(|error| failed(&error))?;
         let references = slow.references.iter().map(|nu| nu.evaluate(&named).unwrap_or(f64::NAN));
         let references = references.collect();
         let right: Vec<Expr> = rates
@@ -244,7 +252,18 @@ impl<'a> TrueMotion<'a> {
             .collect::<Result<_, _>>()
             .map_err(|error| failed(&error))?;
         let rates = CompiledList::new(&right, &rates.states).map_err(|error| failed(&error))?;
-        Ok(Self { slow, numbers, slow_numbers, solver, varied, motion, rates, references, base })
+        Ok(Self {
+            slow,
+            numbers,
+            slow_numbers,
+            solver,
+            varied,
+            motion,
+            rates,
+            references,
+            named,
+            interrupt,
+        })
     }
 
     /// Coordinates, then velocities, at a time.
@@ -268,7 +287,9 @@ impl<'a> TrueMotion<'a> {
 
     /// A steady motion beside the true one, which is sought from its start.
     fn judged(&self, state: SlowSteadyState) -> JudgedSteadyMotion {
-        let driven = self.base.filter(|_| self.slow.is_periodic(&state)).map(f64::abs);
+        let driven = self.slow.driven_frequency(&state);
+        let driven =
+            driven.and_then(|frequency| frequency.evaluate(&self.named).ok()).map(f64::abs);
         let own = if driven.is_none() { self.own_frequency(&state) } else { None };
         let Some(frequency) = driven.or(own) else {
             return JudgedSteadyMotion {
@@ -311,7 +332,7 @@ impl<'a> TrueMotion<'a> {
         const OTHER: f64 = 0.2;
         const STARTS: usize = 100;
         let known = std::slice::from_ref(other);
-        let found = self.slow_numbers.steady_states_near(known, STARTS, Interrupt::default());
+        let found = self.slow_numbers.steady_states_near(known, STARTS, self.interrupt);
         let apart = |state: &SlowSteadyState| {
             let pairs = state.amplitudes.iter().zip(&other.amplitudes);
             pairs.map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
@@ -537,7 +558,7 @@ fn multipliers(map: &DMatrix<f64>) -> Option<DVector<Complex<f64>>> {
     Some(Schur::try_new(map.clone(), f64::EPSILON, 10_000)?.complex_eigenvalues())
 }
 
-/// The largest deviation over the largest displacement; `None` where the truth stands still.
+/// The largest deviation over the largest displacement; `None` where the truth alone stands still.
 fn deviation(formula: &[Vec<f64>], truth: &[Vec<f64>]) -> Option<f64> {
     let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
     for (formula, truth) in formula.iter().zip(truth) {
@@ -546,7 +567,10 @@ fn deviation(formula: &[Vec<f64>], truth: &[Vec<f64>]) -> Option<f64> {
             apart = apart.max((formula - truth).abs());
         }
     }
-    (largest > 0.0).then(|| apart / largest).filter(|error| error.is_finite())
+    match (largest > 0.0, apart > 0.0) {
+        (false, false) => Some(0.0),
+        _ => Some(apart / largest).filter(|error| error.is_finite()),
+    }
 }
 
 /// The coordinates and their velocities as functions of the time, of each amplitude and phase, and of

@@ -20,6 +20,7 @@ use super::{ModeAmplitude, ModeCertificate, last_harmonic_of_largest_block};
 use crate::exact::ball::Balls;
 use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
+use crate::interrupt::Interrupt;
 use crate::method::numbers::NoNumbers;
 use crate::modes::{FreeSystem, NonlinearMode};
 use crate::numeric::harmonics::Transform;
@@ -63,7 +64,7 @@ fn certified_mode(
     /// The judge's verdict is not used.
     const ANY_TOLERANCE: f64 = 1.0;
     let _letters = system.letters.in_force();
-    let judged = judge_mode(system, mode, at, ANY_TOLERANCE)?;
+    let judged = judge_mode(system, mode, at, ANY_TOLERANCE, Interrupt::default())?;
     let symbol = mode.amplitude.symbol();
     let (amplitude, values) = at.split(&[symbol]);
     let given = amplitude.into_values().next().unwrap_or_else(Expr::zero);

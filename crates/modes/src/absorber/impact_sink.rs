@@ -114,7 +114,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
             (of("r"), "coefficient of restitution"),
             (of("C"), "amplitude of the main mass"),
             (of("Z"), "amplitude of the ball, which flies to and fro at the speed 2*Z/pi"),
-            (of("Z_0"), "its amplitude at t = 0"),
+            (of("Z0"), "its amplitude at t = 0"),
             (of("mu"), "mass of the ball over that of the main mass"),
         ],
         definitions: vec![Definition { symbol: of("s"), meaning: loss.to_expr(of("r"))? }],
@@ -137,7 +137,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
             AbsorberRelation {
                 left: expr("t"),
                 right: time,
-                words: "decay along them, by the energy that impacts take, to first order in mu",
+                words: "decay along them, by the energy that impacts take",
             },
         ],
         designs: vec![
@@ -160,7 +160,7 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                 refined_by: None,
             },
         ],
-        validity: "a light ball, whose impacts take little from the main mass in a period; an impact takes no time; where r is below 0.09 or so, the ball \
+        validity: "a light ball, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; where r is below 0.09 or so, the ball \
                    hits the same wall twice before C_max is reached",
     })
 }
@@ -172,7 +172,7 @@ fn times_pi_parts(first: &Polynomial, second: &Polynomial) -> Result<[Expr; 2], 
     Ok([Expr::from(&constant), Expr::from(2) * Expr::from(&slope)])
 }
 
-/// The time in which the amplitude of the ball falls from `Z_0` to Z: the integral of
+/// The time in which the amplitude of the ball falls from `Z0` to Z: the integral of
 /// `-(p + q Z)/(rate of C^2) dZ`, where the rate is a number times `Z^2`.
 fn decay_time([p, q]: &[Expr; 2], loss: &RationalFunction) -> Result<Expr, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
@@ -188,7 +188,7 @@ fn decay_time([p, q]: &[Expr; 2], loss: &RationalFunction) -> Result<Expr, Absor
     // v^2 = 4 Z^2/pi^2, and an impact every pi.
     let mass = Expr::divide(&(Expr::one() + expr("mu")), &expr("mu"))?;
     let scale = Expr::divide(&Expr::pi().integer_power(3)?, &(Expr::from(4) * number * expr("s")))?;
-    let [before, now] = [expr("Z_0"), expr("Z")];
+    let [before, now] = [expr("Z0"), expr("Z")];
     let fallen = Expr::function(Function::Log, vec![Expr::divide(&before, &now)?])?;
     let inverse = Expr::divide(&Expr::one(), &now)? - Expr::divide(&Expr::one(), &before)?;
     Ok(mass * scale * (q * &fallen + p * &inverse))

@@ -296,7 +296,7 @@ fn decay(
     let pair = slide.windows(2).find(|pair| pair[0].1.1 >= last && pair[1].1.1 < last)?;
     let [(before, (_, high)), (after, (_, low))] = [pair[0], pair[1]];
     let truth = before + (after - before) * (high - last) / (high - low);
-    let mut numbers = at.with(Symbol::new("Z_0"), first);
+    let mut numbers = at.with(Symbol::new("Z0"), first);
     numbers.insert(Symbol::new("Z"), last);
     let formula = laws.relation_value(&Expr::symbol("t"), numbers)?;
     Some(AbsorberDecay { amplitudes: [first, last], formula, truth })

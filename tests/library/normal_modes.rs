@@ -190,7 +190,7 @@ fn random_systems_err_as_their_order_promises() {
         (state >> 20) % bound
     };
     let mut judged_modes = 0;
-    for _ in 0..cases.unwrap_or(12) {
+    for _ in 0..cases.unwrap_or(40) {
         let count = 2 + below(2) as usize;
         let names = &["x", "y", "z"][..count];
         let lower: Vec<Vec<u64>> = (0..count).map(|i| (0..i).map(|_| below(3)).collect()).collect();

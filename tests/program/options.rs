@@ -98,6 +98,30 @@ fn a_mode_is_chosen_by_its_number() {
     assert!(String::from_utf8_lossy(&one.stderr).contains("one coordinate has one mode"));
 }
 
+/// Values that a verdict lacks are named beside the formulas; with all of them the law stands in numbers.
+#[test]
+fn modes_are_derived_without_the_values_of_a_verdict() {
+    let three = "x'' + k*(2*x - y) + b*x^3 = 0; y'' + k*(2*y - x - z) = 0; z'' + k*(2*z - y) = 0";
+    let message = |arguments: &[&str]| {
+        let output = run(&[&["derive"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}");
+        [output.stderr, output.stdout].map(|text| String::from_utf8(text).expect("text"))
+    };
+    let [note, answer] = message(&[three, "--order", "2", "--at", "k=1"]);
+    assert_eq!(note, "note: not judged, values are needed for: `b`, `a`, the amplitude\n");
+    assert!(answer.contains("b*a^2") && !answer.contains("verdict"), "{answer}");
+    let [note, answer] = message(&[three, "--order", "2", "--at", "k=1,b=2,a=0.1"]);
+    assert!(note.is_empty() && answer.contains("omega^2 in numbers"), "{note}{answer}");
+    // A mass that cancels may have a value all the same.
+    let folder = folder("cancelled");
+    let file = folder.join("pendulum.toml");
+    let mechanism = "[lagrangian]\ncoordinates = [\"u\"]\nkinetic = \"m*R^2*u'^2/2\"\npotential = \"-m*g*R*cos(u)\"\n";
+    std::fs::write(&file, mechanism).expect("a file");
+    let [_, answer] = message(&[text(&file), "--order", "2", "--at", "m=1,R=1,g=10,A=0.1"]);
+    assert!(answer.contains("verdict"), "{answer}");
+    std::fs::remove_dir_all(folder).expect("the folder is removed");
+}
+
 #[test]
 fn the_result_goes_to_the_file_of_output_alone() {
     let folder = folder("output");

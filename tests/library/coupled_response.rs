@@ -577,3 +577,45 @@ fn bifurcations_of_one_coordinate_are_sub_or_supercritical() {
     let found = respond(&question(text, "F", [0.1, 2.0], "")).expect(text);
     assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [SUPER]);
 }
+
+/// Forces with corners that the motion crosses: the map beside it is smooth, and its cubic term tells that the
+/// drift of a self-excited oscillator begins at small motions about the locked one. Integrated here, the
+/// square of their size grows with the distance from the point.
+#[test]
+fn a_torus_across_corners_is_supercritical() {
+    let text = "x'' - (1 - abs(x))*x'/5 + x = F*cos(6*t/5)";
+    let found = answer(text, "F", [0.1, 2.0], "");
+    let points = places(&found, BifurcationKind::NeimarkSacker);
+    assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [SUPER], "{points:?}");
+    let spread = |force: f64| {
+        let rates = |t: f64, [x, v]: &[f64; 2], out: &mut [f64; 2]| {
+            *out = [*v, force * (1.2 * t).cos() + (1.0 - x.abs()) * v / 5.0 - x];
+        };
+        let period = std::f64::consts::TAU / 1.2;
+        let mut state = [0.5, 0.0];
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for count in 0..3000 {
+            let options = IntegrationOptions::with_tolerance(1e-9);
+            let begin = Point { t: 0.0, y: state };
+            let path = integrate_first_order(rates, begin, period, &[], &options);
+            state = path.expect("a path").end().y;
+            if count >= 2600 {
+                bounds[0] = [0, 1].map(|i| bounds[0][i].min(state[i]));
+                bounds[1] = [0, 1].map(|i| bounds[1][i].max(state[i]));
+            }
+        }
+        (bounds[1][0] - bounds[0][0]).max(bounds[1][1] - bounds[0][1])
+    };
+    let [beyond, near, far] = [0.01, -0.01, -0.02].map(|apart| spread(points[0] + apart));
+    assert!(beyond < 1e-4 && (1.25..1.6).contains(&(far / near)), "{beyond} {near} {far}");
+}
+
+/// A motion that stands on a corner of the force has no cubic term, and nothing is said: the size of the
+/// torus grows with the distance from the point here, and not with its root.
+#[test]
+fn nothing_is_said_of_a_torus_on_a_corner() {
+    let text = "x'' + x'/5 + x = cos(1.3*t) + x*y/10; y'' - (mu - abs(y))*y' + y = x*y/10";
+    let found = answer(text, "mu", [-0.1, 0.1], "");
+    near(&places(&found, BifurcationKind::NeimarkSacker), &[0.0], 1e-4);
+    assert_eq!(criticalities(&found, BifurcationKind::NeimarkSacker), [None]);
+}

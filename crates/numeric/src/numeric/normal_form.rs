@@ -30,7 +30,8 @@ pub type LocalMap<'a> = dyn Fn(&DVector<f64>) -> Option<DVector<f64>> + 'a;
 
 /// The cubic term of a map, with this derivative at its fixed point, at the pair of multipliers near
 /// this one. The coordinates are to be of the size one where the map is no longer linear. `None` if no
-/// two step sizes give the same coefficient.
+/// `agreeing` consecutive step sizes, two at least, give the same coefficient, as where the map is not smooth:
+/// a term `abs(z)^p` of p < 3 in it has differences that grow without bound.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -43,7 +44,7 @@ pub type LocalMap<'a> = dyn Fn(&DVector<f64>) -> Option<DVector<f64>> + 'a;
 /// let (sine, cosine) = 1.0_f64.sin_cos();
 /// let turn = DMatrix::from_row_slice(2, 2, &[cosine, -sine, sine, cosine]);
 /// let map = |z: &DVector<f64>| Some(&turn * z * (1.0 - 0.25 * z.norm_squared()));
-/// let Some(CubicTerm::Coefficient(found)) = cubic_term(&map, &turn, Complex::from_polar(1.0, 1.0)) else {
+/// let Some(CubicTerm::Coefficient(found)) = cubic_term(&map, &turn, Complex::from_polar(1.0, 1.0), 2) else {
 ///     return Err("none");
 /// };
 /// assert!((found + 0.5).abs() < 1e-6);
@@ -53,6 +54,7 @@ pub fn cubic_term(
     map: &LocalMap,
     derivative: &DMatrix<f64>,
     multiplier: Complex<f64>,
+    agreeing: usize,
 ) -> Option<CubicTerm> {
     /// Distance from one of a power of the multiplier, below which it counts as a root of one.
     const RESONANT: f64 = 0.01;
@@ -68,12 +70,14 @@ pub fn cubic_term(
     }
     let vectors = Eigenvectors::new(derivative, turn)?;
     let centre = map(&DVector::zeros(derivative.nrows()))?;
-    let mut before = f64::NAN;
+    let (mut before, mut alike) = (f64::NAN, 1);
     for halving in 0..=HALVINGS {
         let step = FIRST_STEP * 0.5_f64.powi(halving);
         let differences = Differences { map, step, centre: centre.clone() };
         let now = coefficient(&differences, derivative, &vectors, turn)?;
-        if (now - before).abs() < SAME * now.abs().min(before.abs()) {
+        let same = (now - before).abs() < SAME * now.abs().min(before.abs());
+        alike = if same { alike + 1 } else { 1 };
+        if alike >= agreeing.max(2) {
             return Some(CubicTerm::Coefficient(now));
         }
         before = now;
@@ -227,6 +231,29 @@ mod tests {
 
     /// The map `w -> e^(i theta) w + g20 w^2/2 + g11 w w^* + g02 w^*^2/2 + g21 w^2 w^*/2 + k v w`, `v -> m v + l w w^*` has
     /// d by hand (Kuznetsov, equation 4.26; v = l w w^*/(1 - m) on the centre manifold).
+    /// A map with a corner at its fixed point has no cubic term, one with a corner beside it has that of
+    /// its side, and one with half of a cubic term on one side has, on average, half of it.
+    #[test]
+    fn a_corner_at_the_fixed_point_has_no_cubic_term() {
+        let (sine, cosine) = 1.0_f64.sin_cos();
+        let turn = DMatrix::from_row_slice(2, 2, &[cosine, -sine, sine, cosine]);
+        let multiplier = Complex::from_polar(1.0, 1.0);
+        for (power, corner, expected) in
+            [(1.0, 0.0, None), (1.5, 0.0, None), (2.0, 0.0, Some(-0.65)), (1.0, 0.3, Some(-0.5))]
+        {
+            let map = |z: &DVector<f64>| {
+                let beyond = (z[0] - corner).max(0.0).powf(power);
+                Some(&turn * z * (1.0 - 0.25 * z.norm_squared() - 0.3 * beyond))
+            };
+            let found = cubic_term(&map, &turn, multiplier, 3);
+            assert_eq!(found.is_some(), expected.is_some(), "{power} {corner} {found:?}");
+            if let (Some(CubicTerm::Coefficient(found)), Some(expected)) = (found, expected) {
+                let expected: f64 = expected;
+                assert!((found - expected).abs() < 1e-3, "{found} {expected}");
+            }
+        }
+    }
+
     #[test]
     fn quadratic_terms_and_a_decaying_direction_count() {
         let (theta, m, l) = (0.7_f64, -0.4, 0.8);
@@ -256,11 +283,11 @@ mod tests {
         let (sine, cosine) = theta.sin_cos();
         let entries = [cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, m];
         let derivative = DMatrix::from_row_slice(3, 3, &entries);
-        let found = cubic_term(&map, &derivative, turn);
+        let found = cubic_term(&map, &derivative, turn, 2);
         // An eigenvector of length one: w is the square root of two times its coordinate.
         let Some(CubicTerm::Coefficient(found)) = found else { panic!("{found:?}") };
         assert!((found - 2.0 * by_hand).abs() < 1e-4, "{found} {by_hand}");
         let third = Complex::from_polar(1.0, std::f64::consts::TAU / 3.0);
-        assert_eq!(cubic_term(&map, &derivative, third), Some(CubicTerm::StrongResonance));
+        assert_eq!(cubic_term(&map, &derivative, third, 2), Some(CubicTerm::StrongResonance));
     }
 }

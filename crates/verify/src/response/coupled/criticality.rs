@@ -121,7 +121,13 @@ impl CoupledProblem<'_> {
             // The parameter goes with the square of the distance from the bifurcation.
             BifurcationKind::PeriodDoubling => {
                 let [near, far] = APART.map(|apart| self.doubled(at, orbits, scale, apart));
-                (far?.parameter() - near?.parameter()).signum()
+                let [near, far] = [near?.parameter(), far?.parameter()];
+                // Across a corner the motion at the larger distance may be one of another law.
+                let has_corners = !self.smooth || self.in_time.jumps();
+                if has_corners && (near - here) * (far - near) < 0.0 {
+                    return None;
+                }
+                (far - near).signum()
             }
             _ => return None,
         };
@@ -172,9 +178,13 @@ impl CoupledProblem<'_> {
 
     /// The criticality of a Neimark-Sacker point, by the cubic normal form of the map.
     fn torus(&self, at: &Orbit, scale: &[f64]) -> Option<Criticality> {
-        if !self.smooth || self.undamped {
+        /// Numbers of step sizes that must give the same coefficient: more where the map has corners, which
+        /// it is smooth beside as long as the orbit crosses those of the forces.
+        const AGREEING: [usize; 2] = [2, 3];
+        if self.undamped {
             return None;
         }
+        let agreeing = AGREEING[usize::from(!self.smooth || self.in_time.jumps())];
         let n = self.states.len();
         let multipliers = self.multipliers(at)?;
         let pairs = multipliers.into_iter().filter(|value| value.im > 0.0);
@@ -185,7 +195,7 @@ impl CoupledProblem<'_> {
         let scaled = DMatrix::from_fn(n, n, |i, j| at.kept.monodromy[(i, j)] * sizes[j] / sizes[i]);
         let derivative = section.basis.transpose() * scaled * &section.basis;
         let map = |place: &DVector<f64>| section.image(place);
-        Some(match cubic_term(&map, &derivative, multiplier)? {
+        Some(match cubic_term(&map, &derivative, multiplier, agreeing)? {
             CubicTerm::StrongResonance => Criticality::StronglyResonant,
             CubicTerm::Coefficient(cubic) if cubic < 0.0 => Criticality::Supercritical,
             CubicTerm::Coefficient(_) => Criticality::Subcritical,

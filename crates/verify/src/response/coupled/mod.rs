@@ -92,10 +92,6 @@ pub(super) fn with_criticality(
     equations: &CoupledEquations,
 ) -> ResponseDiagram {
     let Ok(problem) = CoupledProblem::new(question, equations) else { return response };
-    // Nothing is said of a force that jumps.
-    if problem.in_time.jumps() {
-        return response;
-    }
     let scale = problem.scale_of(&response);
     for index in 0..response.bifurcations.len() {
         if question.interrupt.is_requested() {

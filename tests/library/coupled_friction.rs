@@ -327,3 +327,46 @@ fn a_drive_that_friction_bears_moves_nothing() {
     let found = respond(&question(equation, "Omega", [0.9, 1.1]));
     assert!(matches!(found, Err(ResponseError::NothingMoves { .. })), "{found:?}");
 }
+
+/// A spring of stiffness k in series with dry friction R beside another spring (the element of G. M. Jenkins,
+/// *Proc. Phys. Soc.* 79 (1962) 981): the slider z runs at a speed that is larger than that of the mass where
+/// the spring bears more than R, so that it slides on `k (x - z) = R`. In a period the drive gives what the
+/// damping takes and the loop of force and displacement encloses, 4 R (A - R/k). Integrated here with the
+/// force that the slider lets through, in small equal steps, the motion has the same size.
+#[test]
+fn an_elastic_slider_takes_the_area_of_its_loop() {
+    let (stiffness, bound, drive, damping) = (0.5, 0.2, 0.3, 0.02);
+    let text = "x'' + x'/50 + x + (x - z)/2 = 0.3*cos(w*t); z' = 5*(sgn((x - z)/2 - 0.2) + sgn((x - z)/2 + 0.2))";
+    let found = answer(text, "w", [1.05, 1.15]);
+    assert_eq!(found.verdict, Verdict::Pass, "{:?}", found.error);
+    assert!(found.branches.len() == 1 && points(&found).all(|point| point.stable == Some(true)));
+    for point in points(&found) {
+        let x = &point.coordinates[0];
+        let given = std::f64::consts::PI * drive * x.amplitude * x.phase.sin();
+        let waves = x.harmonics.iter().enumerate();
+        let squares = waves.map(|(k, [cosine, sine])| {
+            let k = k as f64;
+            k * k * (cosine * cosine + sine * sine)
+        });
+        let damped = damping * std::f64::consts::PI * point.frequency * squares.sum::<f64>();
+        let loop_area = 4.0 * bound * (x.peak - bound / stiffness);
+        assert!((given / (damped + loop_area) - 1.0).abs() < 1e-4, "{given} {damped} {loop_area}");
+    }
+    let w = 1.05;
+    let (mut x, mut v, mut force, mut peak) = (0.0, 0.0, 0.0_f64, 0.0_f64);
+    const STEPS: usize = 20_000;
+    let h = std::f64::consts::TAU / w / STEPS as f64;
+    for step in 0..120 * STEPS {
+        // Velocity in the middle of a step, and the force by its increment, cut off at its bounds.
+        let t = h * (step % STEPS) as f64;
+        v += h * (drive * (w * t).cos() - damping * v - x - force);
+        let moved = h * v;
+        x += moved;
+        force = (force + stiffness * moved).clamp(-bound, bound);
+        if step >= 118 * STEPS {
+            peak = peak.max(x.abs());
+        }
+    }
+    let own = at(&found, w).peak;
+    assert!((own / peak - 1.0).abs() < 1e-3, "{own} {peak}");
+}

@@ -10,7 +10,8 @@
 //! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988,
 //! chapter 2; several at a time: F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral
 //! Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity is
-//! determined by this equation and is not integrated.
+//! determined by this equation and is not integrated. A coordinate of an equation of first order, such as
+//! the slider of a spring in series with dry friction, counts as a velocity here.
 //!
 //! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which
 //! direction u_i leaves its zero. Therefore only crossings in one direction end a segment, and each
@@ -272,11 +273,12 @@ fn numbers_at(equations: &Ready, time: f64, state: &[f64]) -> BTreeMap<Symbol, f
     numbers
 }
 
-/// The velocities among the states: those whose name is that of another state with a prime.
+/// The states of which a jump of the rates can hold one: the velocities, whose name is that of another
+/// state with a prime, and the coordinates of equations of first order, which have no velocity.
 fn velocities(equations: &Ready) -> impl Iterator<Item = Symbol> {
     let states = &equations.states;
-    let is_velocity = move |name: &&Symbol| states.iter().any(|state| state.derivative() == **name);
-    states.iter().filter(is_velocity).copied()
+    let is_position = move |name: &&Symbol| states.contains(&name.derivative());
+    states.iter().filter(move |name| !is_position(name)).copied()
 }
 
 /// A velocity that an expression is linear in, the one that it depends on most here, and its

@@ -95,9 +95,17 @@ impl PreparedRequest<'_> {
         /// The largest multiplier of a motion that one shot tells: the last digit of its start times
         /// this is the error at the end of the period, and times this once more that of det M.
         const ONE_SHOT: f64 = 1e4;
+        // Of a motion over several periods of the drive the first harmonic may vanish, as that of every other
+        // motion with the period of the drive does: the peak tells them apart.
+        let own_peak = {
+            let positions: Vec<f64> =
+                balance.motion(&node.coefficients).iter().map(|[x, ..]| *x).collect();
+            half_of_peak_to_peak(&positions)
+        };
         let is_beside = |truth: &TrueMotion| {
             let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
-            (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size
+            let apart = (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine);
+            apart <= OTHER * size && (truth.peak - own_peak).abs() <= OTHER * size
         };
         let truth = truth.filter(is_beside);
         // Across a jump only the true motion has multipliers.

@@ -39,20 +39,37 @@ struct Part {
 /// The true motion near one that is given by position and velocity at a phase, and of about this
 /// size, if disturbances of it grow by this factor in a period; `None` if Newton's method does not
 /// converge, or moves far away, or the equation has no Taylor series.
+///
+/// Where Newton's method does not converge with as few parts as the growth asks for, the motion that is
+/// given is far from the true one, as a sum of too few harmonics is: over shorter parts the way is more
+/// nearly linear in the starts, and they may move farther.
 pub(super) fn motion_in_parts(
     driven: &Driven,
-    (parameter, size): (f64, f64),
+    at: (f64, f64),
     growth: f64,
     motion: impl Fn(f64) -> [f64; 2],
 ) -> Option<TrueMotion> {
-    const MOST: usize = 12;
-    /// The longest step, in units of the size: a longer one is shortened.
-    const LONGEST: f64 = 0.5;
+    /// The farthest that a start may move where the parts are short, in units of the size.
+    const FARTHER: f64 = 1.0;
     if !(growth > GROWTH && growth.is_finite()) {
         return None;
     }
     let wanted = (growth.ln() / GROWTH.ln()).ceil() as usize;
     let count = wanted.next_power_of_two().min(MOST_PARTS);
+    motion_in(driven, at, (count, FAR), &motion)
+        .or_else(|| motion_in(driven, at, (MOST_PARTS, FARTHER), &motion))
+}
+
+/// The true motion by so many parts, whose starts move by this much at most, in units of the size.
+fn motion_in(
+    driven: &Driven,
+    (parameter, size): (f64, f64),
+    (count, farthest): (usize, f64),
+    motion: &impl Fn(f64) -> [f64; 2],
+) -> Option<TrueMotion> {
+    const MOST: usize = 20;
+    /// The longest step, in units of the size: a longer one is shortened.
+    const LONGEST: f64 = 0.5;
     let omega = driven.frequency_at(parameter);
     let guess: Vec<[f64; 2]> = (0..count).map(|i| motion(TAU * i as f64 / count as f64)).collect();
     let sizes = [size, size * omega];
@@ -83,7 +100,7 @@ pub(super) fn motion_in_parts(
             for row in 0..2 {
                 start[row] -= shorter * step[2 * i + row] * sizes[row];
                 let apart = (start[row] - guess[i][row]).abs();
-                if apart.is_nan() || apart > FAR * sizes[row] {
+                if apart.is_nan() || apart > farthest * sizes[row] {
                     return None;
                 }
             }

@@ -594,6 +594,47 @@ fn by_slow_equations(response: &ResponseDiagram, slow: &SlowResponse) -> Vec<Blo
     blocks
 }
 
+/// The growth of disturbances of the motions that are not judged, where that is why.
+fn growing(response: &ResponseDiagram) -> Option<Block<'static>> {
+    /// A growth in a period at which a simulation leaves the motion at once.
+    const LARGE: f64 = 1e4;
+    let points = response.branches.iter().flat_map(|branch| &branch.points);
+    let unjudged = points.filter(|point| point.error.is_none());
+    let growths = unjudged.filter_map(|point| Some(point.multipliers?[0].norm()));
+    let growths: Vec<f64> = growths.filter(|growth| *growth >= LARGE).collect();
+    if growths.is_empty() {
+        return None;
+    }
+    let [low, high] = [f64::min as fn(f64, f64) -> f64, f64::max]
+        .map(|choose| growths.iter().copied().reduce(choose).unwrap_or(f64::NAN));
+    Some(Block::Sentence(format!(
+        "Disturbances of {} of the motions that are not judged grow by a factor of {} to {} in a period, as beside a hilltop on which the \
+         motion stays for long: they are unstable, nothing stays near them, and {} harmonics may not say where they are. A shorter \
+         range, or fewer periods of the drive, has fewer of them.",
+        growths.len(),
+        significant(low, 2),
+        significant(high, 2),
+        response.harmonics
+    )))
+}
+
+/// The stretches in which the search had too few starts.
+fn sparse(response: &ResponseDiagram) -> Option<Block<'static>> {
+    if response.sparse.is_empty() {
+        return None;
+    }
+    let name = response.question.parameter.name();
+    let stretch = |[low, high]: &[f64; 2]| {
+        format!("from {name} = {} to {}", significant(*low, 4), significant(*high, 4))
+    };
+    let stretches: Vec<String> = response.sparse.iter().map(stretch).collect();
+    Some(Block::Sentence(format!(
+        "This is not the whole picture {}: from one start of the search to the next the motion gains more than one swing in a period of the \
+         drive there, and the branches of a resonance between two starts may be missing. Shorter ranges have closer starts.",
+        stretches.join(" and ")
+    )))
+}
+
 fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let has_frequency = response.self_excited && !are_modes(response);
@@ -628,6 +669,7 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
     ));
     let mut blocks =
         vec![Block::Heading("judged against the true motion".to_owned()), Block::Facts(facts)];
+    blocks.extend(growing(response));
     if response.exhausted {
         blocks.push(Block::Sentence(
             "The search was ended because each point takes long: branches may be missing or end early, and where they change was not \
@@ -640,6 +682,7 @@ fn judgement(response: &ResponseDiagram) -> Vec<Block<'static>> {
             response.branches.len()
         )));
     }
+    blocks.extend(sparse(response));
     let mut kinds: Vec<(Option<usize>, Option<usize>)> =
         response.elsewhere.iter().map(|place| (place.periods, place.drive_periods)).collect();
     kinds.sort();

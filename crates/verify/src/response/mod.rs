@@ -27,6 +27,7 @@
 //!   [`hopf`]: the Hopf point at which it begins.
 //!
 //! - [`coupled`]: coupled equations of any number of coordinates, by shooting.
+//! - `coverage`: how close to each other the values are at which a search begins.
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
 //!
@@ -41,6 +42,7 @@ pub mod bifurcation;
 mod branches;
 pub mod continuation;
 pub mod coupled;
+mod coverage;
 pub mod cycle;
 pub mod driven;
 mod equations;
@@ -448,6 +450,10 @@ pub struct ResponseDiagram {
     /// Whether the search for coupled motions ended because it had taken as much work as it may, so that
     /// branches may be missing or end early, and bifurcations are not listed.
     pub exhausted: bool,
+    /// The stretches of the range in which the values at which the search for motions began are so far
+    /// apart that the motions of a single coordinate gain more than a swing in a period of the drive from
+    /// one to the next, so that branches may be missing.
+    pub sparse: Vec<[f64; 2]>,
     /// Whether the computation was completed without an interrupt.
     pub complete: bool,
 }
@@ -614,6 +620,14 @@ impl ResponseDiagram {
         self.exhausted || self.branches.len() >= MOST_BRANCHES
     }
 
+    /// This response with the stretches in which its search was sparse.
+    fn with_sparse(self, sparse: Vec<[f64; 2]>) -> Self {
+        match sparse.is_empty() {
+            true => self,
+            false => Self { sparse, verdict: Verdict::Fail, ..self },
+        }
+    }
+
     /// This response with the largest error of its points and simulations, and the verdict on it.
     fn with_verdict(mut self) -> Self {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
@@ -629,7 +643,7 @@ impl ResponseDiagram {
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
         let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
-        let missed = missed || self.is_full();
+        let missed = missed || self.is_full() || !self.sparse.is_empty();
         self.verdict = Verdict::from_passed(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self

@@ -76,8 +76,8 @@ impl<'a> PreparedRequest<'a> {
 
     /// The response by shooting: harmonics are only output.
     pub(super) fn shot_response(&self) -> Result<ResponseDiagram, ResponseError> {
-        let InitialMotions { seeds, elsewhere, branches } = self.seeds(MOST_HARMONICS)?;
-        let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?;
+        let InitialMotions { seeds, elsewhere, branches, gaps } = self.seeds(MOST_HARMONICS)?;
+        let mut response = self.attempt(MOST_HARMONICS, &seeds, &branches)?.with_sparse(gaps);
         response.elsewhere.extend(elsewhere);
         Elsewhere::sort(&mut response.elsewhere);
         Ok(response)
@@ -93,7 +93,7 @@ impl<'a> PreparedRequest<'a> {
             false => MOST_HARMONICS,
         };
         let first = self.question.harmonics.unwrap_or(automatic);
-        let InitialMotions { seeds, elsewhere, branches } = self.seeds(first)?;
+        let InitialMotions { seeds, elsewhere, branches, gaps } = self.seeds(first)?;
         let mut harmonics = first;
         let mut before = (f64::INFINITY, usize::MAX);
         let mut fewer: Option<ResponseDiagram> = None;
@@ -137,6 +137,7 @@ impl<'a> PreparedRequest<'a> {
             if last {
                 response.elsewhere.extend(elsewhere);
                 Elsewhere::sort(&mut response.elsewhere);
+                let response = response.with_sparse(gaps);
                 return match response.self_excited {
                     true => self.without_tails(response),
                     false => Ok(response),
@@ -259,6 +260,7 @@ impl<'a> PreparedRequest<'a> {
             curves: vec![],
             stable_motions: None,
             exhausted: false,
+            sparse: vec![],
             complete,
         };
         Ok(response.with_verdict())

@@ -43,6 +43,8 @@ pub(super) struct InitialMotions {
     pub(super) elsewhere: Vec<Elsewhere>,
     /// The branches that were followed on the way.
     pub(super) branches: Vec<BranchPath>,
+    /// The stretches of the range in which the values of the search are far apart.
+    pub(super) gaps: Vec<[f64; 2]>,
 }
 
 impl Seed {
@@ -69,15 +71,19 @@ impl PreparedRequest<'_> {
         let balance = DrivenBalance::new(&self.driven, harmonics);
         let values = self.values_of_search();
         let around = if self.driven.undamped { vec![] } else { self.finer_values() };
-        self.question.progress.begin(values.len() + around.len() * RADII.len());
+        let covered =
+            self.coverage(&self.values_of_guesses().chain(values.clone()).collect::<Vec<_>>());
+        let added = covered.added;
+        let starts = values.len() + (around.len() + added.len()) * RADII.len();
+        self.question.progress.begin(starts);
         let mut found = Search {
-            motions: InitialMotions::default(),
+            motions: InitialMotions { gaps: covered.gaps, ..InitialMotions::default() },
             budget: self.budget(),
             size: 0.0,
             stable: vec![],
         };
         let known = self.search_from_rest(&balance, &values, &mut found);
-        self.search_from_guesses(&balance, &values, known, &mut found);
+        self.search_from_guesses(&balance, (&values, &added), known, &mut found);
         let seeds = &mut found.motions.seeds;
         found.size = found.size.max(size_of(seeds));
         let branches = self.branches_through(&balance, seeds, found.size, &[]);
@@ -91,7 +97,14 @@ impl PreparedRequest<'_> {
         }
         if !self.driven.undamped {
             found.stable = self.stable_on(&balance, &branches, &around);
-            self.search_around(&around, &mut found);
+            self.search_around(&around, found.size, &mut found);
+            // Motions at the added values are far smaller, or larger, than those at others.
+            for value in &added {
+                let own = found.motions.seeds.iter().filter(|seed| seed.parameter == *value);
+                let size = own.map(Seed::extent).fold(0.0, f64::max);
+                let size = if size > 0.0 { size } else { found.size };
+                self.search_around(&[*value], size, &mut found);
+            }
         }
         found.motions.branches = branches;
         Elsewhere::sort(&mut found.motions.elsewhere);
@@ -139,6 +152,17 @@ impl PreparedRequest<'_> {
         (0..VALUES).map(|index| low + (high - low) * part(index)).collect()
     }
 
+    /// The values of the parameter, between those at which simulations begin, at which guesses are made:
+    /// more by a balance than by shooting, which costs more.
+    fn values_of_guesses(&self) -> impl Iterator<Item = f64> {
+        /// Number of values for each of those at which simulations begin.
+        const BETWEEN: [u32; 2] = [3, 1];
+        let [low, high] = self.question.range;
+        let count = VALUES * BETWEEN[usize::from(self.period_series.is_some())];
+        let part = move |index: u32| (f64::from(index) + 0.5) / f64::from(count);
+        (0..count).map(move |index| low + (high - low) * part(index))
+    }
+
     /// The values of the parameter at which simulations begin from all around.
     fn finer_values(&self) -> Vec<f64> {
         let [low, high] = self.question.range;
@@ -175,18 +199,11 @@ impl PreparedRequest<'_> {
     fn search_from_guesses(
         &self,
         balance: &DrivenBalance,
-        values: &[f64],
+        (values, added): (&[f64], &[f64]),
         mut known: Vec<KnownMotion>,
         found: &mut Search,
     ) {
-        /// Number of values for each of those at which simulations begin, by a balance and by
-        /// shooting, which costs more.
-        const BETWEEN: [u32; 2] = [3, 1];
-        let [low, high] = self.question.range;
-        let count = VALUES * BETWEEN[usize::from(self.period_series.is_some())];
-        for index in 0..count {
-            let part = (f64::from(index) + 0.5) / f64::from(count);
-            let parameter = low + (high - low) * part;
+        for parameter in self.values_of_guesses().chain(added.iter().copied()) {
             let motions = self.motions_from_rest(balance, parameter, &mut found.size);
             known.extend(motions.into_iter().map(|(motion, _)| motion));
         }
@@ -195,7 +212,13 @@ impl PreparedRequest<'_> {
             if self.question.interrupt.is_requested() {
                 return;
             }
-            let (motions, starts) = self.of_every_size(balance, motion, found.size);
+            // At an added value motions have a size of their own.
+            let own = balance.core.extent(&motion.coefficients);
+            let size = match added.contains(&motion.parameter) && own > 0.0 {
+                true => own,
+                false => found.size,
+            };
+            let (motions, starts) = self.of_every_size(balance, motion, size);
             found.motions.seeds.extend(motions);
             // A smooth force leads nearly every guess to its motion.
             if !self.driven.smooth && values.contains(&motion.parameter) {
@@ -206,12 +229,11 @@ impl PreparedRequest<'_> {
     }
 
     /// Adds the motions on which simulations settle from places all around in the plane of position
-    /// and velocity, in proportion to the size of the motions that are known.
-    fn search_around(&self, values: &[f64], found: &mut Search) {
+    /// and velocity, in proportion to a size.
+    fn search_around(&self, values: &[f64], size: f64, found: &mut Search) {
         /// Parts of a turn from one value to the next, which leave no direction out (the golden
         /// section), and from one radius to the other.
         const TURNS: [f64; 2] = [0.618_034, 0.5];
-        let size = found.size;
         let around = |(index, parameter): (usize, &f64)| {
             let parameter = *parameter;
             let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;

@@ -389,6 +389,7 @@ impl CoupledProblem<'_> {
             equilibria: vec![],
             curves: vec![],
             stable_motions: None,
+            sparse: vec![],
             exhausted,
             complete: !question.interrupt.is_requested(),
         }

@@ -535,6 +535,9 @@ class Response(Answer):
         exhausted: Whether the search for motions of coupled equations was ended because it had
             taken as much work as it may: branches may be missing or end early, and bifurcations
             are not listed. Left out where it was not.
+        sparse: The stretches of the range, each with its ends, in which the search for motions of
+            one coordinate had too few starts: from one to the next they gain more than a swing in
+            a period of the drive, so that branches may be missing. Left out where there are none.
         complete: Whether it was followed to its end.
     """
 
@@ -568,6 +571,7 @@ class Response(Answer):
     elsewhere: tuple[ElsewherePoint, ...]
     verification: ResponseVerification
     exhausted: bool | None
+    sparse: tuple[tuple[float, float], ...] | None
     complete: bool
 
 
@@ -602,6 +606,7 @@ Response.FIELDS = (
     ("elsewhere", "elsewhere", several(ElsewherePoint.from_json)),
     ("verification", "verification", ResponseVerification.from_json),
     ("exhausted", "exhausted", None),
+    ("sparse", "sparse", several(tuple)),
     ("complete", "complete", None),
 )
-Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'impacts', 'of', 'ripple', 'stable_motions', 'walls'])
+Response.OPTIONAL = frozenset(['along', 'coordinates', 'curves_of_bifurcations', 'equilibria', 'exhausted', 'impacts', 'of', 'ripple', 'sparse', 'stable_motions', 'walls'])

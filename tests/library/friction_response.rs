@@ -1,8 +1,10 @@
 //! Steady states under dry friction against Den Hartog's closed form, simulation piece by piece,
 //! and differences of its map.
 
+use lindstedt::numeric::ode::{IntegrationOptions, Point, integrate_first_order};
+use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
-use lindstedt::response::{ResponseDiagram, ResponseRequest, SteadyMotion, respond};
+use lindstedt::response::{Criticality, ResponseDiagram, ResponseRequest, SteadyMotion, respond};
 use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::Verdict;
 use lindstedt::{Oscillator, Symbol};
@@ -254,4 +256,40 @@ fn a_mass_on_a_belt_sticks_and_slips() {
     let born = 0.1 * (0.3_f64 * 5.0 * 50.0).ln();
     let hopf: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
     assert!(hopf.iter().any(|parameter| (parameter - born).abs() < 1e-6), "{hopf:?} {born}");
+}
+
+/// A motion that crosses a jump of the force loses its stability to one of twice the period, which is called
+/// supercritical. Integrated here, the distance of the motions after one period and after two grows with the
+/// root of that from the point, on the side on which the old motion is unstable.
+#[test]
+fn a_period_doubling_across_a_jump_is_supercritical() {
+    let text = "x'' + x'/10 + x^3 + sgn(x)/5 = F*cos(t)";
+    let found = respond(&ResponseRequest::new(text, "F", [4.5, 6.0], "").expect(text)).expect(text);
+    let changes = found.bifurcations.iter();
+    let changes = changes.filter(|change| change.kind == BifurcationKind::PeriodDoubling);
+    let changes: Vec<_> = changes.collect();
+    let [change] = changes[..] else { panic!("{changes:?}") };
+    assert_eq!(change.criticality, Some(Criticality::Supercritical));
+    let apart = |force: f64| {
+        let near = found.branches[change.branch].points.iter();
+        let near = near.filter(|point| (point.peak - change.peak).abs() < 0.1 * change.peak);
+        let distance = |point: &&SteadyMotion| (point.parameter - force).abs();
+        let nearest = near.min_by(|one, two| distance(one).total_cmp(&distance(two)));
+        let mut state = nearest.expect("a point").start;
+        state[0] += 0.01;
+        let rates = |t: f64, [x, v]: &[f64; 2], out: &mut [f64; 2]| {
+            *out = [*v, force * t.cos() - v / 10.0 - x.powi(3) - x.signum() / 5.0];
+        };
+        let mut before = state;
+        for _ in 0..1200 {
+            before = state;
+            let options = IntegrationOptions::with_tolerance(1e-8);
+            let begin = Point { t: 0.0, y: state };
+            let path = integrate_first_order(rates, begin, std::f64::consts::TAU, &[], &options);
+            state = path.expect("a path").end().y;
+        }
+        (state[0] - before[0]).hypot(state[1] - before[1])
+    };
+    let [stable, near, far] = [-0.05, 0.03, 0.06].map(|aside| apart(change.parameter + aside));
+    assert!(stable < 1e-4 && (1.3..1.55).contains(&(far / near)), "{stable} {near} {far}");
 }

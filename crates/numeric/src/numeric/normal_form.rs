@@ -229,8 +229,6 @@ fn coefficient(
 mod tests {
     use super::*;
 
-    /// The map `w -> e^(i theta) w + g20 w^2/2 + g11 w w^* + g02 w^*^2/2 + g21 w^2 w^*/2 + k v w`, `v -> m v + l w w^*` has
-    /// d by hand (Kuznetsov, equation 4.26; v = l w w^*/(1 - m) on the centre manifold).
     /// A map with a corner at its fixed point has no cubic term, one with a corner beside it has that of
     /// its side, and one with half of a cubic term on one side has, on average, half of it.
     #[test]
@@ -254,6 +252,8 @@ mod tests {
         }
     }
 
+    /// The map `w -> e^(i theta) w + g20 w^2/2 + g11 w w^* + g02 w^*^2/2 + g21 w^2 w^*/2 + k v w`, `v -> m v + l w w^*` has
+    /// d by hand (Kuznetsov, equation 4.26; v = l w w^*/(1 - m) on the centre manifold).
     #[test]
     fn quadratic_terms_and_a_decaying_direction_count() {
         let (theta, m, l) = (0.7_f64, -0.4, 0.8);

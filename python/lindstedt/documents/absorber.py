@@ -108,6 +108,28 @@ LowestPeak.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class AbsorberDecay(Document):
+    """The time in which the amplitude of a sink falls, on a simulated motion.
+
+    Attributes:
+        amplitudes: The amplitudes of the sink at the start and at the end.
+        formula: The time by the formula, in units of 1/(the frequency of the main mass).
+        truth: The time of the simulated motion.
+    """
+
+    amplitudes: tuple[float, float]
+    formula: float
+    truth: float
+
+
+AbsorberDecay.FIELDS = (
+    ("amplitudes", "amplitudes", tuple),
+    ("formula", "formula", None),
+    ("truth", "truth", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class AbsorberMotion(Document):
     """A simulated motion that follows the manifold of a sink.
 
@@ -117,12 +139,14 @@ class AbsorberMotion(Document):
         end: The amplitude of the main mass where the motion leaves the manifold.
         largest_distance: The largest distance of its two amplitudes from those on the manifold,
             over those of the start.
+        decay: The time that it takes; null where there is no formula of it.
     """
 
     words: str
     start: float
     end: float
     largest_distance: float
+    decay: AbsorberDecay | None
 
 
 AbsorberMotion.FIELDS = (
@@ -130,6 +154,7 @@ AbsorberMotion.FIELDS = (
     ("start", "start", None),
     ("end", "end", None),
     ("largest_distance", "largest_distance", None),
+    ("decay", "decay", AbsorberDecay.from_json),
 )
 
 

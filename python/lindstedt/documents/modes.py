@@ -65,6 +65,8 @@ class ModeVerification(Document):
     Attributes:
         at: The values.
         omega: omega by the formula; null if its square is not positive.
+        law: The coefficients of omega^2 in powers of the amplitude with numbers for all letters,
+            the constant first; left out where the formula is no polynomial of it.
         coefficients: The coefficients that a balance has at the values; left out for a series.
         true_omega: omega of the true motion, by shooting.
         relative_error: `omega/true_omega - 1`; null where there is no omega.
@@ -77,6 +79,7 @@ class ModeVerification(Document):
 
     at: dict[str, Constant]
     omega: float | None
+    law: tuple[float, ...] | None
     coefficients: dict[str, float] | None
     true_omega: float
     relative_error: float | None
@@ -89,6 +92,7 @@ class ModeVerification(Document):
 ModeVerification.FIELDS = (
     ("at", "at", mapped(Constant.from_json)),
     ("omega", "omega", None),
+    ("law", "law", tuple),
     ("coefficients", "coefficients", dict),
     ("true_omega", "true_omega", None),
     ("relative_error", "relative_error", None),
@@ -97,7 +101,7 @@ ModeVerification.FIELDS = (
     ("slope", "slope", None),
     ("verdict", "verdict", None),
 )
-ModeVerification.OPTIONAL = frozenset(['coefficients'])
+ModeVerification.OPTIONAL = frozenset(['coefficients', 'law'])
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -141,19 +141,32 @@ class EnergyExchange(Document):
     """The exchange of energy between modes in resonance, by the slow equations.
 
     Attributes:
-        period: The period, a number times K(m).
+        period: The period, `factor` times K(m).
+        factor: The factor of K(m).
         parameter: The parameter m of the complete elliptic integral K(m).
+        rate_squared: The coefficients of f in s'^2 = f(s), the lowest first; s is zero at the
+            start.
+        ends: The zeros of f between which s goes to and fro.
+        squares: The square of each amplitude, linear in s: its value at the start and its slope.
         amplitudes: The least and the greatest amplitude of each mode.
     """
 
     period: float
+    factor: float
     parameter: float
+    rate_squared: tuple[float, ...]
+    ends: tuple[float, float]
+    squares: dict[str, tuple[float, float]]
     amplitudes: dict[str, tuple[float, float]]
 
 
 EnergyExchange.FIELDS = (
     ("period", "period", None),
+    ("factor", "factor", None),
     ("parameter", "parameter", None),
+    ("rate_squared", "rate_squared", tuple),
+    ("ends", "ends", tuple),
+    ("squares", "squares", mapped(tuple)),
     ("amplitudes", "amplitudes", mapped(tuple)),
 )
 

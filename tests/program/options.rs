@@ -110,7 +110,8 @@ fn modes_are_derived_without_the_values_of_a_verdict() {
     let [note, answer] = message(&[three, "--order", "2", "--at", "k=1"]);
     assert_eq!(note, "note: not judged, values are needed for: `b`, `a`, the amplitude\n");
     assert!(answer.contains("b*a^2") && !answer.contains("verdict"), "{answer}");
-    let [note, answer] = message(&[three, "--order", "2", "--at", "k=1,b=2,a=0.1"]);
+    let letters = "m*x'' + 2*x - y + b*x^3 = 0; y'' + 2*y - x = 0";
+    let [note, answer] = message(&[letters, "--order", "2", "--at", "m=1,b=2,a=0.1"]);
     assert!(note.is_empty() && answer.contains("omega^2 in numbers"), "{note}{answer}");
     // A mass that cancels may have a value all the same.
     let folder = folder("cancelled");

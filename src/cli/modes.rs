@@ -92,7 +92,7 @@ pub(super) fn run(
     })
 }
 
-/// Which values a verdict on modes lacks.
+/// A note that names the values which a verdict on modes lacks.
 fn without_verdict(modes: &NormalModes, missing: &[Symbol]) -> String {
     let amplitudes: Vec<Symbol> =
         modes.modes.iter().flatten().map(|mode| mode.amplitude.symbol()).collect();

@@ -278,8 +278,8 @@ fn the_printed_motion_keeps_its_energy() {
     }
 }
 
-/// Where the inertia couples coordinates, the order in which these are written does not matter: an
-/// element of the mass matrix that vanishes at rest is no pivot.
+/// The order in which coordinates are written does not matter if the inertia couples them: an element of
+/// the mass matrix that vanishes at rest is no pivot.
 #[test]
 fn coupled_inertia_may_vanish_at_rest() {
     // A pendulum on a vertical spring, beside an internal resonance 1:2.

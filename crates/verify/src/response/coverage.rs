@@ -1,11 +1,11 @@
-//! How close to each other the values of the parameter are at which a search for motions begins.
+//! The distances between the values of the parameter at which a search for motions begins.
 //!
 //! ```text
 //! f(x_s, 0, theta; p) = 0:   x_s the outermost place at which the force vanishes in a phase of the drive
 //! n(p) = sqrt(<abs(f_x(x_s))>)/Omega:   free swings in a period of the drive, in the stiffness there
 //! ```
 //!
-//! Where n grows by one between two neighbouring values, a whole resonance lies between them, with
+//! A whole resonance lies between two neighbouring values between which n grows by one, with
 //! branches of its own: of `x'' + x + x^3 = F cos(2 t)` with F up to 1e6 n grows to sixty. In: the
 //! equation, its range, and the values of a search. Out: more values, one swing apart, from the fewest
 //! swings on; and the stretches of the range in which they are still farther apart. Linear forces, and

@@ -27,7 +27,7 @@
 //!   [`hopf`]: the Hopf point at which it begins.
 //!
 //! - [`coupled`]: coupled equations of any number of coordinates, by shooting.
-//! - `coverage`: how close to each other the values are at which a search begins.
+//! - `coverage`: the distances between the values at which a search begins.
 //! - `seeds`: the motions from which branches start; `one_harmonic` and `melnikov`: guesses of motions
 //!   of every size; `narrow`: bifurcations between two points of a branch.
 //!

@@ -40,9 +40,9 @@ struct Part {
 /// size, if disturbances of it grow by this factor in a period; `None` if Newton's method does not
 /// converge, or moves far away, or the equation has no Taylor series.
 ///
-/// Where Newton's method does not converge with as few parts as the growth asks for, the motion that is
-/// given is far from the true one, as a sum of too few harmonics is: over shorter parts the way is more
-/// nearly linear in the starts, and they may move farther.
+/// Newton's method is tried again with the shortest parts if it does not converge with as few as the growth
+/// asks for. The motion that is given is then far from the true one, as a sum of too few harmonics is: over
+/// shorter parts the way is more nearly linear in the starts, and they may move farther.
 pub(super) fn motion_in_parts(
     driven: &Driven,
     at: (f64, f64),

@@ -296,7 +296,7 @@ def response(
 
 
 def absorber(
-    kind: Literal["tuned", "damped", "nonlinear", "impact-sink", "cubic-sink"],
+    kind: Literal["tuned", "damped", "nonlinear", "impact-sink", "pendulum-sink", "cubic-sink"],
     *,
     excitation: Literal["force", "ground"] | None = None,
     tolerance: float | None = None,
@@ -305,12 +305,12 @@ def absorber(
     progress: Progress | None = None,
     **values: Value,
 ) -> Absorber:
-    """Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, its cubic spring where the main mass has one, thresholds of a ball in a cavity and of a light mass on a cubic spring.
+    """Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, its cubic spring where the main mass has one, thresholds of a ball in a cavity, of a pendulum between barriers and of a light mass on a cubic spring.
 
     Args:
         kind: The kind of absorber: a tuned mass damper; the same on a damped main mass; a
             nonlinear one, with a cubic spring beside that of the main mass; a vibro-impact sink, a
-            ball in a cavity; a light mass on a cubic spring.
+            ball in a cavity or a pendulum between barriers; a light mass on a cubic spring.
         excitation: What shakes the main mass of a tuned mass damper: a force on it, or the
             ground; force without it.
         tolerance: The relative error up to which a verdict is a pass; 0.01 without it.

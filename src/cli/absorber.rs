@@ -14,13 +14,13 @@ use super::files::width;
 use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
 /// Design formulas of a vibration absorber: tuning and damping of a tuned mass damper, its cubic
-/// spring where the main mass has one, thresholds of a ball in a cavity and of a light mass on a cubic
-/// spring
+/// spring where the main mass has one, thresholds of a ball in a cavity, of a pendulum between barriers
+/// and of a light mass on a cubic spring
 #[derive(Args)]
 pub struct AbsorberArguments {
     /// The kind of absorber: a tuned mass damper; the same on a damped main mass; a nonlinear one, with a cubic spring beside that of
-    /// the main mass; a vibro-impact sink, a ball in a cavity; a light mass on a cubic spring
-    #[arg(value_parser = ["tuned", "damped", "nonlinear", "impact-sink", "cubic-sink"])]
+    /// the main mass; a vibro-impact sink, a ball in a cavity or a pendulum between barriers; a light mass on a cubic spring
+    #[arg(value_parser = ["tuned", "damped", "nonlinear", "impact-sink", "pendulum-sink", "cubic-sink"])]
     kind: String,
     /// What shakes the main mass of a tuned mass damper: a force on it, or the ground; force without
     /// it
@@ -97,6 +97,7 @@ fn kind(arguments: &AbsorberArguments) -> Result<AbsorberKind, Failure> {
         ))),
         ("nonlinear", None) => Ok(AbsorberKind::Nonlinear),
         ("impact-sink", None) => Ok(AbsorberKind::ImpactSink),
+        ("pendulum-sink", None) => Ok(AbsorberKind::PendulumSink),
         (_, None) => Ok(AbsorberKind::CubicSink),
     }
 }

@@ -84,6 +84,11 @@ fn axes(kind: AbsorberKind) -> [&'static str; 3] {
         AbsorberKind::ImpactSink => {
             ["Vibro-impact sink", "amplitude of the main mass C", "amplitude of the ball Z"]
         }
+        AbsorberKind::PendulumSink => [
+            "Pendulum between barriers",
+            "amplitude of the main mass C",
+            "amplitude of the pendulum Z",
+        ],
     }
 }
 

@@ -69,13 +69,13 @@ fn capitalised(words: &str) -> String {
 }
 
 fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
-    let number = |value: Option<f64>| value.map_or("not found".to_owned(), decimal);
+    let number = |value: Option<f64>, none: &str| value.map_or(none.to_owned(), decimal);
     let rows = judged.formulas.iter().map(|own| {
         vec![
             own.design.replace('-', " "),
             own.symbol.to_string(),
-            number(own.value),
-            number(own.truth),
+            number(own.value, "none"),
+            number(own.truth, if own.value.is_some() { "not found" } else { "none found" }),
             own.relative_error.map_or("-".to_owned(), percent),
         ]
     });

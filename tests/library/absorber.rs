@@ -491,19 +491,53 @@ fn a_light_sink_slides_along_its_manifold() {
     assert!((light.end / end - 1.0).abs() < 0.06, "{light:?} {end}");
 }
 
-/// The time in which the ball slows down, by the energy that its impacts take: the error falls with the
-/// mass of the ball.
+/// The time in which the amplitude of a ball and of a pendulum falls, by the energy that its impacts
+/// take: the error falls with its mass.
 #[test]
-fn a_ball_decays_along_its_manifold_as_its_impacts_take_energy() {
-    for r in ["3/10", "13/20"] {
+fn sinks_decay_along_their_manifold_as_impacts_take_energy() {
+    for (kind, letters) in [
+        (AbsorberKind::ImpactSink, "r = 3/10"),
+        (AbsorberKind::ImpactSink, "r = 13/20"),
+        (AbsorberKind::PendulumSink, "r = 13/20, w = 1/2"),
+        (AbsorberKind::PendulumSink, "r = 4/5, w = 7/10"),
+    ] {
         let error = |mu: &str| {
-            let judged = judged(AbsorberKind::ImpactSink, &format!("r = {r}, b = 1, mu = {mu}"));
+            let judged = judged(kind, &format!("{letters}, b = 1, mu = {mu}"));
             let decay = judged.motion.and_then(|motion| motion.decay).expect("a decay");
             decay.formula / decay.truth - 1.0
         };
         let (heavy, light) = (error("1/500"), error("1/4000"));
-        assert!(heavy.abs() < 0.03 && light.abs() < 0.25 * heavy.abs(), "{r}: {heavy} {light}");
+        assert!(
+            heavy.abs() < 0.03 && light.abs() < 0.25 * heavy.abs(),
+            "{letters}: {heavy} {light}"
+        );
     }
+}
+
+/// A pendulum that hardly swings by itself is the ball.
+#[test]
+fn a_slow_pendulum_is_the_ball_in_a_cavity() {
+    let numbers = |kind, letters: &str| {
+        let judged = judged(kind, letters);
+        assert_eq!(judged.verdict, Some(Verdict::Pass), "{letters}");
+        judged.formulas.iter().map(|own| own.truth.expect("a truth")).collect::<Vec<f64>>()
+    };
+    let ball = numbers(AbsorberKind::ImpactSink, "r = 13/20, b = 1, mu = 1/100");
+    let pendulum = numbers(AbsorberKind::PendulumSink, "r = 13/20, b = 1, w = 1/10000, mu = 1/100");
+    for (ball, pendulum) in ball.into_iter().zip(pendulum) {
+        assert!((pendulum / ball - 1.0).abs() < 1e-6, "{pendulum} {ball}");
+    }
+}
+
+/// Where no multiplier reaches -1, neither the formula nor the search has a largest amplitude.
+#[test]
+fn a_pendulum_near_the_frequency_of_the_main_mass_is_stable_at_any_amplitude() {
+    let judged = judged(AbsorberKind::PendulumSink, "r = 1/2, b = 1, w = 19/20, mu = 1/1000");
+    let rows = judged.formulas.iter().filter(|own| own.design == "period-doubling");
+    for own in rows {
+        assert_eq!((own.value, own.truth), (None, None), "{own:?}");
+    }
+    assert_eq!(judged.verdict, Some(Verdict::Pass));
 }
 
 #[test]

@@ -27,12 +27,13 @@ fn in_snapshots(body: impl FnOnce()) {
 }
 
 /// Values of each kind.
-const KINDS: [[&str; 2]; 5] = [
+const KINDS: [[&str; 2]; 6] = [
     ["tuned", "mu=1/20"],
     ["nonlinear", "mu=1/20,alpha3=1,F=1/100"],
     ["impact-sink", "r=0.65,b=1,mu=1/100"],
     ["cubic-sink", "lambda=0.2,k=1,eps=1/100"],
     ["damped", "mu=1/20,zeta_1=1/100"],
+    ["pendulum-sink", "r=0.65,b=1,w=1/2,mu=1/100"],
 ];
 
 #[test]

@@ -188,6 +188,7 @@ fn documents() -> Vec<(String, Value)> {
     add(&["absorber", "tuned", "--at", "mu=1/20"]);
     add(&["absorber", "nonlinear"]);
     add(&["absorber", "impact-sink", "--at", "r=0.65,b=1,mu=1/100"]);
+    add(&["absorber", "pendulum-sink", "--at", "r=0.5,b=1,w=0.95,mu=1/1000"]);
     for file in files("examples/orbits", ".toml") {
         add(&["orbits", &file.to_string_lossy()]);
     }

@@ -37,7 +37,8 @@ class AbsorberFormula(Document):
         name: The name of the quantity, such as `tuning` or `damping`.
         symbol: The symbol of the quantity.
         formula: The formula.
-        value: Its value; null without values, and where it has no finite one.
+        value: Its value; null without values, and where there is no such design (no positive
+            value).
         truth: The true value, by a search over the responses or motions of the two masses; null
             without values, and where none was found.
         relative_error: `value/truth - 1`; null likewise.
@@ -68,7 +69,7 @@ class AbsorberDesign(Document):
     Attributes:
         name: The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper,
             `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an
-            impact sink, `upward-jump` and `downward-jump` of a cubic sink.
+            impact or pendulum sink, `upward-jump` and `downward-jump` of a cubic sink.
         words: What is best of it, in words.
         formulas: Its formulas.
     """
@@ -164,8 +165,8 @@ class Absorber(Answer):
 
     Attributes:
         schema: The kind of document.
-        absorber: The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink` or `cubic-
-            sink`.
+        absorber: The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink`, `pendulum-
+            sink` or `cubic-sink`.
         excitation: What shakes the main mass of a tuned mass damper, `force` or `ground`; null of
             other kinds.
         equations: The equations of motion.

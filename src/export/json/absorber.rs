@@ -15,7 +15,7 @@ use crate::report::AbsorberReport;
 pub struct AbsorberDocument {
     /// The kind of document.
     pub schema: String,
-    /// The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink` or `cubic-sink`.
+    /// The kind of absorber: `tuned`, `damped`, `nonlinear`, `impact-sink`, `pendulum-sink` or `cubic-sink`.
     pub absorber: String,
     /// What shakes the main mass of a tuned mass damper, `force` or `ground`; null of other kinds.
     pub excitation: Option<String>,
@@ -60,7 +60,7 @@ pub struct AbsorberRelationDocument {
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberDesign"))]
 pub struct AbsorberDesignDocument {
     /// The name: `equal-peaks`, `lowest-peak` and `lowest-variance` of a tuned mass damper,
-    /// `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an impact sink,
+    /// `similar-springs` of a nonlinear absorber, `threshold` and `period-doubling` of an impact or pendulum sink,
     /// `upward-jump` and `downward-jump` of a cubic sink.
     pub name: String,
     /// What is best of it, in words.
@@ -79,7 +79,7 @@ pub struct AbsorberFormulaDocument {
     pub symbol: String,
     /// The formula.
     pub formula: String,
-    /// Its value; null without values, and where it has no finite one.
+    /// Its value; null without values, and where there is no such design (no positive value).
     pub value: Option<f64>,
     /// The true value, by a search over the responses or motions of the two masses; null without
     /// values, and where none was found.
@@ -181,7 +181,10 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
                 };
                 Some(words.to_owned())
             }
-            AbsorberKind::Nonlinear | AbsorberKind::ImpactSink | AbsorberKind::CubicSink => None,
+            AbsorberKind::Nonlinear
+            | AbsorberKind::ImpactSink
+            | AbsorberKind::PendulumSink
+            | AbsorberKind::CubicSink => None,
         },
         equations: laws.equations.iter().map(|(left, right)| format!("{left} = {right}")).collect(),
         letters: named(laws.meanings.iter().map(|(name, words)| (name, (*words).to_owned()))),

@@ -1,28 +1,33 @@
-//! The vibro-impact sink: a ball that flies in a cavity of a main mass and hits its walls, twice a
-//! period.
+//! The vibro-impact sink: a light body between two walls of a main mass, which hits each once a period. A
+//! ball in a cavity flies freely, a pendulum swings at `w` times the frequency of the main mass, `0 < w < 1`.
 //!
 //! ```text
-//! x = X cos t + U sin t,  y = Z (1 - 2 t/pi)  from the impact at t = 0 to that at t = pi,  |y - x| = b at both
-//! Z - X = b,   -v - U = -r (v - U),  v = 2 Z/pi:      C^2 = X^2 + U^2 = (Z - b)^2 + (2 s Z/pi)^2,  s = (1 - r)/(1 + r)
+//! x = X cos t + U sin t,   y'' + w^2 y = -x'' between the impacts y = b at t = 0 and y = -b at t = pi:
+//! y = Z sin(w (pi/2 - t))/sin(pi w/2) - x/(1 - w^2)
+//! Z - X/(1 - w^2) = b,  y'(0+) = -r y'(0-):   U = -s kappa Z (1 - w^2),  kappa = w cot(pi w/2),  s = (1 - r)/(1 + r)
+//! C^2 = X^2 + U^2 = (1 - w^2)^2 ((Z - b)^2 + (s kappa Z)^2)
 //! ```
 //!
-//! The ball is light: an impact does not change the motion of the main mass, whose amplitude C falls
-//! from impact to impact (E. Gourc, G. Michon, S. Seguy, A. Berlioz, *J. Vib. Acoust.* 137 (2015) 031008; T. Li, S. Seguy,
+//! Here y is the displacement relative to the main mass. The ball is the limit w = 0, kappa = 2/pi.
+//! The body is light: an impact does not change the motion of the main mass, whose amplitude C falls
+//! from impact to impact (the ball: E. Gourc, G. Michon, S. Seguy, A. Berlioz, *J. Vib. Acoust.* 137 (2015) 031008; T. Li, S. Seguy,
 //! A. Berlioz, *Nonlinear Dyn.* 87 (2017) 2415).
 //!
-//! After an impact at `t = d` instead of 0 the ball has the velocity `-v + e` instead of `-v`, and after
-//! the next at `t = pi + d'` it has `v - e'`. In first order
+//! With the speed `V = (1 + s) kappa Z` just before an impact and the acceleration `a = (1 - w^2) Z - b`
+//! just after it, an impact at `t = d` instead of 0, after which `y' = -r V + e`, and the next at `t = pi + d'`, where `y' = r V - e'`,
+//! are related in first order by
 //!
 //! ```text
-//! (v - U) d' = (v + U) d + pi e,     e' = r e - (1 + r) X d'
+//! V d' = r V c d + S (e - a d),   e' = r (c (e - a d) - w^2 S r V d - a d'),   c = cos(pi w),  S = sin(pi w)/w
+//! trace 2 r c - (1 + r) S a/V,   determinant r^2
 //! ```
 //!
 //! The motion is stable between the multiplier 1 of this map, where C is least, and the multiplier -1.
 //!
-//! Each impact takes `mu/(1 + mu) (1 - r^2) (v - U)^2/2` from the energy `C^2/2`, so that along the manifold
+//! Each impact takes `mu/(1 + mu) (1 - r^2) V^2/2` from the energy `C^2/2`, so that along the manifold
 //!
 //! ```text
-//! d(C^2)/dt = -mu/(1 + mu) (1 - r^2) (v - U)^2/pi = -16 mu s Z^2/((1 + mu) pi^3)
+//! d(C^2)/dt = -mu/(1 + mu) (1 - r^2) V^2/pi = -4 mu s kappa^2 Z^2/((1 + mu) pi)
 //! ```
 
 use std::ops::Bound;
@@ -39,14 +44,16 @@ use crate::modes::by_powers;
 use crate::solution::Definition;
 use crate::symbol::Symbol;
 
-/// The letters of the designs.
+const RESTITUTION: AbsorberLetter = AbsorberLetter {
+    name: "r",
+    meaning: "the coefficient of restitution",
+    range: (Bound::Excluded(0.0), Bound::Excluded(1.0)),
+    example: "0.65",
+};
+
+/// The letters of the designs of a ball.
 pub(super) const LETTERS: [AbsorberLetter; 3] = [
-    AbsorberLetter {
-        name: "r",
-        meaning: "the coefficient of restitution",
-        range: (Bound::Excluded(0.0), Bound::Excluded(1.0)),
-        example: "0.65",
-    },
+    RESTITUTION,
     AbsorberLetter {
         name: "b",
         meaning: "half the width of the cavity, less the radius of the ball,",
@@ -61,77 +68,125 @@ pub(super) const LETTERS: [AbsorberLetter; 3] = [
     },
 ];
 
+/// The letters of the designs of a pendulum.
+pub(super) const LETTERS_OF_PENDULUM: [AbsorberLetter; 4] = [
+    RESTITUTION,
+    AbsorberLetter {
+        name: "b",
+        meaning: "half the way between the barriers",
+        range: (Bound::Excluded(0.0), Bound::Unbounded),
+        example: "1",
+    },
+    AbsorberLetter {
+        name: "w",
+        meaning: "the frequency of the pendulum over that of the main mass",
+        range: (Bound::Excluded(0.0), Bound::Excluded(1.0)),
+        example: "0.5",
+    },
+    AbsorberLetter {
+        name: "mu",
+        meaning: "the mass ratio of a light pendulum",
+        range: (Bound::Excluded(0.0), Bound::Included(0.1)),
+        example: "1/100",
+    },
+];
+
 const WHAT: &str = "the motion with two impacts a period";
 
-/// Derives the manifold, its least amplitude and where the motion is stable.
-pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
+/// The motion of the light body from impact to impact.
+struct Flight {
+    /// The numerator and the denominator of kappa.
+    kappa: [Expr; 2],
+    /// The power of pi in the square of that denominator.
+    power_of_pi: i32,
+    /// w.
+    frequency: Expr,
+}
+
+impl Flight {
+    fn of(kind: AbsorberKind) -> Self {
+        match kind {
+            AbsorberKind::PendulumSink => Self {
+                kappa: [Expr::symbol("kappa"), Expr::one()],
+                power_of_pi: 0,
+                frequency: Expr::symbol("w"),
+            },
+            _ => {
+                Self { kappa: [Expr::from(2), Expr::pi()], power_of_pi: 2, frequency: Expr::zero() }
+            }
+        }
+    }
+
+    /// `1 - w^2`.
+    fn forced(&self) -> Result<Expr, AbsorberError> {
+        Ok(Expr::one() - self.frequency.integer_power(2)?)
+    }
+
+    /// kappa times a factor.
+    fn kappa_times(&self, factor: &Expr) -> Result<Expr, AbsorberError> {
+        let [numerator, denominator] = &self.kappa;
+        Ok(Expr::divide(&(numerator * factor), denominator)?)
+    }
+}
+
+/// Derives the manifold, its least amplitude, where the motion is stable, and the decay.
+pub(super) fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
     let of = Symbol::new;
     let expr = |name: &str| Expr::symbol(name);
-    let (z, pi) = (of("Z"), of("pi"));
+    let flight = Flight::of(kind);
     let loss = loss()?;
-    // C^2 pi^2 = (Z - b)^2 pi^2 + (2 s Z)^2, a polynomial of second degree in Z.
+    let forced = flight.forced()?;
+    // (C/(1 - w^2))^2 times the square of kappa's denominator, a polynomial of second degree in Z.
     let place = expr("Z") - expr("b");
-    let speed = Expr::divide(&(Expr::from(2) * expr("Z")), &Expr::pi())?;
+    let speed = flight.kappa_times(&expr("Z"))?;
     let velocity = -expr("s") * &speed;
     let square = place.integer_power(2)? + velocity.integer_power(2)?;
-    let times_pi = (&square * &Expr::from(pi).integer_power(2)?).to_polynomial(&mut |_| None)?;
-    let parts = by_powers(&times_pi.ok_or_else(none)?, z);
+    let cleared = &square * &flight.kappa[1].integer_power(2)?;
+    let cleared = cleared.to_polynomial(&mut |_| None)?.ok_or_else(none)?;
+    let parts = by_powers(&cleared, of("Z"));
     let [c0, c1, c2] = &parts[..] else { return Err(none()) };
     let mut middle = c1.map(|number| number / ratio(2, 1));
     middle.negate();
     let lowest_place = Expr::divide(&Expr::from(&middle), &Expr::from(c2))?;
-    // C^2 = (c0 c2 - c1^2/4)/(pi^2 c2) where it is least.
+    // c0/c2 - (c1/(2 c2))^2 of these coefficients where C is least.
     let mut lowest = middle.product(&middle);
     lowest.negate();
     lowest.accumulate(&c0.product(c2));
-    let lowest = lowest.times_monomial(&Monomial::power_of(pi, -2)).single_term_root();
+    let over = Monomial::power_of(of("pi"), -flight.power_of_pi);
+    let lowest = lowest.times_monomial(&over).single_term_root();
     let lowest = Expr::divide(&Expr::from(&lowest.ok_or_else(none)?), &Expr::from(c2).sqrt()?)?;
-    // X = kappa v/pi where a multiplier is -1: Z - b = 2 kappa Z/pi^2.
-    let kappa = kappa_at_period_doubling(&loss)?.to_expr(of("r"))?;
-    let per_pi = Expr::divide(&Expr::from(2), &Expr::pi().integer_power(2)?)?;
-    let highest_place = Expr::divide(&expr("b"), &(Expr::one() - per_pi * &kappa))?;
-    let highest_speed = Expr::divide(&(Expr::from(2) * &highest_place), &Expr::pi())?;
-    let directions =
-        expr("s").integer_power(2)? + Expr::divide(&kappa, &Expr::pi())?.integer_power(2)?;
-    let highest = highest_speed * directions.sqrt()?;
-    let time = decay_time(&times_pi_parts(c1, c2)?, &loss)?;
+    let doubling = period_doubling(&flight)?;
+    let slopes = [c1, c2].map(|part| part.times_monomial(&over));
+    let time = decay_time(&slopes, &loss, &flight)?;
     let formula = |name: &'static str, symbol: &str, formula: Expr| AbsorberFormula {
         name,
         symbol: of(symbol),
         formula,
     };
+    let mut definitions = vec![Definition { symbol: of("s"), meaning: loss.to_expr(of("r"))? }];
+    if kind == AbsorberKind::PendulumSink {
+        let quarter = Expr::divide(&(Expr::pi() * &flight.frequency), &Expr::from(2))?;
+        let tangent = Expr::function(Function::Tan, vec![quarter])?;
+        let meaning = Expr::divide(&flight.frequency, &tangent)?;
+        definitions.push(Definition { symbol: of("kappa"), meaning });
+    }
+    let words = Words::of(kind);
     Ok(AbsorberLaws {
-        kind: AbsorberKind::ImpactSink,
-        equations: vec![
-            (Expr::from(of("x").derivative().derivative()) + expr("x"), Expr::zero()),
-            (Expr::from(of("y").derivative().derivative()), Expr::zero()),
-        ],
-        meanings: vec![
-            (of("x"), "displacement of the main mass, time in units of 1/(its frequency)"),
-            (of("y"), "displacement of the ball, which hits a wall where abs(y - x) = b"),
-            (of("b"), "half the width of the cavity, less the radius of the ball"),
-            (of("r"), "coefficient of restitution"),
-            (of("C"), "amplitude of the main mass"),
-            (of("Z"), "amplitude of the ball, which flies to and fro at the speed 2*Z/pi"),
-            (of("Z0"), "its amplitude at t = 0"),
-            (of("mu"), "mass of the ball over that of the main mass"),
-        ],
-        definitions: vec![Definition { symbol: of("s"), meaning: loss.to_expr(of("r"))? }],
+        kind,
+        equations: words.equations()?,
+        meanings: words.meanings(),
+        definitions,
         relations: vec![
-            AbsorberRelation {
-                left: expr("X"),
-                right: place,
-                words: "place of the main mass at an impact, where the ball turns",
-            },
+            AbsorberRelation { left: expr("X"), right: &forced * &place, words: words.place },
             AbsorberRelation {
                 left: expr("U"),
-                right: velocity,
+                right: &forced * &velocity,
                 words: "its velocity there, by the restitution",
             },
             AbsorberRelation {
                 left: expr("C").integer_power(2)?,
-                right: square,
+                right: forced.integer_power(2)? * &square,
                 words: "motions with two impacts a period, by C^2 = X^2 + U^2",
             },
             AbsorberRelation {
@@ -145,8 +200,8 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                 name: "threshold",
                 words: "the least amplitude of the main mass with two impacts a period",
                 formulas: vec![
-                    formula("amplitude", "C_min", lowest),
-                    formula("ball_amplitude", "Z_min", lowest_place),
+                    formula("amplitude", "C_min", &forced * &lowest),
+                    formula(words.amplitude, "Z_min", lowest_place),
                 ],
                 refined_by: None,
             },
@@ -154,50 +209,125 @@ pub(super) fn derive() -> Result<AbsorberLaws, AbsorberError> {
                 name: "period-doubling",
                 words: "the largest amplitude at which that motion is stable",
                 formulas: vec![
-                    formula("amplitude", "C_max", highest),
-                    formula("ball_amplitude", "Z_max", highest_place),
+                    formula("amplitude", "C_max", &forced * &doubling.amplitude),
+                    formula(words.amplitude, "Z_max", doubling.place),
                 ],
                 refined_by: None,
             },
         ],
-        validity: "a light ball, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; where r is below 0.09 or so, the ball \
-                   hits the same wall twice before C_max is reached",
+        validity: words.validity,
     })
 }
 
-/// `d(C^2)/dZ = p + q Z` as its coefficients p and q, from those of `pi^2 C^2`.
-fn times_pi_parts(first: &Polynomial, second: &Polynomial) -> Result<[Expr; 2], AbsorberError> {
-    let over = Monomial::power_of(Symbol::new("pi"), -2);
-    let [constant, slope] = [first, second].map(|part| part.times_monomial(&over));
-    Ok([Expr::from(&constant), Expr::from(2) * Expr::from(&slope)])
+/// What differs in words between a ball and a pendulum.
+struct Words {
+    kind: AbsorberKind,
+    place: &'static str,
+    /// The name of the amplitude Z.
+    amplitude: &'static str,
+    validity: &'static str,
 }
 
-/// The time in which the amplitude of the ball falls from `Z0` to Z: the integral of
-/// `-(p + q Z)/(rate of C^2) dZ`, where the rate is a number times `Z^2`.
-fn decay_time([p, q]: &[Expr; 2], loss: &RationalFunction) -> Result<Expr, AbsorberError> {
+impl Words {
+    fn of(kind: AbsorberKind) -> Self {
+        match kind {
+            AbsorberKind::PendulumSink => Self {
+                kind,
+                place: "place of the main mass at an impact",
+                amplitude: "pendulum_amplitude",
+                validity: "a light pendulum with w below 1, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; \
+                   where 1 - kappa^2 - w^2 - s^2*w^2 is not positive, the motion is stable at any amplitude, and there is no C_max; where r is small, the pendulum hits the same \
+                   barrier twice before C_max is reached",
+            },
+            _ => Self {
+                kind,
+                place: "place of the main mass at an impact, where the ball turns",
+                amplitude: "ball_amplitude",
+                validity: "a light ball, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; where r is below 0.09 or so, the ball \
+                   hits the same wall twice before C_max is reached",
+            },
+        }
+    }
+
+    fn equations(&self) -> Result<Vec<(Expr, Expr)>, AbsorberError> {
+        let expr = |name: &str| Expr::symbol(name);
+        let second = |name: &str| Expr::from(Symbol::new(name).derivative().derivative());
+        let main = second("x") + expr("x");
+        Ok(match self.kind {
+            AbsorberKind::PendulumSink => {
+                let pull = expr("w").integer_power(2)? * expr("y");
+                vec![(main, expr("mu") * &pull), (second("y") + second("x") + pull, Expr::zero())]
+            }
+            _ => vec![(main, Expr::zero()), (second("y"), Expr::zero())],
+        })
+    }
+
+    fn meanings(&self) -> Vec<(Symbol, &'static str)> {
+        let mut rows = match self.kind {
+            AbsorberKind::PendulumSink => vec![
+                (
+                    "y",
+                    "displacement of the pendulum relative to it, which hits a barrier where abs(y) = b",
+                ),
+                ("b", "half the way between the barriers"),
+                ("w", "frequency of the pendulum over that of the main mass"),
+                ("r", "coefficient of restitution"),
+                ("C", "amplitude of the main mass"),
+                ("Z", "y + x/(1 - w^2) just after an impact: what the pendulum swings by itself"),
+                ("Z0", "the same at t = 0"),
+                ("mu", "mass of the pendulum over that of the main mass"),
+            ],
+            _ => vec![
+                ("y", "displacement of the ball, which hits a wall where abs(y - x) = b"),
+                ("b", "half the width of the cavity, less the radius of the ball"),
+                ("r", "coefficient of restitution"),
+                ("C", "amplitude of the main mass"),
+                ("Z", "amplitude of the ball, which flies to and fro at the speed 2*Z/pi"),
+                ("Z0", "its amplitude at t = 0"),
+                ("mu", "mass of the ball over that of the main mass"),
+            ],
+        };
+        rows.insert(0, ("x", "displacement of the main mass, time in units of 1/(its frequency)"));
+        rows.into_iter().map(|(name, words)| (Symbol::new(name), words)).collect()
+    }
+}
+
+/// The time in which Z falls from `Z0`: the integral of `-(dC^2/dZ)/(rate of C^2) dZ`, with
+/// `dC^2/dZ = (1 - w^2)^2 (p + 2 q Z)` and the rate a number times `s kappa^2 Z^2`.
+fn decay_time(
+    [p, q]: &[Polynomial; 2],
+    loss: &RationalFunction,
+    flight: &Flight,
+) -> Result<Expr, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
     let expr = |name: &str| Expr::symbol(name);
     let letter = Symbol::new("r");
     let one = RationalFunction::number(ratio(1, 1));
     let r =
         RationalFunction::from_polynomial(&Polynomial::symbol(letter), letter).ok_or_else(none)?;
-    // (1 - r^2) (v - U)^2 = number s v^2 with U = -s v: the number does not depend on r.
+    // (1 - r^2) V^2 = number s (kappa Z)^2: the number does not depend on r.
     let gap = one.sum(loss);
     let taken = one.difference(&r.product(&r)).product(&gap.product(&gap));
     let number = taken.quotient(loss).ok_or_else(none)?.to_expr(letter)?;
-    // v^2 = 4 Z^2/pi^2, and an impact every pi.
+    let [numerator, denominator] = &flight.kappa;
+    // There is an impact every pi.
     let mass = Expr::divide(&(Expr::one() + expr("mu")), &expr("mu"))?;
-    let scale = Expr::divide(&Expr::pi().integer_power(3)?, &(Expr::from(4) * number * expr("s")))?;
+    let per_impact =
+        Expr::pi() * denominator.integer_power(2)? * flight.forced()?.integer_power(2)?;
+    let rate = number * numerator.integer_power(2)? * expr("s");
+    let scale = Expr::divide(&per_impact, &rate)?;
     let [before, now] = [expr("Z0"), expr("Z")];
     let fallen = Expr::function(Function::Log, vec![Expr::divide(&before, &now)?])?;
     let inverse = Expr::divide(&Expr::one(), &now)? - Expr::divide(&Expr::one(), &before)?;
-    Ok(mass * scale * (q * &fallen + p * &inverse))
+    let slope = Expr::from(2) * Expr::from(q);
+    Ok(mass * scale * (slope * &fallen + Expr::from(p) * &inverse))
 }
 
-/// `s = -U/v` in r, from the condition of restitution `-v - U = -r (v - U)`.
+/// `s = -u/v` in r, from the condition of restitution `-v - u = -r (v - u)`, where `v = kappa Z` and
+/// `u = U/(1 - w^2)`.
 fn loss() -> Result<RationalFunction, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
-    let (r, u, v) = (Symbol::new("r"), Symbol::new("U"), Symbol::new("v"));
+    let (r, u, v) = (Symbol::new("r"), Symbol::new("u"), Symbol::new("v"));
     let after = -Expr::from(v) - Expr::from(u);
     let before = Expr::from(v) - Expr::from(u);
     let condition = after + Expr::from(r) * before;
@@ -208,41 +338,75 @@ fn loss() -> Result<RationalFunction, AbsorberError> {
     part(v)?.quotient(&part(u)?).ok_or_else(none)
 }
 
-/// `kappa = pi X/v` where a multiplier of the map of impacts is -1.
-fn kappa_at_period_doubling(loss: &RationalFunction) -> Result<RationalFunction, AbsorberError> {
+/// The motion with a multiplier of -1.
+struct PeriodDoubling {
+    /// Z.
+    place: Expr,
+    /// `C/(1 - w^2)`.
+    amplitude: Expr,
+}
+
+/// Z and C where a multiplier is -1, `1 + trace + determinant = 0`.
+fn period_doubling(flight: &Flight) -> Result<PeriodDoubling, AbsorberError> {
     let none = || AbsorberError::NoClosedForm(WHAT);
-    let one = RationalFunction::number(ratio(1, 1));
-    let letter = Symbol::new("r");
-    let r =
-        RationalFunction::from_polynomial(&Polynomial::symbol(letter), letter).ok_or_else(none)?;
-    // d' = alpha d + beta pi e/v with U = -s v.
-    let gap = one.sum(loss);
-    let alpha = one.difference(loss).quotient(&gap).ok_or_else(none)?;
-    let beta = one.quotient(&gap).ok_or_else(none)?;
-    // 1 + trace + determinant, with trace = alpha + r - (1 + r) beta kappa and determinant = alpha r.
-    let free = one.sum(&alpha).sum(&r).sum(&alpha.product(&r));
-    let slope = one.sum(&r).product(&beta);
-    free.quotient(&slope).ok_or_else(none)
+    let expr = |name: &str| Expr::symbol(name);
+    let (one, place) = (Expr::one(), Symbol::new("Z"));
+    let squares = [flight.kappa_times(&one)?.integer_power(2)?, flight.frequency.integer_power(2)?];
+    let [kappa, w] = &squares;
+    // With r = back/forth, c = (kappa^2 - w^2)/(kappa^2 + w^2), S = 2 kappa/(kappa^2 + w^2): the condition
+    // 1 + r^2 + 2 r c = (1 + r) S a/V times forth^2 (kappa^2 + w^2) Z/2.
+    let (forth, back) = (&one + expr("s"), &one - expr("s"));
+    let both = forth.integer_power(2)? + back.integer_power(2)?;
+    let half = Expr::divide(&both, &Expr::from(2))?;
+    let left = half * (kappa + w) + &forth * &back * (kappa - w);
+    let right = flight.forced()? * expr("Z") - expr("b");
+    let condition = left * expr("Z") - Expr::from(2) * right;
+    let condition = condition.to_polynomial(&mut |_| None)?.ok_or_else(none)?;
+    let halved = |part: &Polynomial| Expr::from(&part.map(|number| number / ratio(2, 1)));
+    let slope = halved(&condition.slope(place));
+    let constant = halved(&condition.slope(Symbol::new("b"))) * expr("b");
+    let at = Expr::divide(&constant, &-&slope)?;
+    // X/(1 - w^2) = Z - b = (1 + slope) Z, and U/(1 - w^2) = -s kappa Z.
+    let over_kappa = Expr::divide(&(&one + &slope), &flight.kappa_times(&one)?)?;
+    let directions = expr("s").integer_power(2)? + over_kappa.integer_power(2)?;
+    Ok(PeriodDoubling { amplitude: flight.kappa_times(&at)? * directions.sqrt()?, place: at })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn written(kind: AbsorberKind) -> Vec<String> {
+        let laws = derive(kind).expect("closed forms");
+        let formulas = laws.designs.iter().flat_map(|design| &design.formulas);
+        formulas.map(|own| format!("{} = {}", own.symbol, own.formula)).collect()
+    }
+
     #[test]
     fn formulas_of_two_impacts_a_period() {
-        let laws = derive().expect("closed forms");
-        let formulas = laws.designs.iter().flat_map(|design| &design.formulas);
-        let written: Vec<String> =
-            formulas.map(|own| format!("{} = {}", own.symbol, own.formula)).collect();
-        assert_eq!(laws.definitions[0].meaning.to_string(), "(1 - r)/(1 + r)");
+        let laws = derive(AbsorberKind::PendulumSink).expect("closed forms");
+        let meanings = laws.definitions.iter().map(|own| own.meaning.to_string());
+        assert_eq!(meanings.collect::<Vec<_>>(), ["(1 - r)/(1 + r)", "w/tan(pi*w/2)"]);
         assert_eq!(
-            written,
+            written(AbsorberKind::ImpactSink),
             [
                 "C_min = 2*b*s/sqrt(pi^2 + 4*s^2)",
                 "Z_min = pi^2*b/(pi^2 + 4*s^2)",
                 "C_max = 2*b*sqrt(4/pi^2 + s^2)/(pi*(1 - 4/pi^2))",
                 "Z_max = b/(1 - 4/pi^2)",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_pendulum_has_its_own_frequency() {
+        assert_eq!(
+            written(AbsorberKind::PendulumSink),
+            [
+                "C_min = b*kappa*s*(1 - w^2)/sqrt(1 + kappa^2*s^2)",
+                "Z_min = b/(1 + kappa^2*s^2)",
+                "C_max = b*kappa*(1 - w^2)*sqrt(s^2 + (kappa^2 + w^2 + s^2*w^2)^2/kappa^2)/(1 - kappa^2 - w^2 - s^2*w^2)",
+                "Z_max = b/(1 - kappa^2 - w^2 - s^2*w^2)",
             ]
         );
     }

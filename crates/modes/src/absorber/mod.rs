@@ -7,7 +7,7 @@
 //! - `damped`: the same on a main mass with damping of its own, to first order in it.
 //! - `nonlinear`: the tuned mass damper on a main mass with a cubic spring, with a cubic spring of its own, by
 //!   perturbation of its two peaks.
-//! - `impact_sink`: a ball in a cavity, by the conditions of its impacts.
+//! - `impact_sink`: a ball in a cavity or a pendulum between barriers, by the conditions of its impacts.
 //! - `cubic_sink`: a light mass on a cubic spring, by the first harmonic of its motion.
 
 mod cubic_sink;
@@ -48,6 +48,8 @@ pub enum AbsorberKind {
     Nonlinear,
     /// The vibro-impact sink, a ball in a cavity.
     ImpactSink,
+    /// The vibro-impact sink, a pendulum between two barriers.
+    PendulumSink,
     /// The nonlinear energy sink, a light mass on a cubic spring.
     CubicSink,
 }
@@ -60,6 +62,7 @@ impl AbsorberKind {
             Self::Damped(_) => "damped",
             Self::Nonlinear => "nonlinear",
             Self::ImpactSink => "impact-sink",
+            Self::PendulumSink => "pendulum-sink",
             Self::CubicSink => "cubic-sink",
         }
     }
@@ -73,6 +76,7 @@ impl AbsorberKind {
             Self::Damped(Excitation::Ground) => &damped::LETTERS_BELOW_TWO,
             Self::Nonlinear => &nonlinear::LETTERS,
             Self::ImpactSink => &impact_sink::LETTERS,
+            Self::PendulumSink => &impact_sink::LETTERS_OF_PENDULUM,
             Self::CubicSink => &cubic_sink::LETTERS,
         }
     }
@@ -241,7 +245,7 @@ pub fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> {
         AbsorberKind::Tuned(excitation) => tuned::derive(excitation),
         AbsorberKind::Damped(excitation) => damped::derive(excitation),
         AbsorberKind::Nonlinear => nonlinear::derive(),
-        AbsorberKind::ImpactSink => impact_sink::derive(),
+        AbsorberKind::ImpactSink | AbsorberKind::PendulumSink => impact_sink::derive(kind),
         AbsorberKind::CubicSink => cubic_sink::derive(),
     }
 }

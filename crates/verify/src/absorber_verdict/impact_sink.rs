@@ -1,28 +1,36 @@
-//! A ball in the cavity of a main mass, from impact to impact.
+//! A body between two walls of a main mass, from impact to impact: a ball in its cavity, or a pendulum
+//! between barriers.
 //!
-//! Between impacts both motions are known exactly, and the time of the next impact is the root of
-//! `|y - x| = b`. A ball without mass in a cavity that moves as `C cos t` gives the least amplitude
-//! and the loss of stability; a ball with mass, which takes energy at each impact, the motion that
-//! slides along the manifold.
+//! Between impacts both masses are a linear system, with the displacement y relative to the main mass
+//!
+//! ```text
+//! q = (x, y),  q'' = -A q,  A = (1, -mu w^2; -1, (1 + mu) w^2),   q(t) = cos(sqrt(A) t) q(0) + sin(sqrt(A) t)/sqrt(A) q'(0)
+//! ```
+//!
+//! and the time of the next impact is the root of `|y| = b`. A body without mass beside a main mass that
+//! moves as `C cos t` gives the least amplitude and the loss of stability; a body with mass, which takes
+//! energy at each impact, the motion that slides along the manifold.
 
 use std::f64::consts::PI;
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::{AbsorberCurve, AbsorberCurveKind, AbsorberDecay, AbsorberMotion, Truth};
-use crate::absorber::AbsorberLaws;
+use crate::absorber::{AbsorberKind, AbsorberLaws};
 use crate::expr::Expr;
 use crate::numeric::ode::newton::{Progress, newton};
 use crate::numeric::ode::root::{find_minimum, find_root};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// A ball and its main mass.
+/// A body between walls of its main mass.
 #[derive(Clone, Copy)]
-struct BallInCavity {
+struct BetweenWalls {
     restitution: f64,
     half_width: f64,
     mass_ratio: f64,
+    /// The frequency w of the body alone, 0 of a ball.
+    frequency: f64,
 }
 
 /// The state just after an impact.
@@ -35,57 +43,92 @@ struct AfterImpact {
     x_rate: f64,
     /// The side of the wall that was hit, 1 or -1.
     side: f64,
-    /// The velocity of the ball.
+    /// The velocity of the body relative to the main mass.
     y_rate: f64,
 }
 
-/// A motion with two impacts a period of a ball without mass in a cavity that moves as `C cos t`.
+/// A motion with two impacts a period of a body without mass beside a main mass that moves as `C cos t`.
 #[derive(Clone, Copy, Debug)]
 struct MotionAtPhase {
     /// The time of the impact on the wall of side 1.
     phase: f64,
     /// C.
     amplitude: f64,
-    /// The velocity of the ball after that impact.
+    /// The relative velocity of the body after that impact.
     y_rate: f64,
 }
 
-impl MotionAtPhase {
-    /// The amplitude of the ball.
-    fn ball(self) -> f64 {
-        self.y_rate.abs() * PI / 2.0
+impl BetweenWalls {
+    /// `kappa = w cot(pi w/2)`.
+    fn kappa(&self) -> f64 {
+        match self.frequency {
+            0.0 => 2.0 / PI,
+            own => own / (PI * own / 2.0).tan(),
+        }
     }
-}
 
-impl BallInCavity {
+    /// The amplitude Z of the body that has this relative velocity after an impact,
+    /// `-r (1 + s) kappa Z`.
+    fn amplitude(&self, y_rate: f64) -> f64 {
+        let loss = (1.0 - self.restitution) / (1.0 + self.restitution);
+        y_rate.abs() / ((1.0 - loss) * self.kappa())
+    }
+
+    /// The motion on the manifold with this amplitude Z, as a first guess.
+    fn on_manifold(&self, amplitude: f64) -> MotionAtPhase {
+        let loss = (1.0 - self.restitution) / (1.0 + self.restitution);
+        let forced = 1.0 - self.frequency.powi(2);
+        let speed = self.kappa() * amplitude;
+        let (x, rate) = (forced * (amplitude - self.half_width), forced * loss * speed);
+        let y_rate = -(1.0 - loss) * speed;
+        MotionAtPhase { phase: rate.atan2(x), amplitude: x.hypot(rate), y_rate }
+    }
+
+    /// Displacements of the main mass and the body, and the velocities of both, a time after an impact.
+    fn flight(&self, from: AfterImpact, time: f64) -> [Vector2<f64>; 2] {
+        let (mu, square) = (self.mass_ratio, self.frequency.powi(2));
+        let system = Matrix2::new(1.0, -mu * square, -1.0, (1.0 + mu) * square);
+        let (middle, product) = (system.trace() / 2.0, square);
+        let high = middle + (middle * middle - product).max(0.0).sqrt();
+        let eigenvalues = [high, product / high];
+        let [first, second] = eigenvalues.map(|square| {
+            let own = square.sqrt();
+            let (sine, cosine) = (own * time).sin_cos();
+            [cosine, if own > 0.0 { sine / own } else { time }, -own * sine]
+        });
+        let spread = system - Matrix2::identity() * eigenvalues[0];
+        let of = |place: usize| {
+            let slope = (second[place] - first[place]) / (eigenvalues[1] - eigenvalues[0]);
+            Matrix2::identity() * first[place] + spread * slope
+        };
+        let place = Vector2::new(from.x, from.side * self.half_width);
+        let rate = Vector2::new(from.x_rate, from.y_rate);
+        [of(0) * place + of(1) * rate, of(2) * place + of(0) * rate]
+    }
+
     /// The state after the next impact; `None` if there is none within two periods.
     fn next(&self, from: AfterImpact) -> Option<AfterImpact> {
         const STEPS: u32 = 400;
-        let y = from.x + from.side * self.half_width;
-        let main = |time: f64| {
-            let (sine, cosine) = time.sin_cos();
-            [from.x * cosine + from.x_rate * sine, from.x_rate * cosine - from.x * sine]
-        };
-        let relative = |time: f64| y + from.y_rate * time - main(time)[0];
+        let relative = |time: f64| self.flight(from, time)[0].y;
         let step = 4.0 * PI / f64::from(STEPS);
         let mut last = 0.0;
         for count in 1..=STEPS {
             let time = step * f64::from(count);
-            let side = relative(time).signum();
-            if relative(time).abs() > self.half_width {
+            let y = relative(time);
+            if y.abs() > self.half_width {
+                let side = y.signum();
                 let beyond = |time: f64| side * relative(time) - self.half_width;
-                // Just after an impact the ball is at the wall that it leaves.
+                // Just after an impact the body is at the wall that it leaves.
                 let begin = if last == 0.0 && side == from.side { step * 1e-6 } else { last };
                 let time = find_root(beyond, begin, time).ok()?;
-                let [x, x_rate] = main(time);
-                let loss =
-                    (1.0 + self.restitution) * (from.y_rate - x_rate) / (1.0 + self.mass_ratio);
+                let [place, rate] = self.flight(from, time);
+                let change = -(1.0 + self.restitution) * rate.y;
                 return Some(AfterImpact {
                     t: from.t + time,
-                    x,
-                    x_rate: x_rate + self.mass_ratio * loss,
+                    x: place.x,
+                    x_rate: rate.x - self.mass_ratio / (1.0 + self.mass_ratio) * change,
                     side,
-                    y_rate: from.y_rate - loss,
+                    y_rate: rate.y + change,
                 });
             }
             last = time;
@@ -93,7 +136,7 @@ impl BallInCavity {
         None
     }
 
-    /// Phase and velocity after the next impact, mirrored, from those after an impact of a ball
+    /// Phase and velocity after the next impact, mirrored, from those after an impact of a body
     /// without mass on the wall of side 1; `None` if the next is on the same wall.
     fn mirrored(&self, amplitude: f64, [phase, y_rate]: [f64; 2]) -> Option<[f64; 2]> {
         let (sine, cosine) = phase.sin_cos();
@@ -135,7 +178,7 @@ impl BallInCavity {
         Some(MotionAtPhase { phase, amplitude: found[0], y_rate: found[1] })
     }
 
-    /// The motion to which a ball without mass settles in a cavity of this amplitude.
+    /// The motion to which a body without mass settles beside a main mass of this amplitude.
     fn settled(&self, amplitude: f64, start: [f64; 2]) -> Option<MotionAtPhase> {
         const IMPACTS: u32 = 20_000;
         let mut state = start;
@@ -175,8 +218,9 @@ impl BallInCavity {
 
     /// The motion of the least amplitude.
     fn least(&self, from: MotionAtPhase) -> Option<MotionAtPhase> {
-        // Phases change with the velocity of the walls, which is small where little is lost.
-        let step = 0.02 * (1.0 - self.restitution);
+        // From Z = b on, phases change by atan(s kappa) until C is least.
+        let loss = (1.0 - self.restitution) / (1.0 + self.restitution);
+        let step = 0.05 * loss * self.kappa();
         let is_less = |last: MotionAtPhase, next: MotionAtPhase| next.amplitude < last.amplitude;
         let [last, next] = self.followed(from, |phase| phase + step, is_less)?;
         let amplitude =
@@ -215,51 +259,52 @@ impl BallInCavity {
 /// The true values of the designs, the manifold, and a motion that slides along it.
 pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     let letter = |name: &str| at.get(Symbol::new(name)).unwrap_or(f64::NAN);
-    let (restitution, half_width) = (letter("r"), letter("b"));
-    let loss = (1.0 - restitution) / (1.0 + restitution);
-    let light = BallInCavity { restitution, half_width, mass_ratio: 0.0 };
-    let value = |design: &str, name: &str| laws.named_value(design, name, at);
-    // The motion on the manifold with this amplitude of the ball, as a first guess.
-    let on_manifold = |ball: f64| {
-        let (x, rate) = (ball - half_width, 2.0 * loss * ball / PI);
-        MotionAtPhase { phase: rate.atan2(x), amplitude: x.hypot(rate), y_rate: -2.0 * ball / PI }
+    let half_width = letter("b");
+    let light = BetweenWalls {
+        restitution: letter("r"),
+        half_width,
+        mass_ratio: 0.0,
+        frequency: at.get(Symbol::new("w")).unwrap_or(0.0),
     };
-    let balls =
-        value("threshold", "ball_amplitude").zip(value("period-doubling", "ball_amplitude"));
-    // With the ball as far as the wall, the main mass passes its middle at the impact.
-    let guess = on_manifold(half_width);
+    let body = match laws.kind {
+        AbsorberKind::PendulumSink => "pendulum_amplitude",
+        _ => "ball_amplitude",
+    };
+    let value = |design: &str| laws.named_value(design, body, at).filter(|own| *own > 0.0);
+    // Where Z = b, the main mass passes its middle at the impact.
+    let guess = light.on_manifold(half_width);
     let settled = light.settled(guess.amplitude, [guess.phase, guess.y_rate]);
     let least = settled.and_then(|motion| light.least(motion));
     let most = settled.and_then(|motion| light.period_doubling(motion));
     let mut values = Vec::new();
     for (design, motion) in [("threshold", least), ("period-doubling", most)] {
         values.push((design, "amplitude", motion.map(|motion| motion.amplitude)));
-        values.push((design, "ball_amplitude", motion.map(MotionAtPhase::ball)));
+        values.push((design, body, motion.map(|motion| light.amplitude(motion.y_rate))));
     }
-    let heavy = BallInCavity { mass_ratio: letter("mu"), ..light };
-    let (start, end) = match balls {
-        Some((_, most)) => (on_manifold((half_width + most) / 2.0), 1.2 * most),
-        None => return Truth { values, ..Truth::default() },
-    };
-    let slide = heavy.slide(start, balls.map_or(0.0, |(least, _)| least));
-    let manifold = |ball: f64| on_manifold(ball).amplitude;
+    let Some(least) = value("threshold") else { return Truth { values, ..Truth::default() } };
+    let most = value("period-doubling");
+    let heavy = BetweenWalls { mass_ratio: letter("mu"), ..light };
+    let end = most.map_or(3.0 * half_width, |most| 1.2 * most);
+    let first = (half_width + most.unwrap_or(end)) / 2.0;
+    let slide = heavy.slide(light.on_manifold(first), least);
+    let manifold = |amplitude: f64| light.on_manifold(amplitude).amplitude;
     let words = "both masses set free on the manifold, as long as there are two impacts a period";
     let points: Vec<(f64, f64)> = (0..=2_000)
         .map(|step| end * f64::from(step) / 2_000.0)
-        .map(|ball| (manifold(ball), ball))
+        .map(|own| (manifold(own), own))
         .collect();
-    let decay = decay(laws, at, start.ball(), &slide);
+    let decay = decay(laws, at, first, &slide);
     let slide: Vec<(f64, f64)> = slide.into_iter().map(|(_, point)| point).collect();
     let motion = AbsorberMotion::along(&points, &slide, words)
         .map(|motion| AbsorberMotion { decay, ..motion });
-    let curves = curves(&manifold, balls, end, slide);
+    let curves = curves(&manifold, least, most, end, slide);
     Truth { values, curves, motion, lowest_peak: None }
 }
 
-impl BallInCavity {
-    /// The time and the amplitudes of the main mass and of the ball, impact by impact, of masses set
-    /// free, until the ball has less than an amplitude or loses step.
-    fn slide(&self, start: MotionAtPhase, least_ball: f64) -> Vec<(f64, (f64, f64))> {
+impl BetweenWalls {
+    /// The time and the amplitudes of the main mass and of the body, impact by impact, of masses set
+    /// free, until the body has less than an amplitude or loses step.
+    fn slide(&self, start: MotionAtPhase, least: f64) -> Vec<(f64, (f64, f64))> {
         const MOST: usize = 20_000;
         let (sine, cosine) = start.phase.sin_cos();
         let mut state = AfterImpact {
@@ -273,27 +318,32 @@ impl BallInCavity {
         while found.len() < MOST {
             let Some(next) = self.next(state) else { break };
             let is_in_step = next.side != state.side && (next.t - state.t - PI).abs() < 0.7;
-            let ball = next.y_rate.abs() * PI / 2.0;
-            if !is_in_step || ball < least_ball {
+            let amplitude = self.amplitude(next.y_rate);
+            if !is_in_step || amplitude < least {
                 break;
             }
             state = next;
-            found.push((state.t, (state.x.hypot(state.x_rate), ball)));
+            found.push((state.t, (state.x.hypot(state.x_rate), amplitude)));
         }
         found
     }
 }
 
-/// The time in which the ball falls from its amplitude at the start to the amplitude b, at which it turns
-/// where the main mass passes its middle; `None` if it does not.
+/// The time in which the body falls from its amplitude at the start to the amplitude b, with impacts
+/// where the main mass passes its middle, or half of the way if it loses step before; `None` if it does
+/// neither.
 fn decay(
     laws: &AbsorberLaws,
     at: &Values,
     first: f64,
     slide: &[(f64, (f64, f64))],
 ) -> Option<AbsorberDecay> {
-    let last = at.get(Symbol::new("b"))?;
-    let pair = slide.windows(2).find(|pair| pair[0].1.1 >= last && pair[1].1.1 < last)?;
+    let width = at.get(Symbol::new("b"))?;
+    let passed = [width, (first + width) / 2.0].into_iter().find_map(|last| {
+        let mut pairs = slide.windows(2);
+        Some((last, pairs.find(|pair| pair[0].1.1 >= last && pair[1].1.1 < last)?))
+    });
+    let (last, pair) = passed?;
     let [(before, (_, high)), (after, (_, low))] = [pair[0], pair[1]];
     let truth = before + (after - before) * (high - last) / (high - low);
     let mut numbers = at.with(Symbol::new("Z0"), first);
@@ -302,31 +352,36 @@ fn decay(
     Some(AbsorberDecay { amplitudes: [first, last], formula, truth })
 }
 
-/// The manifold by its stability, and the motion along it.
+/// The manifold by its stability, and the motion along it; `most` is `None` where all large motions are
+/// stable.
 fn curves(
     manifold: &dyn Fn(f64) -> f64,
-    balls: Option<(f64, f64)>,
+    least: f64,
+    most: Option<f64>,
     end: f64,
     slide: Vec<(f64, f64)>,
 ) -> Vec<AbsorberCurve> {
     const POINTS: u32 = 200;
-    let Some((least, most)) = balls else { return vec![] };
     let part = |from: f64, to: f64| -> Vec<(f64, f64)> {
         (0..=POINTS)
             .map(|step| from + (to - from) * f64::from(step) / f64::from(POINTS))
-            .map(|ball| (manifold(ball), ball))
+            .map(|own| (manifold(own), own))
             .collect()
     };
     let curve = |label: &str, kind, points| AbsorberCurve { label: label.to_owned(), kind, points };
-    vec![
+    let stable = part(least, most.unwrap_or(end));
+    let mut curves = vec![
         curve("two masses set free", AbsorberCurveKind::Truth, slide),
-        curve("two impacts a period, stable", AbsorberCurveKind::Formula, part(least, most)),
+        curve("two impacts a period, stable", AbsorberCurveKind::Formula, stable),
         curve("unstable", AbsorberCurveKind::Unstable, part(0.4 * least, least)),
-        curve("unstable", AbsorberCurveKind::Unstable, part(most, end)),
-        curve(
-            "least amplitude, period doubling",
-            AbsorberCurveKind::Points,
-            vec![(manifold(least), least), (manifold(most), most)],
-        ),
-    ]
+    ];
+    let mut points = vec![(manifold(least), least)];
+    let mut words = "least amplitude";
+    if let Some(most) = most {
+        curves.push(curve("unstable", AbsorberCurveKind::Unstable, part(most, end)));
+        points.push((manifold(most), most));
+        words = "least amplitude, period doubling";
+    }
+    curves.push(curve(words, AbsorberCurveKind::Points, points));
+    curves
 }

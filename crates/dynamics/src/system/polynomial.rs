@@ -48,37 +48,85 @@ impl WithSimd for EvaluatePolynomial<'_> {
 /// other interval is halved (G. E. Collins, A. G. Akritas, SYMSAC 1976, 272; J. M. Lane, R. F.
 /// Riesenfeld, BIT 21 (1981) 112).
 pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
+    sign_and_roots(series, from, to).1
+}
+
+/// Returns the sign with which the search for roots begins on an interval, 0 if all coefficients are
+/// zero, and the [`roots`].
+pub(super) fn sign_and_roots(series: &[f64], from: f64, to: f64) -> (f64, Vec<(f64, bool)>) {
+    let terms = TermSizes::new(series, to.abs().max(from.abs()));
+    match series.first() {
+        None => (0.0, vec![]),
+        // Most series have no root, since the constant outweighs all other terms.
+        Some(constant) if terms.constant > terms.others => (constant.signum(), vec![]),
+        // Of the others most grow or fall throughout, since the linear term outweighs the later ones, and
+        // have no more than one.
+        _ => {
+            let most = (2.0 * terms.linear > terms.slopes).then_some(1);
+            (sign_at_start(series, from, to), roots_of_at_most(most, series, from, to))
+        }
+    }
+}
+
+/// The sizes of the terms of a polynomial at a place.
+struct TermSizes {
+    /// `|c_0|`.
+    constant: f64,
+    /// `|c_1| s`.
+    linear: f64,
+    /// The sum of `|c_k| s^k` for k > 0.
+    others: f64,
+    /// The sum of `k |c_k| s^k`.
+    slopes: f64,
+}
+
+impl TermSizes {
+    /// Sums of even and odd terms side by side, so that few additions wait for others.
+    fn new(series: &[f64], s: f64) -> Self {
+        let (mut others, mut slopes) = ([0.0; 2], [0.0; 2]);
+        for (k, coefficient) in series.iter().enumerate().skip(1).rev() {
+            let (parity, size) = (k % 2, coefficient.abs());
+            others[parity] = others[parity] * s * s + size;
+            slopes[parity] = slopes[parity] * s * s + size * k as f64;
+        }
+        let sum = |[even, odd]: [f64; 2]| s * (odd + s * even);
+        let term = |k: usize| series.get(k).map_or(0.0, |coefficient| coefficient.abs());
+        Self { constant: term(0), linear: term(1) * s, others: sum(others), slopes: sum(slopes) }
+    }
+}
+
+/// Returns the roots of a polynomial, of which there are at most so many if that is known.
+fn roots_of_at_most(
+    mut most: Option<usize>,
+    series: &[f64],
+    from: f64,
+    to: f64,
+) -> Vec<(f64, bool)> {
     const MOST_INTERVALS: usize = 4000;
     let mut roots = Vec::new();
-    // Most series have no root, since the constant outweighs all other terms.
-    let Some((constant, others)) = series.split_first() else { return roots };
-    let size = to.abs().max(from.abs());
-    let change = size * others.iter().rev().fold(0.0, |sum, c| sum * size + c.abs());
-    if constant.abs() > change {
-        return roots;
-    }
     let mut open = vec![(from, to)];
-    let mut backwards = Vec::with_capacity(series.len());
+    let mut backwards = vec![];
     for _ in 0..MOST_INTERVALS {
         let Some((low, high)) = open.pop() else { break };
-        let changes = sign_changes(series, low, high, &mut backwards);
+        let changes =
+            most.take().unwrap_or_else(|| sign_changes(series, low, high, &mut backwards));
         if changes > 1 && high - low > 2e-13 * (to - from) {
             let middle = 0.5 * (low + high);
             open.extend([(middle, high), (low, middle)]);
         } else if changes > 0 {
             // Beside a zero at either end of an interval the sign is that a little further on.
-            let beside = |place: f64| match place == from || value(series, place) == 0.0 {
+            let beside = |place: f64| match place == from || paired_value(series, place) == 0.0 {
                 true if place < to => place + apart(from, to),
                 _ => place,
             };
             let (low, end) = (beside(low), beside(high));
-            let (at_low, at_end) = (value(series, low), value(series, end));
+            let (at_low, at_end) = (paired_value(series, low), paired_value(series, end));
             let crosses = match at_end == 0.0 {
                 true => at_low != 0.0 && high == to,
                 false => at_low != 0.0 && at_low.signum() != at_end.signum(),
             };
             if crosses && low < high {
-                let root = find_root(|s| value(series, s), low, high);
+                let root = find_root(|s| paired_value(series, s), low, high);
                 roots.extend(root.map(|root| (root, at_low < 0.0)));
             }
         }
@@ -86,11 +134,39 @@ pub(super) fn roots(series: &[f64], from: f64, to: f64) -> Vec<(f64, bool)> {
     roots
 }
 
+/// The value at `s`, as sums of even and odd terms side by side.
+fn paired_value(series: &[f64], s: f64) -> f64 {
+    let pairs = series.chunks(2).rev();
+    let [even, odd] = pairs.fold([0.0; 2], |[even, odd], pair| {
+        [even * s * s + pair[0], odd * s * s + pair.get(1).copied().unwrap_or(0.0)]
+    });
+    even + s * odd
+}
+
 /// Returns the number of sign changes of the Bernstein coefficients on an interval: with
 /// `s = low + (high - low) u` and `p = sum_k c_k u^k` these are `b_i = sum_k C(i, k) c_k/C(n, k)`.
 /// They are computed in `backwards`, the last first, so that an addition reads what the next one
 /// writes, and many can be done at once.
 fn sign_changes(series: &[f64], low: f64, high: f64, backwards: &mut Vec<f64>) -> usize {
+    struct CountSignChanges<'a> {
+        series: &'a [f64],
+        low: f64,
+        high: f64,
+        backwards: &'a mut Vec<f64>,
+    }
+    impl WithSimd for CountSignChanges<'_> {
+        type Output = usize;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) -> usize {
+            count_sign_changes(self.series, self.low, self.high, self.backwards)
+        }
+    }
+    Arch::new().dispatch(CountSignChanges { series, low, high, backwards })
+}
+
+#[inline(always)]
+fn count_sign_changes(series: &[f64], low: f64, high: f64, backwards: &mut Vec<f64>) -> usize {
     backwards.clear();
     backwards.extend(series.iter().rev());
     if low != 0.0 {
@@ -128,7 +204,7 @@ fn apart(from: f64, to: f64) -> f64 {
 
 /// Returns the sign with which the search for roots begins on an interval; 0 if all coefficients are
 /// zero.
-pub(super) fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
+fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
     let here = value(series, from + apart(from, to));
     let leading = series.iter().find(|value| **value != 0.0);
     match (here, leading) {
@@ -141,6 +217,7 @@ pub(super) fn sign_at_start(series: &[f64], from: f64, to: f64) -> f64 {
 
 /// Expands a polynomial, whose last coefficient is the first here, about another centre, by Horner's
 /// scheme.
+#[inline(always)]
 fn about(backwards: &mut [f64], centre: f64) {
     for end in (1..=backwards.len()).rev() {
         for k in 1..end {

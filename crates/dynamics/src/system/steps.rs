@@ -11,7 +11,7 @@
 use crate::numeric::ode::root::find_root;
 
 use super::expansion::SystemSeries;
-use super::polynomial::{roots, sign_at_start, value, values};
+use super::polynomial::{sign_and_roots, value, values};
 use super::spare_memory::{SpareMemory, SparingList};
 
 /// The steps of a path.
@@ -205,16 +205,16 @@ impl TaylorSteps {
         let steps = if state < self.states { first..self.steps.len() } else { 0..0 };
         let mut reader = StepReader::new(self);
         for step in steps {
-            let end = self.steps.get(step + 1).map_or(end, |next| next.start);
+            let is_last = step + 1 == self.steps.len();
             let own = reader.series(step);
             let (start, series) = (own.step.start, own.state(state));
-            let [here, there] = [from.max(start), end].map(|time| own.place(time));
-            let sign = sign_at_start(series, here, there);
+            let here = if from <= start { 0.0 } else { own.place(from) };
+            let there = if is_last { own.place(end) } else { own.step.length };
+            let (sign, met) = sign_and_roots(series, here, there);
             // A crossing that rounding has put between two steps.
             if sign != 0.0 && before == -sign {
                 zeros.push(start);
             }
-            let met = roots(series, here, there);
             before = met.last().map_or(sign, |(_, rising)| if *rising { 1.0 } else { -1.0 });
             zeros.extend(met.into_iter().map(|(place, _)| start + own.since_start(place)));
         }

@@ -4,10 +4,10 @@ use crate::coupled::CoupledEquations;
 use crate::export::code::{self, CodeStyle};
 use crate::export::{json, modes as drawing};
 use crate::expr::{Expr, ResultSymbols, excerpt_of};
-use crate::modes::{FreeSystem, ModeError, ModeOptions, NormalModes, derive};
+use crate::modes::{FreeSystem, ModeError, ModeOptions, NonlinearMode, NormalModes, derive};
 use crate::problem::{Order, Problem, ReadingCommand};
 use crate::report::{self, ModesReport};
-use crate::solution::{AmplitudeConvention, Degrees, Method};
+use crate::solution::{AmplitudeConvention, Degrees, Method, defined_values};
 use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::{JudgedMode, Verdict, VerificationError, judge_mode};
@@ -226,8 +226,8 @@ pub(super) fn free_system(
     system.map_err(|error| refused(&error, problem.equation.as_deref()))
 }
 
-/// The modes; where letters leave no closed form and values are given, those of the equations with
-/// the numbers in them, and the values that are left.
+/// The modes; where letters leave no closed form, or one without a value, and values are given, those
+/// of the equations with the numbers in them, and the values that are left.
 fn with_numbers(
     system: &FreeSystem,
     options: &ModeOptions,
@@ -239,8 +239,34 @@ fn with_numbers(
             let with_values = system.with_values(&known)?;
             Ok((derive(&with_values, options)?, Some(rest)))
         }
+        (Ok(found), Some(values)) if lacks_value(&found, &values) => {
+            let (known, rest) = values.split(&system.equations.parameters);
+            let in_numbers = system.with_values(&known).and_then(|own| derive(&own, options));
+            match in_numbers {
+                Ok(modes) if modes.modes.iter().any(Result::is_ok) => Ok((modes, Some(rest))),
+                _ => Ok((found, Some(values))),
+            }
+        }
         (found, values) => Ok((found?, values)),
     }
+}
+
+/// Whether a name in the formula of a mode has no real value at the values, or that of zero, as the
+/// frequency of another mode that does not swing.
+fn lacks_value(modes: &NormalModes, values: &Values) -> bool {
+    let is_given = |name: &Symbol| values.get(*name).is_some();
+    let value_of = |name: Symbol| match name == Symbol::new("pi") {
+        true => Some(std::f64::consts::PI),
+        false => values.get(name),
+    };
+    let lacks = |mode: &NonlinearMode| {
+        let defined = defined_values(&mode.definitions, &value_of);
+        defined.map_or(true, |defined| {
+            defined.into_iter().any(|(_, value)| !value.is_finite() || value == 0.0)
+        })
+    };
+    modes.system.equations.parameters.iter().all(is_given)
+        && modes.modes.iter().flatten().any(lacks)
 }
 
 /// The reason why the first mode has no formula, if none has one.

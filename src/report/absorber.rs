@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use super::driven::values_in_words;
 use super::{Block, Document, percent, size_in_percent};
-use crate::absorber::AbsorberLaws;
-use crate::absorber_verdict::{AbsorberDecay, JudgedAbsorber};
+use crate::absorber::{AbsorberKind, AbsorberLaws};
+use crate::absorber_verdict::{AbsorberDecay, AbsorberTouch, JudgedAbsorber};
 use crate::decimal::decimal;
 use crate::derivation::DerivationLine;
 use crate::expr::Expr;
@@ -53,7 +53,11 @@ pub fn absorber<'a>(report: &AbsorberReport<'a>) -> Document<'a> {
             design.formulas.iter().map(|own| line(Expr::from(own.symbol), own.formula.clone()));
         sections.push(std::iter::once(title).chain(formulas).collect());
     }
-    sections.extend(report.judged.map(beside_the_truth));
+    let is_sink = matches!(
+        laws.kind,
+        AbsorberKind::ImpactSink | AbsorberKind::PendulumSink | AbsorberKind::CubicSink
+    );
+    sections.extend(report.judged.map(|judged| beside_the_truth(judged, is_sink)));
     sections
         .push(vec![Block::Heading("Validity".to_owned()), Block::Note(laws.validity.to_owned())]);
     Document { sections }
@@ -68,7 +72,7 @@ fn capitalised(words: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
+fn beside_the_truth<'a>(judged: &JudgedAbsorber, is_sink: bool) -> Vec<Block<'a>> {
     let number = |value: Option<f64>, none: &str| value.map_or(none.to_owned(), decimal);
     let rows = judged.formulas.iter().map(|own| {
         vec![
@@ -96,6 +100,17 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
                 .to_owned(),
         ));
     }
+    if let Some(AbsorberTouch { amplitude, sink }) = judged.touch {
+        blocks.push(Block::Note(format!(
+            "the motion with two impacts a period ends at C = {}, Z = {}, where a wall is touched between them; it is stable up to there",
+            decimal(amplitude),
+            decimal(sink)
+        )));
+    }
+    if judged.motion.is_none() && is_sink {
+        blocks
+            .push(Block::Note("both masses set free on the manifold leave it at once".to_owned()));
+    }
     if let Some(motion) = &judged.motion {
         blocks.push(Block::Note(format!(
             "{}: C from {} to {}, never farther from it than {} of the start",
@@ -106,7 +121,7 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
         )));
         if let Some(AbsorberDecay { amplitudes: [first, last], formula, truth }) = motion.decay {
             blocks.push(Block::Note(format!(
-                "in that motion Z falls from {} to {} in a time of {}, by the formula of t in {} ({}); its error falls with mu",
+                "in that motion C falls from {} to {} in a time of {}, by the formula of t in {} ({}); its error falls with mu",
                 decimal(first),
                 decimal(last),
                 decimal(truth),
@@ -116,10 +131,15 @@ fn beside_the_truth<'a>(judged: &JudgedAbsorber) -> Vec<Block<'a>> {
         }
     }
     let within = size_in_percent(judged.tolerance);
+    // The time of a decay is to first order in the mass ratio, and is shown with its error alone.
+    let what = match judged.motion.as_ref().and_then(|motion| motion.decay) {
+        Some(_) => "|relative error| of the amplitudes in the table",
+        None => "|relative error|",
+    };
     blocks.push(Block::Facts(vec![(
         "verdict",
         match judged.verdict {
-            Some(verdict) => format!("{} (|relative error| <= {within})", verdict.name()),
+            Some(verdict) => format!("{} ({what} <= {within})", verdict.name()),
             None => "not judged: some truth was not found".to_owned(),
         },
     )]));

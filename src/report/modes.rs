@@ -303,6 +303,13 @@ fn validity(modes: &NormalModes) -> Vec<Block<'static>> {
             ),
         }),
     ];
+    let stopped = modes.modes.iter().flatten().filter(|mode| mode.order < modes.order);
+    notes.extend(stopped.map(|mode| {
+        Block::Note(format!(
+            "stopped early: mode {} is truncated after {amplitude}^{}",
+            mode.number, mode.order
+        ))
+    }));
     notes.extend(notes_on_rounding(modes));
     notes
 }

@@ -39,6 +39,10 @@ pub struct AbsorberDocument {
     /// A simulated motion that follows the manifold of a sink; null without values, of a tuned
     /// or nonlinear absorber, and where the motion does not follow it.
     pub motion: Option<AbsorberMotionDocument>,
+    /// The amplitudes at which the body of an impact sink touches a wall between its impacts, where its
+    /// motion ends while it is stable; null where it does not, and without values.
+    #[serde(default)]
+    pub touch: Option<AbsorberTouchDocument>,
     /// `pass` or `fail`; null without values.
     pub verdict: Option<String>,
     /// The largest relative error that passes; null without values.
@@ -118,11 +122,21 @@ pub struct AbsorberMotionDocument {
     pub decay: Option<AbsorberDecayDocument>,
 }
 
-/// The time in which the amplitude of a sink falls, on a simulated motion.
+/// The motion with two impacts a period at which the body touches a wall between them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberTouch"))]
+pub struct AbsorberTouchDocument {
+    /// The amplitude of the main mass.
+    pub amplitude: f64,
+    /// The amplitude of the sink.
+    pub sink: f64,
+}
+
+/// The time in which the amplitude of the main mass falls, on a simulated motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "AbsorberDecay"))]
 pub struct AbsorberDecayDocument {
-    /// The amplitudes of the sink at the start and at the end.
+    /// The amplitudes of the main mass at the start and at the end.
     pub amplitudes: [f64; 2],
     /// The time by the formula, in units of 1/(the frequency of the main mass).
     pub formula: f64,
@@ -209,6 +223,9 @@ pub fn absorber(report: &AbsorberReport) -> AbsorberDocument {
                 truth: decay.truth,
             }),
         }),
+        touch: judged
+            .and_then(|judged| judged.touch)
+            .map(|touch| AbsorberTouchDocument { amplitude: touch.amplitude, sink: touch.sink }),
         verdict: judged.and_then(|judged| Some(judged.verdict?.name().to_owned())),
         tolerance: judged.map(|judged| judged.tolerance),
     }

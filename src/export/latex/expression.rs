@@ -92,9 +92,13 @@ fn pieces(expr: &Expr, place: LatexContext) -> Vec<LatexItem> {
     }
 }
 
-/// The first difference in the numerator of a product, and that difference reversed.
+/// The first difference in the numerator of a product, and that difference reversed; none in a product
+/// whose number is multiplied into a sum.
 fn difference(product: &Expr) -> Option<(usize, Expr)> {
-    let (_, factors) = product.factors();
+    let (coefficient, factors) = product.factors();
+    if product.written_factors().0 != coefficient {
+        return None;
+    }
     let mut turned = factors.iter().map(Expr::turned_round).enumerate();
     turned.find_map(|(place, turned)| Some((place, turned?)))
 }
@@ -102,7 +106,7 @@ fn difference(product: &Expr) -> Option<(usize, Expr)> {
 /// One term without its sign, as a fraction where there is a denominator; with its first difference
 /// reversed if `turn` is set.
 fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
-    let (coefficient, factors) = term.factors();
+    let (coefficient, factors) = term.written_factors();
     let (mut above, mut below) = (vec![], vec![]);
     let turned = if turn { difference(term) } else { None };
     for (place, factor) in factors.iter().enumerate() {

@@ -147,9 +147,18 @@ impl SystemSeries {
         numbers: &BTreeMap<Symbol, f64>,
         tolerance: f64,
     ) -> Result<Self, RecurrenceError> {
+        Self::to_order(order(tolerance), equations, numbers, tolerance)
+    }
+
+    /// Derives the recurrences of these equations, to an order with the bounds of this tolerance.
+    pub(super) fn to_order(
+        order: usize,
+        equations: &Equations,
+        numbers: &BTreeMap<Symbol, f64>,
+        tolerance: f64,
+    ) -> Result<Self, RecurrenceError> {
         /// Tolerance of the arguments of narrow functions, which need not be known to rounding.
         const CLOSELY: f64 = 1e-9;
-        let order = order(tolerance);
         let states = equations.states.iter().map(|state| (*state, None));
         let variables: Vec<_> = states.chain([(equations.variable, Some(1))]).collect();
         let mut recurrences = Recurrences::new(&variables, numbers, order);

@@ -29,8 +29,11 @@ pub(super) fn first_step(
     events: &[Event],
 ) -> Option<(f64, Vec<f64>)> {
     const SAMPLES: u32 = 8;
+    /// Scales need fewer terms than steps.
+    const ORDER: usize = 21;
     let equations = Equations::as_written(system, &expressions(events));
-    let mut expansion = SystemSeries::new(&equations, &system.numbers, f64::EPSILON).ok()?;
+    let mut expansion =
+        SystemSeries::to_order(ORDER, &equations, &system.numbers, f64::EPSILON).ok()?;
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
     let reach = expansion.longest_step;

@@ -27,7 +27,7 @@ pub struct Fraction {
 impl Expr {
     /// Sign, numerator and denominator. A sum is its own numerator, with its sign inside.
     pub fn fraction(&self) -> Fraction {
-        let (coefficient, factors) = self.factors();
+        let (coefficient, factors) = self.written_factors();
         let number = |value: Rational| (!value.is_one()).then(|| Expr::number(value));
         // A decimal stands above the line.
         let (above, below) = match decimal_of_long_fraction(&coefficient) {
@@ -39,7 +39,7 @@ impl Expr {
         };
         let mut numerator: Vec<Expr> = number(above).into_iter().collect();
         let mut denominator: Vec<Expr> = number(below).into_iter().collect();
-        for factor in factors {
+        for factor in &factors {
             match factor.node() {
                 Node::Power(base, exponent) => match exponent.as_number() {
                     Some(number) if (-number).is_one() => denominator.push(base.clone()),
@@ -53,6 +53,27 @@ impl Expr {
             }
         }
         Fraction { negative: coefficient.is_negative(), numerator, denominator }
+    }
+
+    /// The factors as they are written: a long decimal in front is multiplied into a sum whose numbers
+    /// are long, `0.25*a - 0.135676274578121*b` for `1e-15*(250000000000000*a - 135676274578121*b)`.
+    pub fn written_factors(&self) -> (Rational, Vec<Self>) {
+        /// The length in binary digits of a whole number beyond which it is part of a decimal.
+        const LONG: u64 = 24;
+        let (coefficient, factors) = self.factors();
+        let mut factors = factors.to_vec();
+        let is_long = |term: &Self| term.factors().0.numer().bits() > LONG;
+        let has_digits = |own: &&mut Self| own.terms().len() > 1 && own.terms().iter().any(is_long);
+        let decimal = decimal_of_long_fraction(&coefficient);
+        match factors.iter_mut().find(has_digits).filter(|_| decimal.is_some()) {
+            Some(sum) => {
+                let size = Self::number(coefficient.abs());
+                let terms = sum.terms().iter().map(|term| &size * term).collect();
+                *sum = Self::from_node(Node::Sum(terms));
+                (coefficient.signum(), factors)
+            }
+            None => (coefficient, factors),
+        }
     }
 }
 
@@ -253,14 +274,25 @@ fn write_node(
         }
         Node::Product(..) | Node::Power(..) => {
             let mut fraction = expr.fraction();
+            let mut has_minus = false;
             if fraction.negative && place != PrintContext::Unsigned {
                 let mut factors = fraction.numerator.iter_mut();
                 match factors.find_map(|factor| Some((factor.turned_round()?, factor))) {
                     Some((turned, factor)) => *factor = turned,
-                    None => out.write_char('-')?,
+                    None => {
+                        has_minus = true;
+                        out.write_char('-')?;
+                    }
                 }
             }
-            push_fraction(&fraction, open);
+            let is_alone = fraction.denominator.is_empty() && !has_minus;
+            match fraction.numerator.as_slice() {
+                // A sum that has taken the number in front of it stands alone.
+                [only] if is_alone && !in_parentheses(only, place) => {
+                    open.push(PrintItem::Expr(only.clone(), place));
+                }
+                _ => push_fraction(&fraction, open),
+            }
             Ok(())
         }
     }

@@ -187,7 +187,7 @@ pub(super) fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> 
             AbsorberRelation {
                 left: expr("C").integer_power(2)?,
                 right: forced.integer_power(2)? * &square,
-                words: "motions with two impacts a period, by C^2 = X^2 + U^2",
+                words: "motions with two impacts a period, by the sum of both squares",
             },
             AbsorberRelation {
                 left: expr("t"),
@@ -236,15 +236,15 @@ impl Words {
                 place: "place of the main mass at an impact",
                 amplitude: "pendulum_amplitude",
                 validity: "a light pendulum with w below 1, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; \
-                   where 1 - kappa^2 - w^2 - s^2*w^2 is not positive, the motion is stable at any amplitude, and there is no C_max; where r is small, the pendulum hits the same \
-                   barrier twice before C_max is reached",
+                   where 1 - kappa^2 - w^2 - s^2*w^2 is not positive, no multiplier reaches -1 and there is no C_max; large motions end where the pendulum touches a barrier between its \
+                   impacts, which has no formula",
             },
             _ => Self {
                 kind,
                 place: "place of the main mass at an impact, where the ball turns",
                 amplitude: "ball_amplitude",
                 validity: "a light ball, whose impacts take little from the main mass in a period; t to first order in mu; an impact takes no time; where r is below 0.09 or so, the ball \
-                   hits the same wall twice before C_max is reached",
+                   touches a wall between its impacts before C_max is reached",
             },
         }
     }

@@ -34,6 +34,9 @@ pub enum ModeError {
     /// The coordinates are not at rest where all of them are zero.
     #[error("the equation `{0} = 0` leaves the force {1} where every coordinate is zero")]
     NotAtRest(Expr, Expr),
+    /// A force has no value where all coordinates are zero.
+    #[error("the equation `{0} = 0` has no value where every coordinate is zero")]
+    NoValueAtRest(Expr),
     /// The mass matrix is singular where every coordinate is zero.
     #[error("the mass matrix is singular where every coordinate is zero")]
     Massless,
@@ -170,7 +173,7 @@ impl ModeError {
         match self {
             Self::Equations(error) => error.help(),
             Self::FirstOrder(_) => Some(
-                "`lindstedt response` finds the motions with such terms in numbers; without the term there are modes"
+                "write an equation of second order for each coordinate, x'' + ... = 0; `lindstedt simulate` follows equations of first order, and `lindstedt response` finds their cycles"
                     .to_owned(),
             ),
             Self::Gyroscopic(_) => Some(
@@ -188,7 +191,7 @@ impl ModeError {
                     names.join(", ")
                 ))
             }
-            Self::NotAtRest(..) => Some(
+            Self::NotAtRest(..) | Self::NoValueAtRest(_) => Some(
                 "count each coordinate from the place of rest: put x0 + x for x, with x0 such that nothing is left".to_owned(),
             ),
             Self::EvenDegree(_) => Some(
@@ -198,7 +201,7 @@ impl ModeError {
                 "--order 2 balances several harmonics, by numbers at an amplitude; without --method the modes are series in the amplitude; `lindstedt response --vary omega=FROM:TO` finds them in numbers".to_owned(),
             ),
             Self::Taylor(_) => Some(
-                "`lindstedt response --vary omega=FROM:TO` finds the modes of such forces in numbers".to_owned(),
+                "`lindstedt response --vary omega=FROM:TO` finds the modes of forces of the positions in numbers; `lindstedt simulate` follows motions with any force".to_owned(),
             ),
             Self::Letters { letters, .. } => Some(format!(
                 "give them values: --at {}",

@@ -136,6 +136,9 @@ impl FreeSystem {
             let parts = taylor(&residual, &at_rest(coordinates), 1)?;
             let [rest, linear] = [0, 1].map(|degree| parts.get(degree).cloned());
             let rest = rest.unwrap_or_else(Expr::zero).expand()?;
+            if coordinates.iter().any(|name| rest.contains(*name)) {
+                return Err(ModeError::NoValueAtRest(residual));
+            }
             if !rest.is_zero() {
                 return Err(ModeError::NotAtRest(residual, rest));
             }

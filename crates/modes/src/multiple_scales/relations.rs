@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 use num_integer::Integer as _;
 use num_traits::{One, Zero};
 
+use super::answer::KEPT_DIGITS;
 use super::{PhaseWaves, SlowMotion};
+use crate::decimal::rounded_fraction;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
 use crate::exact::{Polynomial, Rational};
@@ -116,14 +118,20 @@ impl SlowMotion {
     }
 
     /// A polynomial divided by the powers that all its terms have, negative ones too, its
-    /// coefficients whole numbers without a common divisor.
+    /// coefficients whole numbers without a common divisor; rounded ones are divided by the first of them.
     fn without_common_powers(&self, polynomial: &Polynomial) -> Polynomial {
         let numbers = || polynomial.terms().map(|(_, number)| number);
         let below = numbers().fold(Integer::one(), |common, number| common.lcm(number.denom()));
         let above = numbers().fold(Integer::zero(), |common, number| common.gcd(number.numer()));
-        let mut reduced = match self.rounded || above.is_zero() {
-            true => polynomial.clone(),
-            false => polynomial.map(|number| number * Rational::new(below.clone(), above.clone())),
+        let first = numbers().next().filter(|_| self.rounded).cloned();
+        let mut reduced = match (first, above.is_zero()) {
+            (Some(first), _) => {
+                polynomial.map(|number| rounded_fraction(&(number / &first), KEPT_DIGITS))
+            }
+            (None, true) => polynomial.clone(),
+            (None, false) => {
+                polynomial.map(|number| number * Rational::new(below.clone(), above.clone()))
+            }
         };
         for name in polynomial.symbols() {
             if let Some((lowest, _)) = reduced.exponent_range(name) {

@@ -162,7 +162,7 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
         }
     }
     let (curves, motion) = curves(laws, at, &found, [damping, mass_ratio, unit]);
-    Truth { values, curves, motion, lowest_peak: None }
+    Truth { values, curves, motion, ..Truth::default() }
 }
 
 /// The manifold by its stability, and the motion of both masses along it.

@@ -15,11 +15,13 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{AbsorberCurve, AbsorberCurveKind, AbsorberDecay, AbsorberMotion, Truth};
+use super::{
+    AbsorberCurve, AbsorberCurveKind, AbsorberDecay, AbsorberMotion, AbsorberTouch, Truth,
+};
 use crate::absorber::{AbsorberKind, AbsorberLaws};
 use crate::expr::Expr;
 use crate::numeric::ode::newton::{Progress, newton};
-use crate::numeric::ode::root::{find_minimum, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_minimum, find_root};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
@@ -67,11 +69,54 @@ impl BetweenWalls {
         }
     }
 
-    /// The amplitude Z of the body that has this relative velocity after an impact,
-    /// `-r (1 + s) kappa Z`.
-    fn amplitude(&self, y_rate: f64) -> f64 {
-        let loss = (1.0 - self.restitution) / (1.0 + self.restitution);
-        y_rate.abs() / ((1.0 - loss) * self.kappa())
+    /// The amplitude `Z = y + x/(1 - w^2)` of the body after an impact with the main mass at this place.
+    fn amplitude(&self, x: f64, side: f64) -> f64 {
+        self.half_width + side * x / (1.0 - self.frequency.powi(2))
+    }
+
+    /// The amplitude Z at which the body touches a wall between its two impacts a period, beyond which
+    /// there is no such motion; `None` if there is none up to `largest`.
+    fn touch(&self, [least, largest]: [f64; 2]) -> Option<f64> {
+        const RATIO: f64 = 1.02;
+        let is_free = |amplitude: f64| self.farthest(amplitude) <= self.half_width;
+        let mut free = least * 1.001;
+        while is_free(free) {
+            if free >= largest {
+                return None;
+            }
+            let next = (free * RATIO).min(largest);
+            if !is_free(next) {
+                let [last, _] = bisect(&is_free, free, next, BisectionStop::Halvings(40));
+                return Some(last);
+            }
+            free = next;
+        }
+        Some(free)
+    }
+
+    /// The greatest distance of a body without mass from the middle between the impacts of the motion with
+    /// this amplitude, away from the impacts themselves.
+    fn farthest(&self, amplitude: f64) -> f64 {
+        const PLACES: u32 = 200;
+        let motion = self.on_manifold(amplitude);
+        let (sine, cosine) = motion.phase.sin_cos();
+        let from = AfterImpact {
+            t: 0.0,
+            x: motion.amplitude * cosine,
+            x_rate: -motion.amplitude * sine,
+            side: 1.0,
+            y_rate: motion.y_rate,
+        };
+        let distance = |time: f64| self.flight(from, time)[0].y.abs();
+        let time = |place: u32| PI * f64::from(place) / f64::from(PLACES);
+        let inner = (1..PLACES).map(|place| (distance(time(place)), place));
+        match inner.max_by(|one, other| one.0.total_cmp(&other.0)) {
+            Some((_, place)) if (2..PLACES - 1).contains(&place) => {
+                let [low, high] = [place - 1, place + 1].map(time);
+                -find_minimum(|at| -distance(at), low, high).1
+            }
+            inner => inner.map_or(0.0, |(distance, _)| distance),
+        }
     }
 
     /// The motion on the manifold with this amplitude Z, as a first guess.
@@ -279,12 +324,20 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
     let mut values = Vec::new();
     for (design, motion) in [("threshold", least), ("period-doubling", most)] {
         values.push((design, "amplitude", motion.map(|motion| motion.amplitude)));
-        values.push((design, body, motion.map(|motion| light.amplitude(motion.y_rate))));
+        let place = |motion: MotionAtPhase| motion.amplitude * motion.phase.cos();
+        values.push((design, body, motion.map(|motion| light.amplitude(place(motion), 1.0))));
     }
     let Some(least) = value("threshold") else { return Truth { values, ..Truth::default() } };
-    let most = value("period-doubling");
+    let touch = light.touch([least, value("period-doubling").unwrap_or(1e3 * half_width)]);
+    // Beyond a touch there is no motion that could lose its stability.
+    let absent = touch.map(|_| "period-doubling");
+    let most = value("period-doubling").filter(|_| touch.is_none());
     let heavy = BetweenWalls { mass_ratio: letter("mu"), ..light };
-    let end = most.map_or(3.0 * half_width, |most| 1.2 * most);
+    let end = match (touch, most) {
+        (Some(touch), _) => touch.min(5.0 * half_width),
+        (None, Some(most)) => 1.2 * most,
+        (None, None) => 5.0 * half_width,
+    };
     let first = (half_width + most.unwrap_or(end)) / 2.0;
     let slide = heavy.slide(light.on_manifold(first), least);
     let manifold = |amplitude: f64| light.on_manifold(amplitude).amplitude;
@@ -293,12 +346,13 @@ pub(super) fn truth(laws: &AbsorberLaws, at: &Values) -> Truth {
         .map(|step| end * f64::from(step) / 2_000.0)
         .map(|own| (manifold(own), own))
         .collect();
-    let decay = decay(laws, at, first, &slide);
+    let decay = decay(laws, at, first, &manifold, &slide);
     let slide: Vec<(f64, f64)> = slide.into_iter().map(|(_, point)| point).collect();
     let motion = AbsorberMotion::along(&points, &slide, words)
         .map(|motion| AbsorberMotion { decay, ..motion });
     let curves = curves(&manifold, least, most, end, slide);
-    Truth { values, curves, motion, lowest_peak: None }
+    let touch = touch.map(|sink| AbsorberTouch { amplitude: manifold(sink), sink });
+    Truth { values, curves, motion, absent, touch, lowest_peak: None }
 }
 
 impl BetweenWalls {
@@ -318,7 +372,7 @@ impl BetweenWalls {
         while found.len() < MOST {
             let Some(next) = self.next(state) else { break };
             let is_in_step = next.side != state.side && (next.t - state.t - PI).abs() < 0.7;
-            let amplitude = self.amplitude(next.y_rate);
+            let amplitude = self.amplitude(next.x, next.side);
             if !is_in_step || amplitude < least {
                 break;
             }
@@ -329,27 +383,29 @@ impl BetweenWalls {
     }
 }
 
-/// The time in which the body falls from its amplitude at the start to the amplitude b, with impacts
-/// where the main mass passes its middle, or half of the way if it loses step before; `None` if it does
-/// neither.
+/// The time in which the main mass falls from the amplitude where the sink has this one at the start to that
+/// where it has the amplitude b, with impacts where the main mass passes its middle, or half of the way
+/// if it loses step before; `None` if it does neither.
 fn decay(
     laws: &AbsorberLaws,
     at: &Values,
     first: f64,
+    manifold: &dyn Fn(f64) -> f64,
     slide: &[(f64, (f64, f64))],
 ) -> Option<AbsorberDecay> {
     let width = at.get(Symbol::new("b"))?;
     let passed = [width, (first + width) / 2.0].into_iter().find_map(|last| {
+        let end = manifold(last);
         let mut pairs = slide.windows(2);
-        Some((last, pairs.find(|pair| pair[0].1.1 >= last && pair[1].1.1 < last)?))
+        Some((last, end, pairs.find(|pair| pair[0].1.0 >= end && pair[1].1.0 < end)?))
     });
-    let (last, pair) = passed?;
-    let [(before, (_, high)), (after, (_, low))] = [pair[0], pair[1]];
-    let truth = before + (after - before) * (high - last) / (high - low);
+    let (last, end, pair) = passed?;
+    let [(before, (high, _)), (after, (low, _))] = [pair[0], pair[1]];
+    let truth = before + (after - before) * (high - end) / (high - low);
     let mut numbers = at.with(Symbol::new("Z0"), first);
     numbers.insert(Symbol::new("Z"), last);
     let formula = laws.relation_value(&Expr::symbol("t"), numbers)?;
-    Some(AbsorberDecay { amplitudes: [first, last], formula, truth })
+    Some(AbsorberDecay { amplitudes: [manifold(first), end], formula, truth })
 }
 
 /// The manifold by its stability, and the motion along it; `most` is `None` where all large motions are

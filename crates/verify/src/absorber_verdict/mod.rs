@@ -32,8 +32,12 @@ pub struct JudgedAbsorber {
     /// The lowest peak by a search; `None` if it has a formula, or has no meaning, and where doubles do
     /// not resolve the peaks.
     pub lowest_peak: Option<LowestPeak>,
-    /// A simulated motion of a sink; `None` for a tuned or nonlinear absorber.
+    /// A simulated motion of a sink; `None` for a tuned or nonlinear absorber, and where it leaves the
+    /// manifold at once.
     pub motion: Option<AbsorberMotion>,
+    /// The amplitudes at which the body of an impact sink touches a wall between its impacts, so that its
+    /// motion ends there before it is unstable; `None` if it does not.
+    pub touch: Option<AbsorberTouch>,
     /// The curves of a picture: of responses over frequency, or of motions over amplitude.
     pub curves: Vec<AbsorberCurve>,
     /// Whether the formulas are within the tolerance, those aside that another design has to the next
@@ -85,10 +89,19 @@ pub struct AbsorberMotion {
     pub decay: Option<AbsorberDecay>,
 }
 
-/// The time in which the amplitude of a sink falls, on a simulated motion.
+/// The motion with two impacts a period at which the body touches a wall between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AbsorberTouch {
+    /// The amplitude of the main mass.
+    pub amplitude: f64,
+    /// The amplitude of the sink.
+    pub sink: f64,
+}
+
+/// The time in which the amplitude of the main mass falls, on a simulated motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsorberDecay {
-    /// The amplitudes of the sink at the start and at the end.
+    /// The amplitudes of the main mass at the start and at the end.
     pub amplitudes: [f64; 2],
     /// The time by the formula, in units of 1/(the frequency of the main mass).
     pub formula: f64,
@@ -100,7 +113,7 @@ impl AbsorberMotion {
     /// The motion through these amplitudes of main mass and sink beside points of a manifold; `None`
     /// if there is none.
     fn along(manifold: &[(f64, f64)], motion: &[(f64, f64)], words: &'static str) -> Option<Self> {
-        let (first, last) = (motion.first()?, motion.last()?);
+        let [first, .., last] = motion else { return None };
         let size = first.0.hypot(first.1);
         let distance = |point: &(f64, f64)| {
             let each = manifold.iter().map(|own| (own.0 - point.0).hypot(own.1 - point.1));
@@ -157,6 +170,9 @@ struct Truth {
     curves: Vec<AbsorberCurve>,
     lowest_peak: Option<LowestPeak>,
     motion: Option<AbsorberMotion>,
+    touch: Option<AbsorberTouch>,
+    /// The name of a design that there is not at these values.
+    absent: Option<&'static str>,
 }
 
 /// Judges the formulas of an absorber at values of its letters.
@@ -195,16 +211,17 @@ pub fn judge_absorber(
     for design in &laws.designs {
         for own in &design.formulas {
             // Amplitudes, ratios and dampings are positive: a formula that is not says that there is none.
-            let value = laws.value(&own.formula, at).filter(|value| *value > 0.0);
+            let is_absent = truth.absent == Some(design.name);
+            let value = laws.value(&own.formula, at).filter(|value| *value > 0.0 && !is_absent);
             let known = truth.values.iter().find(|row| (row.0, row.1) == (design.name, own.name));
-            let truth = known.and_then(|row| row.2).filter(|truth| truth.is_finite());
-            let relative_error = value.zip(truth).map(|(value, truth)| value / truth - 1.0);
+            let known = known.and_then(|row| row.2).filter(|truth| truth.is_finite());
+            let relative_error = value.zip(known).map(|(value, truth)| value / truth - 1.0);
             formulas.push(JudgedAbsorberFormula {
                 design: design.name,
                 name: own.name,
                 symbol: own.symbol,
                 value,
-                truth,
+                truth: known,
                 relative_error: relative_error.filter(|error| error.is_finite()),
             });
         }
@@ -228,6 +245,7 @@ pub fn judge_absorber(
         formulas,
         lowest_peak: truth.lowest_peak,
         motion: truth.motion,
+        touch: truth.touch,
         curves,
         verdict,
     })

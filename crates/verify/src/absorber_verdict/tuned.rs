@@ -223,7 +223,7 @@ pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) ->
     if laws.design("equal-peaks").is_none() {
         values.extend(lowest_variance(system));
         let curves = damped_curves(laws, system, lowest, at);
-        return Truth { values, curves, lowest_peak: Some(lowest), motion: None };
+        return Truth { values, curves, lowest_peak: Some(lowest), ..Truth::default() };
     }
     let tuning = system.equal_tuning();
     let points = tuning.and_then(|tuning| system.fixed_points(tuning));
@@ -251,7 +251,12 @@ pub(super) fn truth(laws: &AbsorberLaws, excitation: Excitation, at: &Values) ->
     }
     values.extend(lowest_variance(system));
     let lowest = laws.design("lowest-peak").is_none().then_some(lowest);
-    Truth { values, curves: curves(laws, system, lowest, at), lowest_peak: lowest, motion: None }
+    Truth {
+        values,
+        curves: curves(laws, system, lowest, at),
+        lowest_peak: lowest,
+        ..Truth::default()
+    }
 }
 
 /// The numbers of the lowest variance.

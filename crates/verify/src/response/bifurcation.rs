@@ -112,6 +112,10 @@ pub fn between(
         if before * after >= 0.0 {
             continue;
         }
+        // The determinants of a balance and of shooting have signs of their own.
+        if kind == BranchPoint && from.0.truth.is_some() != to.0.truth.is_some() {
+            continue;
+        }
         if kind == NeimarkSacker {
             let determinants = before.abs().max(after.abs());
             let complex = [from.1, to.1].into_iter().flatten().all(|floquet| {

@@ -156,7 +156,7 @@ impl PreparedRequest<'_> {
         /// Largest number of crossings that are looked at.
         const MOST: usize = 8;
         let turns_of = |nodes: &[BranchNode]| -> Vec<usize> {
-            let turns = |pair: &[BranchNode]| pair[0].orientation != pair[1].orientation;
+            let turns = |pair: &[BranchNode]| pair[0].orientation * pair[1].orientation < 0.0;
             let turns = nodes.windows(2).enumerate().filter(|(_, pair)| turns(pair));
             turns.map(|(index, _)| index).collect()
         };
@@ -289,6 +289,10 @@ impl PreparedRequest<'_> {
             for path in self.shot_beside_crossing(balance, at, walk.size, is_known) {
                 self.keep(balance, path, paths);
             }
+            return false;
+        }
+        // The branch that crosses one across jumps is found from the motions on which simulations settle.
+        if at.truth.is_some() {
             return false;
         }
         let mut is_centre = false;

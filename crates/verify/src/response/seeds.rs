@@ -1,10 +1,13 @@
 //! Initial motions of branches, found by simulations that settle.
 
+use std::f64::consts::TAU;
+
 use nalgebra::DVector;
 
 use super::backbone::{free_oscillator, places_of_rest};
 use super::balance::DrivenBalance;
 use super::continuation::{BranchNode, BranchPath};
+use super::driven::Driven;
 use super::free_swing::FreeSwings;
 use super::stability::{
     MotionGuess, Settled, SettlingStart, SimulationBudget, TrueMotion, first_harmonic,
@@ -22,6 +25,30 @@ const VALUES: u32 = 5;
 /// others may be short, but simulations from many places come to its stable motions.
 const RADII: [f64; 2] = [0.5, 1.3];
 const FINER: u32 = 5;
+
+/// The greatest speed of free motions between -size and size, of which one rests at the highest place of
+/// the potential: `sqrt(2 (max V - min V))`, V of the mean force over the drive by the trapezoidal rule.
+fn swing_speed(driven: &Driven, parameter: f64, size: f64) -> f64 {
+    const PLACES: u32 = 32;
+    const PHASES: u32 = 8;
+    let step = 2.0 * size / f64::from(PLACES);
+    let mean = |place: u32| {
+        let x = f64::from(place) * step - size;
+        let force = |phase: u32| {
+            let part = (f64::from(phase) + 0.5) / f64::from(PHASES);
+            driven.force(&[x, 0.0, TAU * part * driven.periods as f64, parameter])
+        };
+        (0..PHASES).map(force).sum::<f64>() / f64::from(PHASES)
+    };
+    let forces: Vec<f64> = (0..=PLACES).map(mean).collect();
+    let (mut potential, mut least, mut greatest) = (0.0, 0.0, 0.0);
+    for pair in forces.windows(2) {
+        potential += 0.5 * (pair[0] + pair[1]) * step;
+        (least, greatest) = (potential.min(least), potential.max(greatest));
+    }
+    let speed = (2.0_f64 * (greatest - least)).sqrt();
+    if speed.is_finite() { speed } else { 0.0 }
+}
 
 /// An initial motion of a branch.
 #[derive(Clone, Debug)]
@@ -74,7 +101,8 @@ impl PreparedRequest<'_> {
         let covered =
             self.coverage(&self.values_of_guesses().chain(values.clone()).collect::<Vec<_>>());
         let added = covered.added;
-        let starts = values.len() + (around.len() + added.len()) * RADII.len();
+        let starts =
+            values.len() + (around.len() + added.len()) * RADII.len() * self.speeds_of_starts();
         self.question.progress.begin(starts);
         let mut found = Search {
             motions: InitialMotions { gaps: covered.gaps, ..InitialMotions::default() },
@@ -166,7 +194,8 @@ impl PreparedRequest<'_> {
     /// The values of the parameter at which simulations begin from all around.
     fn finer_values(&self) -> Vec<f64> {
         let [low, high] = self.question.range;
-        let count = FINER * (VALUES - 1);
+        // Motions of several periods come from fewer starts, each from its own.
+        let count = FINER * (VALUES - 1) * u32::try_from(self.question.periods).unwrap_or(1);
         let part = |index: u32| f64::from(index) / f64::from(count);
         (0..=count).map(|index| low + (high - low) * part(index)).collect()
     }
@@ -228,20 +257,33 @@ impl PreparedRequest<'_> {
         self.add_settled(&without, found);
     }
 
+    /// The number of speeds that starts all around have at each place: that of the drive, and for motions
+    /// of several periods, which swing with a frequency of their own, that of a free swing.
+    fn speeds_of_starts(&self) -> usize {
+        self.question.periods.min(2)
+    }
+
     /// Adds the motions on which simulations settle from places all around in the plane of position
     /// and velocity, in proportion to a size.
     fn search_around(&self, values: &[f64], size: f64, found: &mut Search) {
         /// Parts of a turn from one value to the next, which leave no direction out (the golden
-        /// section), and from one radius to the other.
-        const TURNS: [f64; 2] = [0.618_034, 0.5];
+        /// section), from one radius to the other, and from one speed to the other.
+        const TURNS: [f64; 3] = [0.618_034, 0.5, 0.25];
         let around = |(index, parameter): (usize, &f64)| {
             let parameter = *parameter;
             let omega = self.driven.frequency_at(parameter) * self.question.periods as f64;
-            RADII.iter().enumerate().map(move |(ring, radius)| {
-                let turn = TURNS[0] * index as f64 + TURNS[1] * ring as f64;
-                let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
-                let start = [radius * size * cosine, -radius * size * omega * sine];
-                PlannedSimulation { seed: None, start, parameter }
+            let places = (0..self.speeds_of_starts())
+                .flat_map(|speed| (0..RADII.len()).map(move |ring| [speed, ring]));
+            places.map(move |[speed, ring]| {
+                let turns = [index, ring, speed].map(|count| count as f64);
+                let turn: f64 = TURNS.iter().zip(turns).map(|(part, count)| part * count).sum();
+                let (sine, cosine) = (TAU * turn).sin_cos();
+                let size = RADII[ring] * size;
+                let speed = match speed {
+                    0 => size * omega,
+                    _ => swing_speed(&self.driven, parameter, size),
+                };
+                PlannedSimulation { seed: None, start: [size * cosine, -speed * sine], parameter }
             })
         };
         let planned: Vec<PlannedSimulation> = values.iter().enumerate().flat_map(around).collect();
@@ -426,7 +468,7 @@ impl PreparedRequest<'_> {
     ) -> Seed {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
-            let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
+            let phase = TAU * sample as f64 / SAMPLES as f64;
             balance.phase_point_at(found, parameter, phase)[0]
         });
         Seed {

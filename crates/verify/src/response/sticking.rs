@@ -36,6 +36,9 @@ type ScaledPoint = Vector3<f64>;
 struct ShootingOrbit {
     at: ScaledPoint,
     tangent: ScaledPoint,
+    /// The sign of the determinant of the bordered matrix whose last row is the tangent, which changes
+    /// where another branch crosses; zero of a motion that sticks, whose map has a corner.
+    orientation: f64,
     course: VariationalMotion,
 }
 
@@ -149,9 +152,12 @@ impl<'a> PeriodMap<'a> {
                 let matrix = self.bordered(&course, by_parameter, direction);
                 let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
                 let length = tangent.norm();
+                let bordered = self.bordered(&course, by_parameter, &tangent);
+                let is_smooth = course.stuck() == 0.0 && !self.asked.driven.self_excited;
                 return (length > 0.0 && length.is_finite()).then(|| ShootingOrbit {
                     at,
                     tangent: tangent / length,
+                    orientation: if is_smooth { bordered.determinant().signum() } else { 0.0 },
                     course,
                 });
             }
@@ -251,7 +257,7 @@ impl<'a> PeriodMap<'a> {
             coefficients: balance.core.unknowns_of(&[&positions], frequency),
             parameter,
             tangent,
-            orientation: 0.0,
+            orientation: shot.orientation,
             truth: Some(TrueMotion::new(
                 start,
                 frequency,
@@ -381,7 +387,11 @@ impl PreparedRequest<'_> {
         paths: &[BranchPath],
     ) -> Option<BranchPath> {
         let met = |node: &BranchNode| self.is_met(balance, paths, node);
-        let turned = |shot: ShootingOrbit| ShootingOrbit { tangent: -shot.tangent, ..shot };
+        let turned = |shot: ShootingOrbit| ShootingOrbit {
+            tangent: -shot.tangent,
+            orientation: -shot.orientation,
+            ..shot
+        };
         let (behind, last) = map.walk(shot.clone(), &met, balance);
         let closing = (last == BranchEnd::Closed).then(|| shot.clone());
         let (before, first) = match last {
@@ -445,7 +455,11 @@ impl PreparedRequest<'_> {
                 // Points are in the order of the branch, and so are their tangents.
                 let mut all: Vec<BranchNode> = outward
                     .by_ref()
-                    .map(|node| BranchNode { tangent: -node.tangent, ..node })
+                    .map(|node| BranchNode {
+                        tangent: -node.tangent,
+                        orientation: -node.orientation,
+                        ..node
+                    })
                     .collect();
                 all.reverse();
                 all.extend(path.nodes.drain(..).skip(skipped));

@@ -25,6 +25,14 @@ pub enum VerificationError {
         /// The names that do occur.
         known: Vec<Symbol>,
     },
+    /// A value for a coordinate, whose amplitude has a letter of its own.
+    #[error("`{name}` is a coordinate: the amplitude of the mode is `{amplitude}`")]
+    Coordinate {
+        /// The coordinate.
+        name: Symbol,
+        /// The letter of the amplitude.
+        amplitude: Symbol,
+    },
     /// The formula is that of another equation.
     #[error(
         "the formula answers `{answered}`, not `{asked}`, and is judged on the equation that it answers alone"
@@ -124,7 +132,7 @@ pub enum VerificationError {
     },
     /// A divisor of a formula vanishes at the values.
     #[error(
-        "mode {number} has no formula at these values: its divisor {divisor} is zero there, an internal resonance"
+        "mode {number} has no formula at these values: its divisor {divisor} is zero there, an internal resonance or a mode that does not swing"
     )]
     VanishingDivisor {
         /// The number of the mode.
@@ -134,7 +142,7 @@ pub enum VerificationError {
     },
     /// What a formula names has no real value.
     #[error(
-        "mode {number} does not swing at these values: {name} = {meaning} has no real value there"
+        "mode {number} has no formula at these values: {name} = {meaning} has no real value there"
     )]
     NoValue {
         /// The number of the mode.

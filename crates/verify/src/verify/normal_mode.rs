@@ -263,7 +263,10 @@ pub(super) fn checked(
     known.push(amplitude);
     let numbers = at.numbers();
     if let Some(name) = numbers.keys().find(|name| !known.contains(name)) {
-        return Err(VerificationError::Unknown { name: *name, known });
+        return Err(match system.equations.coordinates.contains(name) {
+            true => VerificationError::Coordinate { name: *name, amplitude },
+            false => VerificationError::Unknown { name: *name, known },
+        });
     }
     known.retain(|name| !numbers.contains_key(name));
     match known.is_empty() {

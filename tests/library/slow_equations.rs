@@ -511,6 +511,23 @@ fn motions_without_modes_are_compared() {
     }
 }
 
+/// Where the modes at rest are tied to a moving one by a resonance of their own, the motion is periodic
+/// with its drive: here a linear oscillator in resonance, exactly of the amplitude F/(c Omega).
+#[test]
+fn a_mode_that_moves_alone_is_compared() {
+    let found = slow(
+        "x'' + x'/40 + 36/25*x + x*y/3 = 0; y'' + y'/30 + 4*y + x*z/4 = 0; z'' + z'/40 + 256/25*z + x*y/5 = F*cos(Omega*t)",
+        "Omega = omega3, Omega = omega1 + omega2",
+        None,
+    );
+    let at = "F = 1/100, Omega = 16/5".parse().expect("values");
+    let judged = judge_slow_motion(&found, &at, 0.01, Interrupt::default()).expect("a verdict");
+    let [only] = judged.steady.as_slice() else { panic!("{:?}", judged.steady) };
+    assert!((only.state.amplitudes[2] - 0.125).abs() < 1e-12 && only.compared, "{only:?}");
+    assert!(only.error.is_some_and(|error| error < 1e-6), "{only:?}");
+    assert_eq!(judged.verdict, Some(Verdict::Pass));
+}
+
 /// Along the slow equations of several resonances, by Runge and Kutta, the constants stay what they are,
 /// the amplitudes go between the ends of the exchange, and they come back after its period.
 #[test]

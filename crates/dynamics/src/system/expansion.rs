@@ -105,8 +105,8 @@ impl Expansions {
 
 /// Returns the order of the series for a tolerance.
 ///
-/// By products alone `-ln(tolerance)/2` would reach it with the least work (Jorba and Zou); with what a step
-/// costs at any order, series longer by a third do.
+/// The order `-ln(tolerance)/2` needs the fewest products for a time (Jorba and Zou). A step also has a cost
+/// that no order changes, with which series longer by a third need the least time.
 fn order(tolerance: f64) -> usize {
     (1.0 - 0.7 * tolerance.ln()).ceil() as usize + 1
 }

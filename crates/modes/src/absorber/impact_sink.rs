@@ -219,7 +219,7 @@ pub(super) fn derive(kind: AbsorberKind) -> Result<AbsorberLaws, AbsorberError> 
     })
 }
 
-/// What differs in words between a ball and a pendulum.
+/// The words of a ball, or of a pendulum.
 struct Words {
     kind: AbsorberKind,
     place: &'static str,

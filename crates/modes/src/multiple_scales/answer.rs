@@ -126,6 +126,11 @@ pub struct NearDivisor {
     pub distance: f64,
 }
 
+/// The indices of the modes that move.
+fn moving(state: &SlowSteadyState) -> Vec<usize> {
+    (0..state.amplitudes.len()).filter(|mode| state.amplitudes[*mode] != 0.0).collect()
+}
+
 impl SlowMotion {
     /// The method and its order.
     pub fn title(&self) -> String {
@@ -145,12 +150,12 @@ impl SlowMotion {
     /// The frequency of a steady motion that is periodic with the drive: no mode moves that it does not
     /// lock. `None` for other motions.
     pub fn driven_frequency(&self, state: &SlowSteadyState) -> Option<&Expr> {
-        if state.amplitudes.iter().all(|a| *a == 0.0) {
+        let moving = moving(state);
+        if moving.is_empty() {
             return self.base.as_ref().or(self.drive.as_ref());
         }
-        let mut modes = self.locked.iter().zip(&state.amplitudes);
-        let is_periodic = modes.all(|(locked, a)| *a == 0.0 || (*locked && self.is_driven()));
-        self.base.as_ref().filter(|_| is_periodic)
+        let is_locked = moving.iter().all(|mode| self.locked[*mode]);
+        self.base.as_ref().filter(|_| is_locked && self.ties(&moving) == moving.len())
     }
 
     /// The slow equations of the system in which everything small is multiplied by a factor, each term
@@ -172,10 +177,13 @@ impl SlowMotion {
     /// Whether the slow phases tie the moving modes of a steady motion to each other: without a drive
     /// it is periodic then.
     pub fn is_locked_together(&self, state: &SlowSteadyState) -> bool {
-        let moving: Vec<usize> =
-            (0..state.amplitudes.len()).filter(|mode| state.amplitudes[*mode] > 0.0).collect();
-        // The slow phases are independent; those of moving modes alone are the combinations of them in
-        // which the modes at rest cancel.
+        let moving = moving(state);
+        moving.len() == self.ties(&moving) + 1
+    }
+
+    /// The number of slow phases of these modes alone: the combinations of all slow phases, which are
+    /// independent, in which the other modes cancel.
+    fn ties(&self, moving: &[usize]) -> usize {
         let at_rest: Vec<Vec<i32>> = self
             .slow_phases
             .iter()
@@ -184,8 +192,7 @@ impl SlowMotion {
                 own.map(|(_, turn)| *turn).collect()
             })
             .collect();
-        let ties = self.slow_phases.len() - reduced_rows(at_rest).len();
-        moving.len() == ties + 1
+        self.slow_phases.len() - reduced_rows(at_rest).len()
     }
 
     /// `a_j'` and `phi_j'` as expressions.

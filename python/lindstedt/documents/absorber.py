@@ -110,10 +110,10 @@ LowestPeak.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AbsorberDecay(Document):
-    """The time in which the amplitude of a sink falls, on a simulated motion.
+    """The time in which the amplitude of the main mass falls, on a simulated motion.
 
     Attributes:
-        amplitudes: The amplitudes of the sink at the start and at the end.
+        amplitudes: The amplitudes of the main mass at the start and at the end.
         formula: The time by the formula, in units of 1/(the frequency of the main mass).
         truth: The time of the simulated motion.
     """
@@ -160,6 +160,25 @@ AbsorberMotion.FIELDS = (
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class AbsorberTouch(Document):
+    """The motion with two impacts a period at which the body touches a wall between them.
+
+    Attributes:
+        amplitude: The amplitude of the main mass.
+        sink: The amplitude of the sink.
+    """
+
+    amplitude: float
+    sink: float
+
+
+AbsorberTouch.FIELDS = (
+    ("amplitude", "amplitude", None),
+    ("sink", "sink", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Absorber(Answer):
     """Design formulas of a vibration absorber, a small mass that takes the vibration of a large one.
 
@@ -180,6 +199,9 @@ class Absorber(Answer):
             gives it; null otherwise, and without values.
         motion: A simulated motion that follows the manifold of a sink; null without values, of a
             tuned or nonlinear absorber, and where the motion does not follow it.
+        touch: The amplitudes at which the body of an impact sink touches a wall between its
+            impacts, where its motion ends while it is stable; null where it does not, and without
+            values.
         verdict: `pass` or `fail`; null without values.
         tolerance: The largest relative error that passes; null without values.
     """
@@ -196,6 +218,7 @@ class Absorber(Answer):
     at: dict[str, Constant] | None
     lowest_peak: LowestPeak | None
     motion: AbsorberMotion | None
+    touch: AbsorberTouch | None
     verdict: str | None
     tolerance: float | None
 
@@ -213,6 +236,7 @@ Absorber.FIELDS = (
     ("at", "at", mapped(Constant.from_json)),
     ("lowest_peak", "lowest_peak", LowestPeak.from_json),
     ("motion", "motion", AbsorberMotion.from_json),
+    ("touch", "touch", AbsorberTouch.from_json),
     ("verdict", "verdict", None),
     ("tolerance", "tolerance", None),
 )

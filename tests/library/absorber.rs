@@ -529,7 +529,7 @@ fn a_slow_pendulum_is_the_ball_in_a_cavity() {
     }
 }
 
-/// Where no multiplier reaches -1, neither the formula nor the search has a largest stable amplitude: the
+/// Neither the formula nor the search has a largest stable amplitude where no multiplier reaches -1: the
 /// motion ends where the pendulum reaches the other barrier between its impacts, by its closed form.
 #[test]
 fn a_pendulum_near_the_frequency_of_the_main_mass_touches_before_it_is_unstable() {

@@ -511,8 +511,8 @@ fn motions_without_modes_are_compared() {
     }
 }
 
-/// Where the modes at rest are tied to a moving one by a resonance of their own, the motion is periodic
-/// with its drive: here a linear oscillator in resonance, exactly of the amplitude F/(c Omega).
+/// A motion is periodic with its drive also where modes at rest are tied to the moving one by a resonance
+/// of their own: here a linear oscillator in resonance, exactly of the amplitude F/(c Omega).
 #[test]
 fn a_mode_that_moves_alone_is_compared() {
     let found = slow(

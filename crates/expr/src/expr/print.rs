@@ -483,6 +483,20 @@ mod tests {
         }
     }
 
+    /// A long decimal stands in the sum that it multiplies, with its sign, and is read back as the same.
+    #[test]
+    fn decimals_are_written_into_sums() {
+        for (text, printed) in [
+            ("x*(a - 0.242705098312484*b)", "x*(a - 0.242705098312484*b)"),
+            ("-(a + 0.242705098312484*b)*x", "-x*(a + 0.242705098312484*b)"),
+            ("0.242705098312484*x*(a + 3*b)", "0.242705098312484*x*(a + 3*b)"),
+        ] {
+            let expr = parse_expression(text).unwrap();
+            assert_eq!(expr.to_string(), printed);
+            assert_eq!(parse_expression(printed).unwrap(), expr);
+        }
+    }
+
     #[test]
     fn fractions_split() {
         let texts = |list: &[Expr]| list.iter().map(ToString::to_string).collect::<Vec<_>>();

@@ -408,8 +408,8 @@ fn decay(
     Some(AbsorberDecay { amplitudes: [manifold(first), end], formula, truth })
 }
 
-/// The manifold by its stability, and the motion along it; `most` is `None` where all large motions are
-/// stable.
+/// The manifold by its stability, and the motion along it; `most` is `None` where the motion is stable
+/// until a wall is touched.
 fn curves(
     manifold: &dyn Fn(f64) -> f64,
     least: f64,

@@ -1,17 +1,21 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
 A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, of one
-coordinate or several, whose equations have polynomials, sin and cos. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
-series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below
-and from above, after every claim of the file has been held against it, or says which inequality or claim does not hold."""
+coordinate or several, whose equations have polynomials, sin and cos, and of laws on a range: the largest error of a formula for the
+frequency over all amplitudes up to one, or all values of a parameter, up to infinity too. What a file claims of the stability is not
+looked at. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a series is a list of cosine coefficients,
+one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below and from above, after every claim of the
+file has been held against it, or says which inequality or claim does not hold."""
 import functools
 import heapq
 import json
+import math
 import re
 import sys
 import time
 from fractions import Fraction
 from math import isqrt
+from operator import mul as product_of
 
 P = 256                                     # binary digits behind the point
 ONE = 1 << P
@@ -21,6 +25,9 @@ LONGEST = 1600                              # no series has more harmonics: what
 SECONDS = 120                               # a file may come from anybody
 MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
 CYCLES, ALL_DRIVEN = "q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"
+LAW = "x''+f(x,p)=0"
+FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")    # of a law; a force has two of them
+smallest = ONE >> 150                       # harmonics below this at the end of a series are a part of its tail
 begun = time.monotonic()
 
 
@@ -28,9 +35,18 @@ class NotProved(Exception):
     pass
 
 
+class Settled(NotProved):                   # on a smaller part of a range too
+    pass
+
+
 def demand(holds, what):
     if not holds:
         raise NotProved(what)
+
+
+def in_time():
+    if time.monotonic() > begun + SECONDS:
+        raise Settled(f"it takes longer than {SECONDS} s")
 
 
 # Numbers: everything is looked at before it is read, so that no text of any length is converted.
@@ -163,7 +179,7 @@ def at(u, k):
 def trimmed(c, s, tail):
     c, s = list(c), list(s)
     for part in (c, s):
-        while part and (size(part[-1]) < ONE >> 150 or len(part) > LONGEST):
+        while part and (size(part[-1]) < smallest or len(part) > LONGEST):
             tail += size(part.pop())
     return c, s, tail
 
@@ -200,34 +216,28 @@ def shrunk(u, n):                           # by a positive integer
 
 def times(u, v, whole_length=False):
     """cos i cos j = (cos(i+j) + cos(i-j))/2, sin i sin j = (cos(i-j) - cos(i+j))/2, sin i cos j = (sin(i+j) + sin(i-j))/2."""
-    demand(time.monotonic() < begun + SECONDS, f"it takes longer than {SECONDS} s")
+    in_time()
+    demand(max(norm(u), norm(v)) >> P < 1 << 2000, "numbers that are too large")
     length = last(u) + last(v) + 1
     c, s = [[0, 0] for _ in range(length)], [[0, 0] for _ in range(length)]
-
-    def put(where, k, m, r, sign):
-        if k < 0:                           # of sines: sin(-k) = -sin(k)
-            k, sign = -k, -sign
-        where[k][0] += sign * m
-        where[k][1] += r
-
+    factors = [[(j, b, abs(b), r) for j, (b, r) in enumerate(part) if b or r] for part in v[:2]]
     for kind_u, part_u in enumerate(u[:2]):
         for i, a in enumerate(part_u):
             if a == ZERO:
                 continue
-            for kind_v, part_v in enumerate(v[:2]):
-                for j, b in enumerate(part_v):
-                    if b == ZERO:
-                        continue
-                    m = a[0] * b[0]
-                    r = abs(a[0]) * b[1] + abs(b[0]) * a[1] + a[1] * b[1]
-                    if kind_u == kind_v:
-                        put(c, i + j, m, r, -1 if kind_u else 1)
-                        put(c, abs(i - j), m, r, 1)
-                    else:
-                        apart = i - j if kind_u else j - i
-                        put(s, i + j, m, r, 1)
-                        if apart:
-                            put(s, apart, m, r, 1)
+            (a, spread), most = a, size(a)
+            for j, b, size_b, r in factors[kind_u]:
+                m, r = a * b, most * r + size_b * spread
+                for place, term in ((c[i + j], -m if kind_u else m), (c[abs(i - j)], m)):
+                    place[0] += term
+                    place[1] += r
+            for j, b, size_b, r in factors[1 - kind_u]:
+                m, r, apart = a * b, most * r + size_b * spread, i - j if kind_u else j - i
+                s[i + j][0] += m
+                s[i + j][1] += r
+                if apart:                   # sin(-k) = -sin(k)
+                    s[abs(apart)][0] += m if apart > 0 else -m
+                    s[abs(apart)][1] += r
     # Twice the sum, in units of 2^-2P.
     halved = lambda t: (t[0] >> P + 1, up(t[1], 2 * ONE) + 1) if t != [0, 0] else ZERO
     tail = up(u[2] * norm(v) + v[2] * finite(u), ONE)
@@ -267,10 +277,14 @@ def sine_and_cosine(u):
 
 # Forces: a tree of what was typed, evaluated with its first two derivatives by x.
 
-def parse(text, letters):
-    """sum := product (+|- product)*, product := power (*|/ power)*, power := atom (^ power), atom := number | letter | sin(sum) | (sum)"""
-    demand(len(text) <= SIZES["force"], "a force of at most 2000 characters")
-    tokens = re.findall(r"\s*(\d+(?:\.\d+)?|[A-Za-z]+|[-+*/^()]|\S)", text, re.ASCII) + [""]
+def parse(text, letters, law=False):
+    """sum := product (+|- product)*, product := power (*|/ power)*, power := atom (^ power), atom := number | letter | sin(sum) | (sum)
+    A law has more functions, quotients, pi, and powers that are fractions."""
+    kind, functions = ("law", FUNCTIONS) if law else ("force", ("sin", "cos"))
+    unknown = f"a {kind} that this program does not know"
+    demand(len(text) <= SIZES["force"], f"a {kind} of at most 2000 characters")
+    decimal = r"\d+(?:\.\d*)?(?:e[-+]?\d+)?" if law else r"\d+(?:\.\d+)?"
+    tokens = re.findall(rf"\s*({decimal}|[A-Za-z_][A-Za-z0-9_]*|[-+*/^()]|\S)", text, re.ASCII) + [""]
     place, depth = 0, 0
 
     def peek():
@@ -279,14 +293,14 @@ def parse(text, letters):
     def take(expected=None):
         nonlocal place
         token = tokens[place]
-        demand(expected is None or token == expected, "a force that this program does not know")
+        demand(token if expected is None else token == expected, unknown)
         place += 1
         return token
 
     def nested(read):
         nonlocal depth
         depth += 1
-        demand(depth <= 60, "a force with too many parentheses or signs")
+        demand(depth <= 60, f"a {kind} with too many parentheses or signs")
         tree = read()
         depth -= 1
         return tree
@@ -310,6 +324,9 @@ def parse(text, letters):
                 factors.append(power())
             else:
                 divisor = power()
+                if law and divisor[0] != "number":
+                    factors.append(("^", divisor, Fraction(-1)))
+                    continue
                 demand(divisor[0] == "number" and divisor[1] != 0, "a quotient that this program does not know")
                 factors.append(("number", 1 / divisor[1]))
         return factors[0] if len(factors) == 1 else ("*", factors)
@@ -319,26 +336,44 @@ def parse(text, letters):
         if peek() != "^":
             return base
         take()
+        if law:
+            sign = -1 if peek() == "-" and take() else 1
+            return ("^", base, sign * exponent_of(atom()))
         exponent = take()
         demand(exponent.isdecimal() and len(exponent) <= 3 and int(exponent) <= 200, "a power that this program does not know")
         return ("^", base, int(exponent))
 
     def atom():
         token = take()
-        if token in ("sin", "cos", "("):
+        if token in functions + ("(",):
             if token != "(":
                 take("(")
             inner = nested(sum_of_products)
             take(")")
-            return inner if token == "(" else (token, inner)
+            return inner if token == "(" else ("^", inner, Fraction(1, 2)) if token == "sqrt" else (token, inner)
         if token in letters:
             return ("letter", token)
-        demand(re.fullmatch(r"\d+(\.\d+)?", token, re.ASCII) and len(token) <= SIZES["number"], "a force that this program does not know")
+        if law:
+            return ("pi",) if token == "pi" else ("number", claim(token, "the law"))
+        demand(re.fullmatch(r"\d+(\.\d+)?", token, re.ASCII) and len(token) <= SIZES["number"], unknown)
         return ("number", Fraction(token))
 
     tree = sum_of_products()
-    demand(peek() == "", "a force that this program does not know")
+    demand(peek() == "", unknown)
     return tree
+
+
+def exponent_of(tree):                      # a fraction, of numbers alone
+    kind = tree[0]
+    if kind == "number":
+        value = tree[1]
+    else:
+        demand(kind in "+*" or (kind == "^" and tree[2] == -1), "a power that this program does not know")
+        parts = [exponent_of(part) for part in (tree[1] if kind in "+*" else [tree[1]])]
+        demand(kind != "^" or parts[0] != 0, "a power that this program does not know")
+        value = sum(parts) if kind == "+" else math.prod(parts) if kind == "*" else 1 / parts[0]
+    demand(abs(value) <= 200 and value.denominator <= 10 ** 9, "a power that this program does not know")
+    return Fraction(value)
 
 
 def read_force(value, letters, what):
@@ -455,7 +490,8 @@ def expanded(tree, atoms=False):
     total = {(): Fraction(1)}
     for part in parts:
         product = {}
-        if len(total) * len(part) > 10000:
+        in_time()
+        if len(total) * len(part) > 10000 or any(long(value) for value in total.values()):
             return None
         for one, value in total.items():
             for other, factor in part.items():
@@ -466,6 +502,10 @@ def expanded(tree, atoms=False):
                 product[monomial] = product.get(monomial, 0) + value * factor
         total = {monomial: value for monomial, value in product.items() if value}
     return total
+
+
+def long(x):
+    return max(x.numerator.bit_length(), x.denominator.bit_length()) > 10000
 
 
 def is_mirror_image(g, h, turned):          # every g even and every h odd
@@ -900,11 +940,469 @@ def formula_amplitude(u, harmonic):
     return 0, size(a) + size(b)
 
 
+# Laws on a range. Along x = a cos(theta), f = sum_k F_k cos(k theta) with odd k alone, 1/omega is the mean of G^(-1/2), and
+# a G = F_1 + 8 sum_{j >= 1} j cos(2 j theta) sum_{odd k > 2 j} F_k/(k^2 - 1), which has no larger norm than f. The norms hold for complex
+# values too: a ball of the variable stands for a disc where no root of it is taken.
+
+NODES = [round(65536 * math.cos(math.pi * (i + 0.5) / 16)) for i in range(16)]      # in units of 2^-16, near the points of Chebyshev
+WIDER = 4                                   # the radius of the disc on which 1/omega is bounded, over half of the piece
+MOST_GROWTH = 12                            # the degree of a force in a parameter that goes to infinity
+
+
+def reach(x):                               # of a positive fraction, rounded up
+    return up(x.numerator * ONE, x.denominator)
+
+
+def enlarged(a, r):
+    return a[0], a[1] + r
+
+
+def part_of(r, s):                          # of what is known by norms: the product, rounded up
+    return up(r * s, ONE)
+
+
+class Family:
+    """The motions x'' + f(x, v) = 0 from rest at x = start, or at v where start is None."""
+
+    def __init__(self, force, name, start):
+        self.force, self.name, self.start = force, name, start
+        # Along the motion what the variable changes: x at the rate cos(theta), or a parameter.
+        self.letter, self.way = ("x", ([ZERO, (ONE, 0)], [], 0)) if start is None else (name, constant(1))
+
+    def amplitude(self, v):
+        return v if self.start is None else number(self.start)
+
+    def along(self, v, names):
+        f, df, ddf = jets(self.force, {"x": ([ZERO, self.amplitude(v)], [], 0), self.name: ([v], [], 0)}, names)
+        demand(not any(u[1] for u in [f] + df), "sines in a force along cosines")
+        return f, df, ddf
+
+    def stiffness(self):                    # at rest, of a force without a parameter
+        u = jets(self.force, {"x": ([], [], 0)}, ("x",))[1][0]
+        return at(u[0], 0)[0], at(u[0], 0)[1] + u[2]
+
+    def inverse_frequency(self, v):
+        if self.start is None and v == ZERO:
+            return root(quotient((ONE, 0), self.stiffness()))
+        g, w, d = inverse_root(divided(rate(self.along(v, ())[0]), self.amplitude(v)))
+        # G^(-1/2) = g (1 - w)^(-1/2), of which 1 + w/2 leaves less than d^2 + d^3 + ...
+        middle = add(mul(at(g[0], 0), at(w[0], 0)), over(total(mul(a, b) for a, b in zip(g[0][1:], w[0][1:])), 2))
+        rest = up(part_of(norm(g), w[2]), 2) + up(part_of(norm(g), d) * d, ONE - d)
+        return enlarged(add(at(g[0], 0), over(middle, 2)), rest)
+
+    def bound_on_disc(self, middle, radius):
+        """A bound of |1/omega| for complex v within the radius of the middle, by the mean value of G."""
+        v, spread = number(middle), reach(radius)
+        everywhere, first, second = enlarged(v, spread), self.along(v, (self.letter,)), self.along(enlarged(v, spread), (self.letter,))
+        f, slope = first[0], times(first[1][0], self.way)
+        bend = norm(times(second[2][0][0], times(self.way, self.way)))
+        if self.start is not None:
+            a = number(self.start)
+            slope = norm(divided(rate(widened(slope, part_of(spread, bend))), a))
+            return bound_of_root(widened(divided(rate(f), a), part_of(spread, slope)))
+        # G = k + L[h]/a with h = f - k x, and G' = L[h']/a - L[h]/a^2.
+        k = self.stiffness()
+        h, slope = plus(f, ([ZERO, mul(k, v)], [], 0), -1), widened(plus(slope, ([ZERO, k], [], 0), -1), part_of(spread, bend))
+        own, changed = divided(rate(h), v), divided(rate(slope), everywhere)
+        bent = divided(divided(rate(widened(h, part_of(spread, norm(slope)))), everywhere), everywhere)
+        return bound_of_root(widened(plus(([k], [], 0), own), part_of(spread, norm(plus(changed, bent, -1)))))
+
+    def bound_about_rest(self, radius):
+        """The same for |a| up to the radius: f = f'(0) x + x^2 int_0^1 (1 - s) f''(s x) ds."""
+        spread = reach(radius)
+        bend = norm(times(self.along((0, spread), ("x",))[2][0][0], times(self.way, self.way)))
+        return bound_of_root(([self.stiffness()], [], up(part_of(spread, bend), 2)))
+
+    def piece(self, low, high):
+        """1/omega between these values: a polynomial in e = (v - middle)/half through values at the nodes. With |1/omega| <= M on the disc
+        it is off by less than M rho/(rho - h) max|w|/(rho - h)^16."""
+        middle, half = (low + high) / 2, (high - low) / 2
+        radius = WIDER * half
+        M = self.bound_about_rest(middle + radius) if self.start is None and low == 0 else self.bound_on_disc(middle, radius)
+        values = [self.inverse_frequency(number(middle + half * Fraction(node, 65536))) for node in NODES]
+        rows, largest_product = through_nodes()
+        coefficients = [total(mul(row[k], value) for row, value in zip(rows, values)) for k in range(16)]
+        rest = Fraction(WIDER, WIDER - 1) * largest_product / (WIDER - 1) ** 16
+        return middle, half, coefficients, up(M * rest.numerator, rest.denominator)
+
+    def pieces(self, low, high, spoken):
+        """From below on, each as long as it can be had."""
+        steps = 1 << 24
+        place, width = 0, steps // 4
+        while place < steps:
+            in_time()
+            ends = [low + (high - low) * Fraction(end, steps) for end in (place, min(place + width, steps))]
+            try:
+                piece = self.piece(*ends)
+            except Settled:
+                raise
+            except NotProved as error:
+                width = (min(place + width, steps) - place) // 2
+                if width == 0:
+                    raise Settled(f"at {spoken(ends[0])} the frequency is not enclosed: {error}")
+                continue
+            yield piece
+            place, width = place + width, 2 * width
+
+
+def rate(f):                                # a G
+    c, sum_beyond = [ZERO] * max(1, last(f)), ZERO
+    for k in range((last(f) - 1) // 2 * 2 + 1, 1, -2):
+        sum_beyond = add(sum_beyond, over(at(f[0], k), k * k - 1))
+        c[k - 1] = scale(sum_beyond, 4 * (k - 1))
+    c[0] = at(f[0], 1)
+    return trimmed(c, [], f[2])
+
+
+def divided(u, by):
+    demand(least(by) > 0, "a division by what may be zero")
+    return [quotient(a, by) if a != ZERO else ZERO for a in u[0]], [], up(u[2] * ONE, least(by))
+
+
+@functools.lru_cache(maxsize=None)
+def cosines(n):                             # of k (i + 1/2) pi/n, by i and by k
+    table = [math.cos(math.pi * i / (2 * n)) for i in range(4 * n)]
+    rows = [[table[(2 * i + 1) * k % (4 * n)] for k in range(n)] for i in range(n)]
+    return rows, list(zip(*rows))
+
+
+def inverse_root(G):
+    """A series g, w = 1 - G g^2 and d >= ||w||, below 1: then G^(-1/2) = g (1 - w)^(-1/2), of a g that is somewhere positive."""
+    demand(norm(G) >> P < 1 << 500, "numbers that are too large")
+    rates, n = [m / ONE for m, _ in G[0][::2]], 16
+    while True:
+        if n >= len(rates):
+            rows, columns = cosines(n)
+            values = [sum(map(product_of, rates, row)) for row in rows]
+            demand(min(values) > 1e-60, "G is not positive")
+            values = [value ** -0.5 for value in values]
+            parts = [sum(map(product_of, values, column)) * 2 / n for column in columns]
+            parts[0] /= 2
+            noise = max(map(abs, parts)) * 4e-16
+            if n == 256 or max(map(abs, parts[3 * n // 4:])) < noise:
+                break
+        n *= 2
+        demand(n <= 256, "a force with too many harmonics")
+    while abs(parts[-1]) < noise:
+        parts.pop()
+    c = [ZERO] * (2 * len(parts) - 1)
+    c[::2] = [(int(part * 2.0 ** 80) << P - 80, 0) for part in parts]
+    g = c, [], 0
+    w = plus(constant(1), times(G, times(g, g)), -1)
+    d = norm(w)
+    demand(d < ONE and total(c)[0] > 0, "G^(-1/2) is not enclosed")
+    return g, w, d
+
+
+def bound_of_root(G):                       # of |G^(-1/2)|: ||g|| (1 - d)^(-1/2)
+    g, _, d = inverse_root(G)
+    return size(quotient((norm(g), 0), root((ONE - d, 0))))
+
+
+@functools.lru_cache(maxsize=None)
+def through_nodes():
+    """The coefficients of the polynomials of degree 15 that are one at a node and zero at the others, and a bound of the product of the
+    distances from all nodes: from the nearest of points 2^-12 apart it grows by at most 2^-13 a factor."""
+    rows, nodes = [], [Fraction(node, 65536) for node in NODES]
+    for own in nodes:
+        row = [Fraction(1)]
+        for other in nodes:
+            if other != own:
+                row = [(below - other * here) / (own - other) for below, here in zip([0] + row, row + [0])]
+        rows.append([number(a) for a in row])
+    most = max(math.prod(abs(place - node) + 8 for node in NODES) for place in range(-65536, 65537, 16))
+    return rows, Fraction(most, 65536 ** 16)
+
+
+# Functions of a number of a ball, and pairs of a value and its first derivative (None where that has no bound).
+
+def waves_of_number(a):                     # sine and cosine
+    demand(abs(a[0]) >> P + 40 == 0, "the argument of sin is too large")
+    turns = (a[0] + PI[0]) // (2 * PI[0])
+    y, r = a[0] - 2 * turns * PI[0] >> 5, a[1] + 2 * abs(turns) * PI[1] + 32
+    w, s, c = y * y >> P, ONE, ONE          # y below 0.1 in size: rounded by less than two units, and 0.1^30/30! is below 2^-206
+    for k in range(14, 0, -1):
+        s, c = ONE - (w * s >> P) // (2*k*(2*k + 1)), ONE - (w * c >> P) // (2*k*(2*k - 1))
+    s = y * s >> P
+    for _ in range(5):                      # what is lost grows to less than four times, and four units
+        s, c = s * c >> P - 1, ONE - (s * s >> P - 1)
+    rest, bent = ONE >> 180, up(part_of(r, r), 2)
+    return (s, rest + min(r, part_of(abs(c) + rest, r) + bent)), (c, rest + min(r, part_of(abs(s) + rest, r) + bent))
+
+
+def exponential(a):
+    demand(abs(a[0]) >> P < 600 and a[1] < ONE >> 1, "the argument of exp is too large")
+    halvings = 8
+    while abs(a[0]) >> halvings - 6 > ONE:
+        halvings += 1
+    y, result = over((a[0], 0), 1 << halvings), (ONE, 0)    # below 2^-6 in size
+    for k in range(24, 0, -1):
+        result = add((ONE, 0), over(mul(y, result), k))
+    result = enlarged(result, ONE >> 200)   # 2^-150/25! is below 2^-230
+    for _ in range(halvings):
+        result = mul(result, result)
+    return enlarged(result, up(size(result) * a[1], ONE - a[1]))
+
+
+def logarithm(a):
+    demand(least(a) > 0 and a[0] > 0, "a logarithm of what may not be positive")
+    y = int((math.log(a[0]) - P * math.log(2)) * 2.0 ** 60) << P - 60
+    t = add(mul((a[0], 0), exponential((-y, 0))), (ONE, 0), -1)
+    demand(size(t) < ONE >> 40, "a logarithm of what is too small")
+    power, result = t, (y, 0)
+    for k in range(1, 6):
+        result, power = add(result, over(power, k), 1 if k % 2 else -1), mul(power, t)
+    return enlarged(result, size(power) + up(a[1] * ONE, a[0] - a[1]))
+
+
+def inner(u, value, slope):                 # of a function of u with this value and slope
+    demand(size(value) >> P < 1 << 1000, "numbers that are too large")
+    return value, None if u[1] is None else mul(slope, u[1])
+
+
+def pair_times(u, v):
+    demand(max(size(u[0]), size(v[0])) >> P < 1 << 1000, "numbers that are too large")
+    unbounded = u[1] is None or v[1] is None
+    return mul(u[0], v[0]), None if unbounded else add(mul(u[1], v[0]), mul(u[0], v[1]))
+
+
+def pair_power(u, exponent):
+    """By products, quotients and roots where those do, else exp(exponent*log(u))."""
+    top, bottom = exponent.numerator, exponent.denominator
+    if bottom & bottom - 1 == 0 and bottom <= 64 and abs(top) <= 64:
+        for _ in range(bottom.bit_length() - 1):
+            value = root(u[0])
+            u = inner(u, value, quotient((ONE, 0), scale(value, 2)))
+        result = (ONE, 0), ZERO
+        for bit in bin(abs(top))[2:]:
+            result = pair_times(result, result)
+            if bit == "1":
+                result = pair_times(result, u)
+        if top < 0:
+            value = quotient((ONE, 0), result[0])
+            return inner(result, value, scale(mul(value, value), -1))
+        return result
+    factor = number(exponent)
+    value = exponential(mul(factor, logarithm(u[0])))
+    return inner(u, value, mul(factor, quotient(value, u[0])))
+
+
+# A law as a power of r times such a pair: of r = 1/v an interval may reach zero.
+
+class Interval:
+    def __init__(self, low, high, is_far):
+        middle = (low + high) / 2
+        self.low, self.high, self.is_far = low, high, is_far
+        self.ball = enlarged(number(middle), reach((high - low) / 2))
+        self.slope = (ONE, 0) if low < high else None   # no one asks for it at a place
+
+    def power(self, exponent):              # of r, with its slope
+        if exponent == 0:
+            return (ONE, 0), ZERO
+        if self.low > 0 or exponent.denominator == 1:
+            return pair_power((self.ball, self.slope), exponent)
+        demand(exponent > 0, "a division by what may be zero")
+        half = up(size(pair_power((number(self.high), None), exponent)[0]), 2) if self.high else 0
+        return (half, half), None
+
+    def with_power(self, term, power):
+        return power, term[1] if term[0] == power else pair_times(term[1], self.power(term[0] - power))
+
+
+def steps_of(tree):
+    """A law as steps, each from the results of those before, in which equal parts are one."""
+    steps, places = [], {}
+
+    def put(tree):
+        key, kind = repr(tree), tree[0]
+        if key not in places:
+            if kind in ("number", "pi", "letter"):
+                step = (kind, number(tree[1]) if kind == "number" else None)
+            else:
+                step = (kind, [put(part) for part in tree[1]] if kind in "+*" else put(tree[1]), *tree[2:])
+            places[key] = len(steps)
+            steps.append(step)
+        return places[key]
+
+    put(tree)
+    return steps
+
+
+def law_on(law, interval):
+    known, none = [], Fraction(0)
+    for step in law:
+        known.append(step_on(step, known, interval, none))
+    return known[-1]
+
+
+def step_on(step, known, interval, none):
+    kind = step[0]
+    if kind in ("number", "pi"):
+        return none, (PI if kind == "pi" else step[1], ZERO)
+    if kind == "letter":
+        return (Fraction(-1), ((ONE, 0), ZERO)) if interval.is_far else (none, (interval.ball, interval.slope))
+    if kind == "+":
+        terms = [known[part] for part in step[1]]
+        if interval.is_far:
+            terms = [term for term in terms if term[1] != (ZERO, ZERO)] or terms[:1]
+            power = min(term[0] for term in terms)
+            terms = [interval.with_power(term, power) for term in terms]
+        unbounded = any(slope is None for _, (_, slope) in terms)
+        return terms[0][0], (total(u[0] for _, u in terms), None if unbounded else total(u[1] for _, u in terms))
+    if kind == "*":
+        power, product = known[step[1][0]]
+        for part in step[1][1:]:
+            power, product = power + known[part][0] if interval.is_far else none, pair_times(product, known[part][1])
+        return power, product
+    power, u = known[step[1]]
+    if kind == "^":
+        return power * step[2] if power else none, pair_power(u, step[2])
+    u = interval.with_power((power, u), none)[1]
+    if kind in ("sin", "cos"):
+        s, c = waves_of_number(u[0])
+        return none, inner(u, s, c) if kind == "sin" else inner(u, c, scale(s, -1))
+    if kind == "exp":
+        value = exponential(u[0])
+        return none, inner(u, value, value)
+    return none, inner(u, logarithm(u[0]), quotient((ONE, 0), u[0]))
+
+
+def over_truth(law, interval, inverse_frequency, n, growth):
+    """law/truth, where the truth is omega^n and 1/omega is r^(growth/2) times this pair."""
+    power, u = law_on(law, interval)
+    u = pair_times(u, pair_power(inverse_frequency, Fraction(n)))
+    power += Fraction(growth * n, 2)
+    if power < 0 and interval.low == 0 and interval.is_far:
+        raise Settled("the law and the true frequency grow with different powers, so that no error bounds it to infinity")
+    return interval.with_power((power, u), Fraction(0))[1]
+
+
+def on_polynomial(coefficients, per_half, e, with_slope=True):   # its value, and its slope by the variable
+    value, slope = ZERO, ZERO
+    for a in reversed(coefficients):
+        if with_slope:
+            slope = add(mul(slope, e), value)
+        value = add(mul(value, e), a)
+    return value, mul(slope, per_half) if with_slope else None
+
+
+def largest_on(piece, law, n, growth, is_far, most, spoken):
+    """A bound of |law/truth - 1| on a piece, in parts on which it is at most this."""
+    middle, half, coefficients, remainder = piece
+    per_half, found, parts = number(1 / half), 0, [(Fraction(-1), Fraction(1), 0)]
+    while parts:
+        in_time()
+        low, high, depth = parts.pop()
+        e, spread = number((low + high) / 2), reach((high - low) / 2)
+        ends = middle + half * low, middle + half * high
+        place = sum(ends) / 2
+        why = "the error is not proved to be within its bound"
+        try:
+            truth = on_polynomial(coefficients, per_half, enlarged(e, spread))
+            # The polynomial stands for the truth up to this relative error.
+            demand(least(truth[0]) > 0, "a frequency that may be infinite")
+            off = pair_power(((ONE, up(remainder * ONE, least(truth[0]))), None), Fraction(n))[0]
+            there = over_truth(law, Interval(place, place, is_far), on_polynomial(coefficients, per_half, e, False), n, growth)[0]
+            if least(add(mul(there, off), (ONE, 0), -1)) > most:
+                raise Settled(f"at {spoken(place)} the error is above its bound")
+            q, slope = over_truth(law, Interval(*ends, is_far), truth, n, growth)
+            if slope is not None:
+                by_slope = enlarged(there, part_of(part_of(spread, reach(half)), size(slope)))
+                q = min(q, by_slope, key=lambda ball: ball[1])
+            error = size(add(mul(q, off), (ONE, 0), -1))
+            if error <= most:
+                found = max(found, error)
+                continue
+        except Settled:
+            raise
+        except NotProved as error:
+            why = f"the law is not enclosed: {error}"
+        if depth == 40:
+            raise Settled(f"at {spoken(place)} {why}")
+        parts += [((low + high) / 2, high, depth + 1), (low, (low + high) / 2, depth + 1)]
+    return found
+
+
+def in_reciprocal(force, name):
+    """f(x, 1/r) r^d, a polynomial in r, where d is the degree of f in v."""
+    terms, atoms = expanded(force, True), {}
+
+    def look(tree):
+        if tree[0] in ("sin", "cos"):
+            atoms[repr(tree)] = tree
+            demand(not has_letter(tree, name), "a sine or cosine of a parameter that goes to infinity")
+        elif tree[0] not in ("number", "letter"):
+            for part in tree[1] if tree[0] in "+*" else [tree[1]]:
+                look(part)
+
+    look(force)
+    demand(terms, "a force that this program does not know")
+    degree = max(dict(monomial).get(name, 0) for monomial in terms)
+    demand(degree <= MOST_GROWTH, f"a force of a degree above {MOST_GROWTH} in a parameter that goes to infinity")
+    parts = []
+    for monomial, value in terms.items():
+        powers = dict(monomial)
+        powers[name] = degree - powers.get(name, 0)
+        parts.append(("*", [("number", value)] + [("^", atoms.get(letter, ("letter", letter)), n) for letter, n in powers.items() if n]))
+    return ("+", parts), degree
+
+
+def has_letter(tree, name):
+    if tree[0] in ("number", "letter"):
+        return tree == ("letter", name)
+    return any(has_letter(part, name) for part in (tree[1] if tree[0] in "+*" else [tree[1]]))
+
+
+def check_law(z):
+    global smallest
+    smallest = ONE >> 80                    # many short series
+    keys(z, {"schema", "ode", "f", "variable", "start", "quantity", "law", "from", "to", "worst", "error"}, set(), "the file")
+    name = of_form("[A-Za-z_][A-Za-z0-9_]*", z["variable"], "a name in variable")
+    demand(name not in FUNCTIONS + ("x", "pi"), "a variable with the name of something else")
+    demand(isinstance(z["f"], str) and isinstance(z["law"], str), "a text in f and in law")
+    force, law = parse(z["f"], {"x", name}), steps_of(parse(z["law"], {name}, True))
+    start = None if z["start"] == "variable" else fraction(z["start"], "start")
+    demand(start is None or start > 0, "a start that is not positive")
+    demand(start is not None or not has_letter(force, name), "a force that contains the amplitude")
+    powers = {"omega": 1, "omega^2": 2, "T/(2*pi)": -1}
+    demand(isinstance(z["quantity"], str) and z["quantity"] in powers, "another quantity")
+    n, low, high = powers[z["quantity"]], fraction(z["from"], "from"), None if z["to"] is None else fraction(z["to"], "to")
+    worst, claimed = fraction(z["worst"], "worst"), pair(z["error"], "error")
+    demand(low >= 0 and (high is None or low < high), "an empty range, or one of negative numbers")
+    demand(high is not None or start is not None, "an amplitude that goes to infinity")
+    demand(low <= worst and (high is None or worst <= high), "a worst place outside of the range")
+    demand(parity(force, {"x"}) in (-1, None), "the force is not odd")
+    near = Family(force, name, start)
+    # From below, at one place.
+    truth = near.inverse_frequency(number(worst)), None
+    below = least(add(over_truth(law, Interval(worst, worst, False), truth, n, 0)[0], (ONE, 0), -1))
+    demand(Fraction(below, ONE) >= claimed[0], f"at {name} = {worst} the error is not as large as claimed")
+    # From above, everywhere.
+    ranges = [(near, low, high, 0, False)]
+    if high is None:
+        far, growth = in_reciprocal(force, name)
+        ranges = [(near, low, Fraction(1), 0, False)] if low < 1 else []
+        ranges.append((Family(far, name, start), Fraction(0), 1 / max(low, Fraction(1)), growth, True))
+    above, most = 0, min(units(claimed[1]), 1000 * ONE)
+    for family, begin, end, growth, is_far in ranges:
+        spoken = lambda v: f"{name} = {'infinity' if is_far and v == 0 else decimal_of(1 / v if is_far else v)}"
+        for piece in family.pieces(begin, end, spoken):
+            above = max(above, largest_on(piece, law, n, growth, is_far, most, spoken))
+    return {"law": f"{z['quantity']} = {z['law']}", "range": [z["from"], z["to"]], "largest_error": [decimal(below), decimal(above, 1)]}
+
+
+def decimal_of(x):                          # for a sentence
+    return f"{float(x):.6g}" if abs(x) < 10 ** 300 else "a large number"
+
+
 def check(text):
     demand(len(text) <= SIZES["file"], "a file of at most 16 MB")
     z = json.loads(text, object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number,
                    parse_int=lambda digits: int(digits) if len(digits) <= 20 else no_number(digits))
-    demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1" and z.get("nu") == "1", "another schema")
+    demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1", "another schema")
+    if z.get("ode") == LAW:
+        return check_law(z)
+    demand(z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")
     demand(kind in (MOTION, MODE, CYCLE, DRIVEN, CYCLES, ALL_DRIVEN), "another equation")

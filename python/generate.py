@@ -316,6 +316,7 @@ RESULTS = {
     "response": "Response",
     "absorber": "Absorber",
     "orbits": "Orbits",
+    "shortest": "Shortest | LawCertificateDocument",
     "friction": "Friction",
     "lagrange": "Lagrangian",
     "materials": "Materials",
@@ -326,7 +327,7 @@ RESULTS = {
     "certify": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
     " | CoupledCertificateDocument | CertificateRange",
     "check": "Certificate | DampedCertificateDocument | ModeCertificateDocument"
-    " | CoupledCertificateDocument",
+    " | CoupledCertificateDocument | LawCertificateDocument",
 }
 #: The commands of an equation, which are methods of `Oscillator` too.
 OF_EQUATIONS = ("derive", "compare", "simulate", "response", "stability", "certify")

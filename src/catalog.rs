@@ -31,6 +31,42 @@ pub struct CatalogEntry {
     pub published: Option<Published>,
 }
 
+/// A formula of the frequency over a whole range of amplitudes, as its source prints it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RangeFormula {
+    /// The name of the entry.
+    pub entry: &'static str,
+    /// The period over 2 pi as a formula of the amplitude `A` and, for the pendulum, `c = cos(A/2)`.
+    pub period: &'static str,
+    /// The publication.
+    pub source: &'static str,
+}
+
+/// Published formulas of whole ranges, for comparison.
+pub const RANGE_FORMULAS: &[RangeFormula] = &[
+    RangeFormula { entry: "pendulum", period: "1 + A^2/16", source: "Bernoulli 1749" },
+    RangeFormula {
+        entry: "pendulum",
+        period: "1/sqrt(1 - A^2/8)",
+        source: "Jam, Fard 2012, equation (12)",
+    },
+    RangeFormula { entry: "pendulum", period: "1/(1 - A^2/16)", source: "Denman 1959" },
+    RangeFormula {
+        entry: "pendulum",
+        period: "1/sqrt(sin(sqrt(3)*A/2)/(sqrt(3)*A/2))",
+        source: "Ganley 1985, Parwani 2004",
+    },
+    RangeFormula { entry: "pendulum", period: "(sin(A)/A)^(-3/8)", source: "Molina 1997" },
+    RangeFormula { entry: "pendulum", period: "1/sqrt(c)", source: "Kidd, Fogg 2002" },
+    RangeFormula { entry: "pendulum", period: "-log(c)/(1 - c)", source: "Lima, Arun 2006" },
+    RangeFormula { entry: "pendulum", period: "1/sqrt(2*J1(A)/A)", source: "Belendez 2007" },
+    RangeFormula {
+        entry: "pendulum",
+        period: "4/(1 + sqrt(c))^2",
+        source: "Carvalhaes, Suppes 2008; Belendez 2009",
+    },
+];
+
 /// A law as its source prints it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Published {

@@ -34,6 +34,7 @@
 //! | [`trajectory`] | follows any equation or mechanism in numbers: sections, sweeps, energies | [`trajectory::TrajectoryRequest`] |
 //! | [`response`] | follows steady states through resonances: branches, stability, bifurcations | [`response::respond`] |
 //! | [`absorber_verdict`] | judges absorbers by searches, branches and simulations | [`absorber_verdict::judge_absorber`] |
+//! | [`shortest`] | searches the shortest frequency law within an error on a range, and proves it | [`shortest::search`] |
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
 //! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`wall`] | reads rigid walls with a coefficient of restitution | [`wall::Wall`] |
@@ -85,7 +86,9 @@ pub use lindstedt_oscillator::{method, oscillator, solution};
 #[doc(inline)]
 pub use lindstedt_series::series;
 #[doc(inline)]
-pub use lindstedt_verify::{absorber_verdict, certificate, hill, response, trajectory, verify};
+pub use lindstedt_verify::{
+    absorber_verdict, certificate, hill, response, shortest, trajectory, verify,
+};
 
 use lindstedt_expr::{decimal, spelling, symbol, values};
 use lindstedt_numeric::interrupt;

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .commands import orbits as orbits
     from .commands import paper as paper
     from .commands import response as response
+    from .commands import shortest as shortest
     from .commands import simulate as simulate
     from .commands import stability as stability
     from .errors import InternalError as InternalError
@@ -80,8 +81,8 @@ PLACES = {
     **dict.fromkeys(
         (
             "absorber", "audit", "certify", "check", "compare", "derive", "friction", "impact",
-            "lagrange", "materials", "optimize", "orbits", "paper", "response", "simulate",
-            "stability",
+            "lagrange", "materials", "optimize", "orbits", "paper", "response", "shortest",
+            "simulate", "stability",
         ),
         "commands",
     ),

@@ -35,6 +35,7 @@ OWN = {
     "Motion": ("motions", "Motion"),
     "MotionSweep": ("motions", "MotionSweep"),
     "Optimization": ("designs", "Optimization"),
+    "Shortest": ("laws", "Shortest"),
     "Primary": ("motions", "Primary"),
     "PrimarySweep": ("motions", "PrimarySweep"),
     "Response": ("branches", "Response"),

@@ -46,6 +46,10 @@ CALLS = {
     ),
     "absorber": lambda: ls.absorber("tuned", mu="1/20"),
     "orbits": lambda: ls.orbits(EXAMPLES / "orbits" / "driven-beam.toml"),
+    "shortest": lambda: ls.shortest("pendulum", range={"A": (0, 2.8)}, longest=6, error=0.01),
+    "certified law": lambda: ls.shortest(
+        "pendulum", range={"A": (0, 2.8)}, longest=6, error=0.01, certificate=True
+    ),
     "friction": lambda: ls.friction(),
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
+use crate::certificate::{
+    self, Certified, DampedCertificate, LawCertificate, LawError, NotCertified, RangeEnd,
+};
 use crate::coupled::CoupledEquations;
 use crate::exact::Rational;
 use crate::export::json::{
     self, CertificateDocument, CoupledCertificateDocument, DampedCertificateDocument,
-    ModeCertificateDocument,
+    LawCertificateDocument, ModeCertificateDocument,
 };
 use crate::export::printable_in_line;
 use crate::expr::{ExprError, parse_expression};
@@ -325,6 +327,13 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
     // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+    if ode == json::EQUATION_ON_A_RANGE {
+        let document: LawCertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        let law = document.read().map_err(|error| unread(&error))?;
+        let error = certificate::check_law(&law).map_err(|error| refused(&error))?;
+        return law_printed(&law, &error, &arguments.common);
+    }
     let tolerance = tolerance(&arguments.common);
     let (motion, damped, mode, coupled);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
@@ -375,6 +384,25 @@ fn without_picture(common: &Common) -> Result<(), Failure> {
                 .to_owned(),
         )),
     }
+}
+
+/// The answer to a certificate of a law on a range, with a verdict on its largest error.
+fn law_printed(
+    law: &LawCertificate,
+    error: &LawError,
+    common: &Common,
+) -> Result<Outcome, Failure> {
+    let answer = Answer {
+        document: &report::law_certificate(law, error),
+        width: width(common.output.as_deref()),
+        picture: None,
+        other: &|format| match format {
+            Format::Json => json_text(&json::law_certificate(law)),
+            format => no_such(format),
+        },
+    };
+    let is_within = common.tolerance.is_none_or(|tolerance| error.upper <= tolerance);
+    Ok(Outcome { verdict: Some(Verdict::from_passed(is_within)), ..answer.outcome(common)? })
 }
 
 fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failure> {

@@ -34,6 +34,7 @@ mod schema;
 mod session;
 mod shard;
 mod shell;
+mod shortest;
 mod simulate;
 mod slow_equations;
 mod stability;
@@ -79,7 +80,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 21] = [
+static COMMANDS: [Command; 22] = [
     Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
@@ -97,6 +98,11 @@ static COMMANDS: [Command; 21] = [
     Command::new::<absorber::AbsorberArguments>("absorber")
         .showing(include_str!("help/absorber.txt")),
     Command::new::<orbits::OrbitsArguments>("orbits").showing(include_str!("help/orbits.txt")),
+    Command::new::<shortest::ShortestArguments>("shortest")
+        .showing(include_str!("help/shortest.txt"))
+        .writing(Formats::ProgramsAndTables)
+        .waiting(one_minute)
+        .judged(),
     Command::new::<friction::FrictionArguments>("friction")
         .showing(include_str!("help/friction.txt")),
     Command::new::<lagrange::LagrangeArguments>("lagrange")
@@ -261,6 +267,8 @@ fn one_minute(_: &Session) -> Duration {
 enum Formats {
     /// Pictures and programs.
     Programs,
+    /// Pictures, tables of comma-separated values and programs.
+    ProgramsAndTables,
     /// Pictures.
     Pictures,
     /// Pictures and tables of comma-separated values.
@@ -275,9 +283,11 @@ impl Formats {
     /// The formats that the help lists beside those of every command.
     fn listed(self) -> Vec<Format> {
         match self {
-            Self::Programs => {
-                let programs = Language::ALL.map(Format::Code);
-                [Format::Svg].into_iter().chain(programs).collect()
+            Self::Programs | Self::ProgramsAndTables => {
+                let mut formats = vec![Format::Svg];
+                formats.extend(matches!(self, Self::ProgramsAndTables).then_some(Format::Csv));
+                formats.extend(Language::ALL.map(Format::Code));
+                formats
             }
             Self::Pictures => vec![Format::Svg],
             Self::PicturesAndTables => vec![Format::Svg, Format::Csv],

@@ -14,6 +14,7 @@
 
 mod c;
 mod julia;
+mod laws;
 mod matlab;
 mod modes;
 mod program;
@@ -23,7 +24,7 @@ mod writer;
 
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
-use crate::report::ModesReport;
+use crate::report::{ModesReport, ShortestReport, shortest};
 use crate::solution::{Advice, Setting, Solution};
 use crate::symbol::Symbol;
 use crate::verify::Verification;
@@ -196,6 +197,17 @@ pub fn modes<'a>(report: &ModesReport, style: impl Into<CodeStyle<'a>>) -> Resul
     let _letters = report.modes.system.letters.in_force();
     let CodeStyle { language, prefix } = style.into();
     writer::source(&modes::program(report)?.with_prefix(prefix), language.syntax())
+}
+
+/// The source text of the frequency law that a search shows first: a function of its variable, with the
+/// range and the proved bound of the error as a comment.
+///
+/// # Errors
+/// [`NoCode`] where no law was found.
+pub fn law<'a>(report: &ShortestReport, style: impl Into<CodeStyle<'a>>) -> Result<String, NoCode> {
+    let CodeStyle { language, prefix } = style.into();
+    let program = laws::program(report, &shortest(report))?;
+    writer::source(&program.with_prefix(prefix), language.syntax())
 }
 
 /// A language: how everything looks in it.

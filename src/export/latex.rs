@@ -16,6 +16,8 @@ pub use expression::{expression, inside, symbol};
 pub(super) use table::LatexTable;
 
 pub use super::steps::latex as steps;
+use std::collections::BTreeMap;
+
 use num_traits::Zero;
 
 use crate::decimal::{decimal, rounded_fraction};
@@ -26,6 +28,7 @@ use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
+use crate::symbol::Symbol;
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::{Comparison, Refused};
 use crate::verify::{Verdict, Verification};
@@ -77,13 +80,40 @@ pub fn equation(equation: &Equation) -> String {
 /// assert_eq!(lindstedt::export::latex::typed("omega0^2*x"), r"\omega_{0}^{2} x");
 /// ```
 pub fn typed(text: &str) -> String {
-    let side = |text: &str| {
-        parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side))
-    };
+    let side =
+        |text: &str| with_decimals(text).map_or_else(|| text.to_owned(), |side| expression(&side));
     match text.split_once('=') {
         Some((left, right)) => format!("{} = {}", side(left), side(right)),
         None => side(text),
     }
+}
+
+/// The expression of a text whose decimals are kept as they are written, as symbols of their own; `None` if it
+/// cannot be read.
+fn with_decimals(text: &str) -> Option<Expr> {
+    let mut names: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    let (mut renamed, mut rest) = (String::new(), text);
+    while let Some(begin) = rest.find(|letter: char| letter.is_ascii_digit() || letter == '.') {
+        let end = rest[begin..].find(|letter: char| !letter.is_ascii_digit() && letter != '.');
+        let end = end.map_or(rest.len(), |end| begin + end);
+        let digits = &rest[begin..end];
+        let in_name =
+            rest[..begin].ends_with(|letter: char| letter.is_alphanumeric() || letter == '_');
+        // Powers with a decimal as exponent are roots, which are written as such.
+        let is_exponent = rest[end..].starts_with(['e', 'E'])
+            || rest[..begin].trim_end_matches('(').ends_with('^');
+        renamed.push_str(&rest[..begin]);
+        match digits.contains('.') && !in_name && !is_exponent {
+            true => {
+                let name = Symbol::new(&format!("decimal_{}", names.len()));
+                renamed.push_str(name.name());
+                names.insert(name, Expr::symbol(digits));
+            }
+            false => renamed.push_str(digits),
+        }
+        rest = &rest[end..];
+    }
+    parse_expression(&(renamed + rest)).ok()?.substitute_all(&names).ok()
 }
 
 /// Words that are a formula, such as `1 - A^2/8` or `x'' + sin(x) = 0`, as LaTeX; `None` if they

@@ -24,6 +24,7 @@ pub mod optimization;
 pub mod orbits;
 pub mod primary;
 pub mod response;
+pub mod shortest;
 pub mod simulation;
 pub mod slow_equations;
 pub mod stability;

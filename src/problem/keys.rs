@@ -35,11 +35,13 @@ pub enum ReadingCommand {
     Response,
     /// `lindstedt orbits`
     Orbits,
+    /// `lindstedt shortest`
+    Shortest,
 }
 
 use ReadingCommand::{
-    Compare, Derive, Impact, Lagrange, Materials, Optimize, Orbits, Response, Simulate, Stability,
-    Trajectory,
+    Compare, Derive, Impact, Lagrange, Materials, Optimize, Orbits, Response, Shortest, Simulate,
+    Stability, Trajectory,
 };
 
 impl fmt::Display for ReadingCommand {
@@ -55,6 +57,7 @@ impl fmt::Display for ReadingCommand {
             Stability => "lindstedt stability",
             Response => "lindstedt response",
             Orbits => "lindstedt orbits",
+            Shortest => "lindstedt shortest",
         })
     }
 }
@@ -63,7 +66,7 @@ impl fmt::Display for ReadingCommand {
 fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
     match (section, key) {
         ("", "equation") => {
-            &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response, Orbits]
+            &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response, Orbits, Shortest]
         }
         ("", "method") => &[Derive, Impact, Response],
         ("", "order") => &[Derive, Impact, Stability, Response],
@@ -74,7 +77,7 @@ fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
         ("", "amplitude") => &[Derive, Impact],
         ("", "about") => &[Derive, Compare, Impact],
         ("", "[values]") => {
-            &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response, Orbits]
+            &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response, Orbits, Shortest]
         }
         // A command that reads an equation of motion reads a mechanism as well.
         ("lagrangian", _) | ("", "[units]") => {
@@ -215,7 +218,7 @@ impl Problem {
     /// [`ProblemError`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: ReadingCommand) -> Result<(), ProblemError> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
-        if matches!(reader, Derive | Compare | Stability | Response | Orbits)
+        if matches!(reader, Derive | Compare | Stability | Response | Orbits | Shortest)
             && self.equation.is_none()
             && self.lagrangian.is_none()
             && described

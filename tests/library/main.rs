@@ -54,6 +54,7 @@ mod section;
 mod self_excited;
 mod sensitivity;
 mod series_properties;
+mod shortest;
 mod simulate;
 mod slow_equations;
 mod spurious;

@@ -11,11 +11,11 @@ use lindstedt::export::json::{
     self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
     CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
     DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
-    ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, LawCertificateDocument,
+    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
     OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
-    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    PrimarySweepDocument, ResponseDocument, ShortestDocument, SimulationDocument,
+    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -105,6 +105,7 @@ fn reads_back(document: &Value) {
         DocumentKind::Simulation => again::<SimulationDocument>(document),
         DocumentKind::Sweep => again::<SweepDocument>(document),
         DocumentKind::Absorber => again::<AbsorberDocument>(document),
+        DocumentKind::Shortest => again::<ShortestDocument>(document),
         DocumentKind::Orbits => again::<OrbitsDocument>(document),
         DocumentKind::Friction => again::<FrictionDocument>(document),
         DocumentKind::Lagrangian => again::<LagrangianDocument>(document),
@@ -119,6 +120,9 @@ fn reads_back(document: &Value) {
         DocumentKind::Catalog => again::<CatalogDocument>(document),
         DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
+        }
+        DocumentKind::Certificate if document["ode"] == json::EQUATION_ON_A_RANGE => {
+            again::<LawCertificateDocument>(document)
         }
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
@@ -195,6 +199,9 @@ fn documents() -> Vec<(String, Value)> {
     let ball = "examples/orbits/bouncing-ball.toml";
     add(&["orbits", ball, "--vary", "Z=0.001:0.01"]);
     add(&["orbits", ball, "--vary", "Z=0.001:0.01", "--along", "e=0.2:0.9"]);
+    let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "6"];
+    add(&laws);
+    add(&[&laws[..], &["--error", "0.01", "--certificate"]].concat());
     add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["impact", "--certify"]);
@@ -278,7 +285,7 @@ fn innermost(document: &mut Value) -> &mut Value {
     let place = match document["schema"].as_str() {
         Some("lindstedt/solution/1") => "/equilibrium",
         Some("lindstedt/absorber/1") => "/designs/0/formulas/0",
-        Some("lindstedt/orbits/1") => "/laws/0",
+        Some("lindstedt/orbits/1" | "lindstedt/shortest/1") => "/laws/0",
         Some("lindstedt/modes/1") => "/modes/0",
         Some("lindstedt/comparison/1") => "/methods/0",
         Some("lindstedt/impact/1") => "/derived_phases/1/displacement",
@@ -304,6 +311,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_OF_CYCLES => {
             "/stability"
         }
+        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATION_ON_A_RANGE => "",
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",

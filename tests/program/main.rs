@@ -20,6 +20,7 @@ mod pictures;
 mod programs;
 mod responses;
 mod shards;
+mod shortest;
 mod simulate_cli;
 mod unread;
 mod walls;

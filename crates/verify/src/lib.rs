@@ -34,6 +34,8 @@ pub mod response;
 
 pub mod absorber_verdict;
 
+pub mod shortest;
+
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
 pub use method::motion::Motion;
 pub use method::numbers::NoNumbers;

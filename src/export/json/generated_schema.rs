@@ -11,11 +11,11 @@ use super::{
     AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
     CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
     DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, MaterialsDocument,
-    ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
+    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, LawCertificateDocument,
+    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
     OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, SimulationDocument, SlowEquationsDocument,
-    SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    PrimarySweepDocument, ResponseDocument, ShortestDocument, SimulationDocument,
+    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
 };
 use crate::solution::Method;
 
@@ -43,6 +43,7 @@ impl DocumentKind {
             Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
             Self::Absorber => generator.into_root_schema_for::<AbsorberDocument>(),
             Self::Orbits => generator.into_root_schema_for::<OrbitsDocument>(),
+            Self::Shortest => generator.into_root_schema_for::<ShortestDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
@@ -81,9 +82,10 @@ impl JsonSchema for EitherCertificate {
             generator.subschema_for::<DampedCertificateDocument>(),
             generator.subschema_for::<ModeCertificateDocument>(),
             generator.subschema_for::<CoupledCertificateDocument>(),
+            generator.subschema_for::<LawCertificateDocument>(),
         ];
         json_schema!({
-            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates.",
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates; or how far a frequency law is off on a range.",
             "anyOf": kinds,
         })
     }

@@ -28,6 +28,7 @@ pub mod impact;
 pub mod impact_certificate;
 pub mod impact_comparison;
 pub mod lagrangian;
+mod law_certificate;
 pub mod materials;
 pub mod mode_certificate;
 pub mod modes;
@@ -41,6 +42,7 @@ pub mod primary;
 pub mod response;
 mod schema;
 pub mod shard;
+mod shortest;
 pub mod simulation;
 mod slow_equations;
 pub mod solution;
@@ -73,6 +75,7 @@ pub use impact::{ImpactDocument, impact};
 pub use impact_certificate::{ImpactCertificateDocument, impact_certificate};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use lagrangian::{LagrangianDocument, lagrangian};
+pub use law_certificate::{EQUATION_ON_A_RANGE, LawCertificateDocument, law_certificate};
 pub use materials::{MaterialsDocument, materials};
 pub use mode_certificate::{EQUATIONS_OF_MODES, ModeCertificateDocument, mode_certificate};
 pub use modes::{ModesDocument, modes};
@@ -92,6 +95,7 @@ pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep}
 pub use response::{ResponseDocument, response};
 pub use schema::DocumentKind;
 pub use shard::{PointDocument, StudyDocument};
+pub use shortest::{PublishedFormulaDocument, ShortLawDocument, ShortestDocument, shortest};
 pub use simulation::{SimulationDocument, simulation};
 pub use slow_equations::{
     NearDivisorDocument, SlowEquationsDocument, SlowModeDocument, SlowSteadyDocument,

@@ -39,6 +39,8 @@ pub enum DocumentKind {
     Absorber,
     /// `orbits`.
     Orbits,
+    /// `shortest`.
+    Shortest,
     /// `friction`.
     Friction,
     /// `lagrange`.
@@ -65,7 +67,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::Solution,
         Self::Modes,
         Self::OneHarmonic,
@@ -83,6 +85,7 @@ impl DocumentKind {
         Self::Response,
         Self::Absorber,
         Self::Orbits,
+        Self::Shortest,
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
@@ -128,6 +131,7 @@ impl DocumentKind {
             Self::Response => ["lindstedt/response/1", include_str!("schemas/response.json")],
             Self::Absorber => ["lindstedt/absorber/1", include_str!("schemas/absorber.json")],
             Self::Orbits => ["lindstedt/orbits/1", include_str!("schemas/orbits.json")],
+            Self::Shortest => ["lindstedt/shortest/1", include_str!("schemas/shortest.json")],
             Self::Friction => ["lindstedt/friction/1", include_str!("schemas/friction.json")],
             Self::Lagrangian => ["lindstedt/lagrangian/1", include_str!("schemas/lagrangian.json")],
             Self::Materials => ["lindstedt/materials/1", include_str!("schemas/materials.json")],

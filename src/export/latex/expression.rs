@@ -258,6 +258,10 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<LatexItem> {
 /// `k_1` being `k_{\mathit{1}}`.
 pub fn symbol(symbol: Symbol) -> String {
     let bare = symbol.coordinate().written();
+    // A decimal that is to stay as it is written.
+    if bare.starts_with(|letter: char| letter.is_ascii_digit()) {
+        return super::scientific_text(bare);
+    }
     let name = bare.trim_end_matches('_');
     let (stem, index) = match name.split_once('_') {
         Some((stem, index)) if index.bytes().all(|letter| letter.is_ascii_digit()) => {

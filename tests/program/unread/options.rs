@@ -40,6 +40,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "--at",
         "F=0.2",
     ];
+    let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "5"];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
     // Command, what stands beside the option, the option.
     let table: Vec<(&str, Vec<&str>, Vec<&str>)> = vec![
@@ -193,6 +194,22 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("absorber", vec!["tuned", "--at", "mu=1/20"], vec!["--standalone"]),
         ("absorber", vec!["tuned", "--at", "mu=1/20"], vec!["--timeout", NO_TIME]),
         ("absorber", vec!["tuned", "--at", "mu=1/20"], vec!["--quiet"]),
+        ("shortest", laws[1..].to_vec(), vec!["--range", "A=0:2"]),
+        ("shortest", laws[1..].to_vec(), vec!["--error", "0.1"]),
+        ("shortest", laws[1..].to_vec(), vec!["--quantity", "T"]),
+        ("shortest", laws[1..].to_vec(), vec!["--at", "k=1"]),
+        ("shortest", laws[1..].to_vec(), vec!["--atom", "A^2"]),
+        ("shortest", laws[1..].to_vec(), vec!["--longest", "4"]),
+        ("shortest", laws[1..].to_vec(), vec!["--exact-at-rest", "0"]),
+        ("shortest", laws[1..].to_vec(), vec!["--certificate"]),
+        ("shortest", laws[1..].to_vec(), vec!["--format", "csv"]),
+        ("shortest", laws[1..].to_vec(), vec!["--format", "latex"]),
+        ("shortest", laws[1..].to_vec(), vec!["--output", file]),
+        ("shortest", laws[1..].to_vec(), vec!["--plot", "-"]),
+        ("shortest", laws[1..].to_vec(), vec!["--tolerance", "0.1"]),
+        ("shortest", laws[1..].to_vec(), vec!["--standalone"]),
+        ("shortest", laws[1..].to_vec(), vec!["--timeout", NO_TIME]),
+        ("shortest", laws[1..].to_vec(), vec!["--quiet"]),
         ("friction", vec![], vec!["--alpha", "0.1"]),
         ("friction", vec![], vec!["--amplitude", "1"]),
         ("friction", vec![], vec!["--speed", "0.01"]),

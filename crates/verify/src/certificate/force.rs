@@ -89,7 +89,8 @@ fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
     }
 }
 
-fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSeries> {
+/// A function of a series; `None` if it is not proved to have a value, or has no enclosure here.
+pub(super) fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSeries> {
     let hyperbolic = || {
         let growing = argument.exponential()?;
         let falling = argument.scaled(-1).exponential()?;

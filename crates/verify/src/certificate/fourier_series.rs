@@ -315,6 +315,12 @@ impl FourierSeries {
             .trimmed()
     }
 
+    /// `self / divisor`; `None` if zero may be among the divisors.
+    pub(super) fn over(&self, divisor: &Ball) -> Option<Self> {
+        let inverse = WORKING.quotient(&WORKING.integer(1), divisor)?;
+        Some(self.product(&Self::constant(inverse)))
+    }
+
     fn squared(&self) -> Self {
         self.product(self)
     }

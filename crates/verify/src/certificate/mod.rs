@@ -29,6 +29,7 @@ mod formula;
 mod fourier_series;
 mod impact;
 mod law;
+mod law_on_range;
 mod modes;
 mod radii_polynomial;
 mod theorem;
@@ -44,6 +45,9 @@ pub use damped::{
 };
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
+pub use law_on_range::{
+    LawCertificate, LawError, LawNotProved, LawQuantity, StartOfLaw, TrueFrequency, check_law,
+};
 pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{RangeEnd, Validity, validity};
@@ -158,6 +162,9 @@ pub enum CheckError {
         /// The proved lower bound.
         proved: f64,
     },
+    /// A law is not proved on its range.
+    #[error("not certified: {0}")]
+    Law(LawNotProved),
     /// The motion is proved, but its stability is another one than is claimed, or not proved.
     #[error("not as claimed: the stability that is claimed is not proved")]
     Stability,

@@ -1,0 +1,246 @@
+//! Constants of few digits near the best ones.
+//!
+//! In: a quotient of sums. Out: for each number of digits the constants with the smallest largest error.
+//! One constant after the other is set to a short number near its best value, and those that are left
+//! are found anew each time: a search in the lattice of short numbers, not rounding one by one. The
+//! cost is that of some hundreds of fits.
+
+use num_traits::{One as _, Zero as _};
+
+use super::formula::{length, text_of_number};
+use super::minimax::{Fit, MOST_CONSTANTS, QuotientOfSums};
+use crate::decimal::{neighbours, rounded_fraction};
+use crate::exact::Rational;
+use crate::exact::rational::{from_f64, ratio, to_f64};
+
+/// The most significant digits of a constant.
+const MOST_DIGITS: usize = 5;
+
+/// The number of choices that are followed for each number of digits.
+const FOLLOWED: usize = 4;
+
+/// Steps of a fit within the search.
+const STEPS: usize = 12;
+
+/// Constants that are short, in the order of the quotient of sums.
+#[derive(Clone, Debug)]
+pub(super) struct ShortConstants {
+    pub(super) values: Vec<Rational>,
+    /// A factor of the whole, where the first constant is one.
+    pub(super) factor: Option<Rational>,
+    pub(super) error: f64,
+}
+
+/// Some constants that are chosen, and the fit of the others.
+struct Partial {
+    chosen: Vec<Rational>,
+    digits: usize,
+    fit: Fit,
+}
+
+/// Short numbers about a value, each with its length.
+pub(super) fn short_numbers(value: f64) -> Vec<(Rational, usize)> {
+    let Some(exact) = from_f64(value) else { return vec![] };
+    if exact.is_zero() {
+        return vec![];
+    }
+    let decimals = (1..=MOST_DIGITS).flat_map(|digits| neighbours(&exact, digits));
+    // Fractions of one digit over one or two.
+    let size = value.abs();
+    let mut fractions: Vec<(f64, i64, i64)> = (3..100)
+        .filter_map(|below| {
+            let above = (size * below as f64).round() as i64;
+            (1..10).contains(&above).then(|| (above as f64 / below as f64, above, below))
+        })
+        .chain((1..10).filter_map(|below| {
+            let above = (size * below as f64).round() as i64;
+            (10..100).contains(&above).then(|| (above as f64 / below as f64, above, below))
+        }))
+        .collect();
+    fractions.sort_by(|one, other| (one.0 - size).abs().total_cmp(&(other.0 - size).abs()));
+    let sign = if value < 0.0 { -1 } else { 1 };
+    let fractions =
+        fractions.into_iter().take(4).map(|(_, above, below)| ratio(sign * above, below));
+    let mut all: Vec<(Rational, usize)> = decimals
+        .chain(fractions)
+        .filter(|number| !number.is_zero())
+        .map(|number| {
+            let digits = length(text_of_number(&number).trim_start_matches('-'));
+            (number, digits)
+        })
+        .collect();
+    all.sort();
+    all.dedup();
+    all
+}
+
+/// The best constants for each number of digits, from the fewest on, each with a smaller error than
+/// those before. `is_scaled` gives the numerator the first constant one and the whole a factor.
+pub(super) fn shortened(
+    sums: &QuotientOfSums,
+    best: &Fit,
+    is_scaled: bool,
+    most_digits: usize,
+) -> Vec<(usize, ShortConstants)> {
+    match is_scaled {
+        false => plain(sums, best, most_digits),
+        true => scaled(sums, best, most_digits),
+    }
+}
+
+fn plain(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, ShortConstants)> {
+    let count = sums.count();
+    let mut partials = vec![Partial { chosen: vec![], digits: 0, fit: *best }];
+    for next in 0..count {
+        let mut grown: Vec<Partial> = vec![];
+        for partial in &partials {
+            for (number, digits) in short_numbers(partial.fit.constants[next]) {
+                let digits = partial.digits + digits;
+                if digits + (count - next - 1) > most_digits {
+                    continue;
+                }
+                let mut chosen = partial.chosen.clone();
+                chosen.push(number);
+                let mut fixed = [None; MOST_CONSTANTS];
+                for (fixed, number) in fixed.iter_mut().zip(&chosen) {
+                    *fixed = Some(to_f64(number));
+                }
+                if let Some(fit) = sums.minimax(&fixed[..count], STEPS) {
+                    grown.push(Partial { chosen, digits, fit });
+                }
+            }
+        }
+        partials = followed(grown);
+    }
+    let whole = partials.into_iter().map(|partial| {
+        let error = partial.fit.error;
+        (partial.digits, ShortConstants { values: partial.chosen, factor: None, error })
+    });
+    improving(whole.collect())
+}
+
+/// The constants of `s (1 + sum t_i b_i)/(1 + ...)`: the ratios t are chosen one after the other while
+/// the numerator has a free factor, and the factor at last.
+fn scaled(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, ShortConstants)> {
+    let count = sums.count();
+    let numerators = sums.numerator.len();
+    let mut partials = vec![Partial { chosen: vec![], digits: 0, fit: *best }];
+    for next in 1..count {
+        let mut grown: Vec<Partial> = vec![];
+        for partial in &partials {
+            let value = match next < numerators {
+                true => partial.fit.constants[next] / partial.fit.constants[0],
+                false => partial.fit.constants[next],
+            };
+            for (number, digits) in short_numbers(value) {
+                let digits = partial.digits + digits;
+                if digits + (count - next - 1) + 1 > most_digits {
+                    continue;
+                }
+                let mut chosen = partial.chosen.clone();
+                chosen.push(number);
+                if let Some(fit) = fit_with_ratios(sums, &chosen) {
+                    grown.push(Partial { chosen, digits, fit });
+                }
+            }
+        }
+        partials = followed(grown);
+    }
+    let mut whole = vec![];
+    for partial in partials {
+        let factor = partial.fit.constants[0].powf(sums.power);
+        for (factor, digits) in short_numbers(factor) {
+            // A factor of one is not written.
+            let digits = partial.digits + if factor.is_one() { 0 } else { digits };
+            if digits > most_digits {
+                continue;
+            }
+            let mut constants = partial.fit.constants;
+            let scale = to_f64(&factor).powf(1.0 / sums.power) / constants[0];
+            constants[..numerators].iter_mut().for_each(|constant| *constant *= scale);
+            let error = sums.largest_error(&constants[..count]);
+            let mut values = vec![Rational::one()];
+            values.extend(partial.chosen.iter().cloned());
+            whole.push((digits, ShortConstants { values, factor: Some(factor), error }));
+        }
+    }
+    improving(whole)
+}
+
+/// The fit of the factor of the numerator, and of the constants that are not chosen yet.
+fn fit_with_ratios(sums: &QuotientOfSums, chosen: &[Rational]) -> Option<Fit> {
+    let numerators = sums.numerator.len();
+    let ratios: Vec<f64> = chosen.iter().map(to_f64).collect();
+    let own = ratios.len().min(numerators - 1);
+    let places = sums.target.len();
+    let head: Vec<f64> = (0..places)
+        .map(|place| {
+            let rest = (0..own).map(|i| ratios[i] * sums.numerator[i + 1][place]);
+            sums.numerator[0][place] + rest.sum::<f64>()
+        })
+        .collect();
+    let mut numerator: Vec<&[f64]> = vec![&head];
+    numerator.extend(&sums.numerator[own + 1..]);
+    let left = numerator.len();
+    let reduced = QuotientOfSums {
+        numerator,
+        denominator: sums.denominator.clone(),
+        target: sums.target,
+        power: sums.power,
+        tie: None,
+    };
+    let mut fixed = [None; MOST_CONSTANTS];
+    for (j, ratio) in ratios[own..].iter().enumerate() {
+        fixed[left + j] = Some(*ratio);
+    }
+    let fit = reduced.minimax(&fixed[..reduced.count()], STEPS)?;
+    let mut constants = [0.0; MOST_CONSTANTS];
+    constants[0] = fit.constants[0];
+    for i in 0..own {
+        constants[i + 1] = ratios[i] * fit.constants[0];
+    }
+    let rest = sums.count() - own - 1;
+    constants[own + 1..=own + rest].copy_from_slice(&fit.constants[1..=rest]);
+    Some(Fit { constants, error: fit.error })
+}
+
+/// The best choices for each number of digits.
+fn followed(mut grown: Vec<Partial>) -> Vec<Partial> {
+    grown.sort_by(|one, other| {
+        one.digits.cmp(&other.digits).then(one.fit.error.total_cmp(&other.fit.error))
+    });
+    let mut kept: Vec<Partial> = vec![];
+    let (mut digits, mut number) = (0, 0);
+    for partial in grown {
+        (digits, number) = match partial.digits == digits {
+            true => (digits, number + 1),
+            false => (partial.digits, 0),
+        };
+        if number < FOLLOWED && partial.fit.error.is_finite() {
+            kept.push(partial);
+        }
+    }
+    kept
+}
+
+/// Those with a smaller error than all of fewer digits.
+fn improving(mut whole: Vec<(usize, ShortConstants)>) -> Vec<(usize, ShortConstants)> {
+    whole.sort_by(|one, other| one.0.cmp(&other.0).then(one.1.error.total_cmp(&other.1.error)));
+    let mut least = f64::INFINITY;
+    whole.retain(|(_, constants)| {
+        let is_better = constants.error < least;
+        least = least.min(constants.error);
+        is_better
+    });
+    whole
+}
+
+/// The number of few digits nearest to a value that is rounded up.
+pub(super) fn rounded_error(error: f64) -> Rational {
+    /// Digits of a bound, and the part of itself by which it is at least above what was measured.
+    const DIGITS: usize = 3;
+    const ABOVE: f64 = 1.0005;
+    let bound = from_f64(error * ABOVE).unwrap_or_else(Rational::one);
+    let [_, above] = neighbours(&bound, DIGITS);
+    rounded_fraction(&above, DIGITS)
+}

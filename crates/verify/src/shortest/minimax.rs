@@ -1,0 +1,213 @@
+//! The constants of a formula with the smallest largest error.
+//!
+//! ```text
+//! z ~ (sum_i theta_i b_i)/(1 + sum_j theta_j d_j),     e = max |(approximation/z)^n - 1|
+//! ```
+//!
+//! In: the values of z and of the functions at some places. Out: the constants. Each step is a problem
+//! of least squares that is linear in the constants, weighted by the last denominator (Sanathanan and
+//! Koerner) and by the errors of the steps before (Lawson), whose weights come to those of the largest
+//! errors. A step costs a product of the number of places with the square of that of the constants.
+//!
+//! Sources: C. K. Sanathanan, J. Koerner: Transfer function synthesis as a ratio of two complex
+//! polynomials, IEEE Transactions on Automatic Control 8 (1963), 56-58. Y. Nakatsukasa, L. N.
+//! Trefethen: An algorithm for real and complex rational minimax approximation, SIAM Journal on
+//! Scientific Computing 42 (2020), A3157-A3179.
+
+/// The largest number of constants.
+pub(super) const MOST_CONSTANTS: usize = 6;
+
+/// A quotient of sums with constants to be found.
+pub(super) struct QuotientOfSums<'a> {
+    /// The functions of the numerator, at the places.
+    pub(super) numerator: Vec<&'a [f64]>,
+    /// Those of the denominator, beside one.
+    pub(super) denominator: Vec<&'a [f64]>,
+    /// z at the places.
+    pub(super) target: &'a [f64],
+    /// The power n to which the quotient is taken.
+    pub(super) power: f64,
+    /// The conditions that the constants fulfil; `None` where each is free.
+    pub(super) tie: Option<&'a Tie>,
+}
+
+/// Constants of which some follow from the others: all of them are `offset + matrix free`.
+pub(super) struct Tie {
+    pub(super) offset: Vec<f64>,
+    /// Row by row, a row for each constant and a column for each free one.
+    pub(super) matrix: Vec<Vec<f64>>,
+}
+
+/// Constants, numerator first, and the largest error with them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fit {
+    pub(super) constants: [f64; MOST_CONSTANTS],
+    pub(super) error: f64,
+}
+
+impl QuotientOfSums<'_> {
+    /// The number of constants that are free.
+    pub(super) fn count(&self) -> usize {
+        match self.tie {
+            Some(tie) => tie.matrix.first().map_or(0, Vec::len),
+            None => self.numerator.len() + self.denominator.len(),
+        }
+    }
+
+    /// The largest error with these constants; infinite where the denominator changes its sign, or the
+    /// quotient is not positive.
+    pub(super) fn largest_error(&self, constants: &[f64]) -> f64 {
+        let mut largest = 0.0_f64;
+        for place in 0..self.target.len() {
+            let error = self.error_at(place, constants).abs();
+            if !error.is_finite() {
+                return f64::INFINITY;
+            }
+            largest = largest.max(error);
+        }
+        largest
+    }
+
+    fn sums_at(&self, place: usize, constants: &[f64]) -> (f64, f64) {
+        let mut all = [0.0; MOST_CONSTANTS];
+        let constants = match self.tie {
+            None => constants,
+            Some(tie) => {
+                for (own, (offset, row)) in all.iter_mut().zip(tie.offset.iter().zip(&tie.matrix)) {
+                    *own = row.iter().zip(constants).fold(*offset, |sum, (m, c)| sum + m * c);
+                }
+                &all
+            }
+        };
+        let sum = |functions: &[&[f64]], constants: &[f64]| -> f64 {
+            functions.iter().zip(constants).map(|(values, c)| c * values[place]).sum()
+        };
+        let above = sum(&self.numerator, constants);
+        (above, 1.0 + sum(&self.denominator, &constants[self.numerator.len()..]))
+    }
+
+    /// `(approximation/z)^n - 1`; NaN where there is none.
+    fn error_at(&self, place: usize, constants: &[f64]) -> f64 {
+        let (above, below) = self.sums_at(place, constants);
+        let ratio = above / (below * self.target[place]);
+        match below > 0.0 && ratio > 0.0 {
+            true => ratio.powf(self.power) - 1.0,
+            false => f64::NAN,
+        }
+    }
+
+    /// The constants with about the smallest largest error, in so many steps. Those that are fixed keep
+    /// their values.
+    pub(super) fn minimax(&self, fixed: &[Option<f64>], steps: usize) -> Option<Fit> {
+        let places = self.target.len();
+        let free: Vec<usize> = (0..self.count()).filter(|&i| fixed[i].is_none()).collect();
+        let mut constants = [0.0; MOST_CONSTANTS];
+        for (constant, value) in constants.iter_mut().zip(fixed) {
+            *constant = value.unwrap_or(0.0);
+        }
+        if free.is_empty() {
+            return Some(Fit { constants, error: self.largest_error(&constants) });
+        }
+        let numerators = self.numerator.len();
+        let own_column = |i: usize, place: usize| match i < numerators {
+            true => self.numerator[i][place],
+            false => -self.target[place] * self.denominator[i - numerators][place],
+        };
+        let column = |i: usize, place: usize| match self.tie {
+            None => own_column(i, place),
+            Some(tie) => {
+                let rows = tie.matrix.iter().enumerate();
+                rows.map(|(k, row)| row[i] * own_column(k, place)).sum()
+            }
+        };
+        let offset = |place: usize| -> f64 {
+            let offsets = self.tie.iter().flat_map(|tie| tie.offset.iter().enumerate());
+            offsets.map(|(k, offset)| offset * own_column(k, place)).sum()
+        };
+        let mut weights = vec![1.0 / places as f64; places];
+        let mut below = vec![1.0_f64; places];
+        let mut best: Option<Fit> = None;
+        for _ in 0..steps {
+            let mut matrix = [[0.0; MOST_CONSTANTS + 1]; MOST_CONSTANTS];
+            for place in 0..places {
+                let scale = 1.0 / (below[place] * self.target[place]);
+                let weight = weights[place] * scale * scale;
+                let mut right = self.target[place] - offset(place);
+                let mut row = [0.0; MOST_CONSTANTS];
+                for (i, value) in fixed.iter().enumerate().take(self.count()) {
+                    if let Some(value) = value {
+                        right -= value * column(i, place);
+                    }
+                }
+                for (entry, &i) in row.iter_mut().zip(&free) {
+                    *entry = column(i, place);
+                }
+                for i in 0..free.len() {
+                    for j in 0..=i {
+                        matrix[i][j] += weight * row[i] * row[j];
+                    }
+                    matrix[i][MOST_CONSTANTS] += weight * row[i] * right;
+                }
+            }
+            let Some(solved) = solve(&mut matrix, free.len()) else { break };
+            for (&i, value) in free.iter().zip(solved) {
+                constants[i] = value;
+            }
+            let (mut largest, mut total) = (0.0_f64, 0.0);
+            let mut is_defined = true;
+            for place in 0..places {
+                below[place] = self.sums_at(place, &constants).1;
+                let error = self.error_at(place, &constants).abs();
+                is_defined &= error <= f64::MAX;
+                let size = if error <= f64::MAX { error } else { 1.0 };
+                largest = largest.max(size);
+                weights[place] *= size;
+                total += weights[place];
+            }
+            if is_defined && best.is_none_or(|best| largest < best.error) {
+                best = Some(Fit { constants, error: largest });
+            }
+            if total.is_nan()
+                || total <= 0.0
+                || below.iter().any(|value| *value == 0.0 || !value.is_finite())
+            {
+                break;
+            }
+            let least = 1e-9 / places as f64;
+            weights.iter_mut().for_each(|weight| *weight = (*weight / total).max(least));
+        }
+        best
+    }
+}
+
+/// Solves a symmetric positive system whose lower half and right side are given, by Cholesky's
+/// factors; `None` if it is not positive.
+fn solve(
+    matrix: &mut [[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS],
+    size: usize,
+) -> Option<[f64; MOST_CONSTANTS]> {
+    /// A pivot that has lost more digits than this is none.
+    const LOST: f64 = 1e-15;
+    for i in 0..size {
+        let diagonal = matrix[i][i];
+        for j in 0..=i {
+            let sum: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
+            let rest = matrix[i][j] - sum;
+            matrix[i][j] = match i == j {
+                true if rest > LOST * diagonal => rest.sqrt(),
+                true => return None,
+                false => rest / matrix[j][j],
+            };
+        }
+    }
+    let mut solution = [0.0; MOST_CONSTANTS];
+    for i in 0..size {
+        let sum: f64 = (0..i).map(|k| matrix[i][k] * solution[k]).sum();
+        solution[i] = (matrix[i][MOST_CONSTANTS] - sum) / matrix[i][i];
+    }
+    for i in (0..size).rev() {
+        let sum: f64 = (i + 1..size).map(|k| matrix[k][i] * solution[k]).sum();
+        solution[i] = (solution[i] - sum) / matrix[i][i];
+    }
+    Some(solution)
+}

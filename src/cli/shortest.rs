@@ -1,0 +1,236 @@
+//! `lindstedt shortest PROBLEM --range A=0:2.8 --error 0.001`.
+
+use std::path::Path;
+
+use crate::catalog;
+use crate::certificate::LawQuantity;
+use crate::exact::Rational;
+use crate::export::{code, json, shortest as drawing};
+use crate::expr::Expr;
+use crate::problem::ReadingCommand;
+use crate::report::{self, ShortestReport};
+use crate::shortest::{
+    Atom, Front, LawProblem, PublishedFormula, SearchOptions, ShortestError, search,
+};
+use crate::symbol::{Symbol, fresh};
+use crate::values::Values;
+use clap::Args;
+
+use super::answer::{Answer, Draw, no_such};
+use super::derive::{exact_values, formula, oscillator};
+use super::files::width;
+use super::problem::{expression, problem};
+use super::progress::with_progress;
+use super::{Common, Failure, Format, Outcome, Work, json_text, session};
+
+/// The shortest frequency law within an error on a whole range, with a proof of the bound, and the
+/// front of length against error
+#[derive(Args)]
+#[command(mut_arg("tolerance", super::no_verdict))]
+pub struct ShortestArguments {
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
+    problem: String,
+    /// What varies, and from where to where: the amplitude (A=0:2.8), a parameter (mu=0:10), or a
+    /// product on which the frequency alone depends (eps*A^2=0:inf)
+    #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
+    range: String,
+    /// The largest relative error that is allowed, 0.001 say; without it the whole front
+    #[arg(long, value_name = "R", value_parser = super::positive, allow_hyphen_values = true)]
+    error: Option<f64>,
+    /// What the law gives: omega, omega^2, or T, the period over 2 pi
+    #[arg(long, value_parser = ["omega", "omega^2", "T"], default_value = "omega")]
+    quantity: String,
+    /// The value of another parameter, exact (1.5, 3/2); of the amplitude where a parameter varies
+    /// (repeatable)
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    at: Vec<String>,
+    /// A quantity of which laws are made, counted as one symbol, such as cos(A/2); repeatable,
+    /// those of the equation without it
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
+    atom: Vec<String>,
+    /// The greatest length of a law in symbols
+    #[arg(long, value_name = "N", value_parser = super::count, default_value_t = 24, allow_hyphen_values = true)]
+    longest: u32,
+    /// Keep the law exact at rest: its series is that of the true frequency up to this power of the
+    /// variable, 0 for the frequency at rest alone
+    #[arg(long, value_name = "ORDER", allow_hyphen_values = true)]
+    exact_at_rest: Option<u32>,
+    /// With JSON: the certificate of the law, which `check` reads, in place of the laws
+    #[arg(long)]
+    certificate: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+impl Work for ShortestArguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+/// The longest law that a search takes on.
+const LONGEST: u32 = 60;
+
+/// The highest power up to which a law is exact at rest.
+const HIGHEST_ORDER: u32 = 12;
+
+fn run(arguments: &ShortestArguments) -> Result<Outcome, Failure> {
+    let common = &arguments.common;
+    if common.tolerance.is_some() {
+        return Err(Failure::Usage(
+            "--tolerance: the error of a law is given by --error".to_owned(),
+        ));
+    }
+    if arguments.longest > LONGEST {
+        return Err(Failure::Usage(format!(
+            "--longest {}: a law has at most {LONGEST} symbols",
+            arguments.longest
+        )));
+    }
+    if arguments.exact_at_rest.is_some_and(|order| order > HIGHEST_ORDER) {
+        return Err(Failure::Usage(format!("--exact-at-rest: at most {HIGHEST_ORDER}")));
+    }
+    if arguments.certificate && common.format() != Format::Json {
+        return Err(Failure::Usage(
+            "--certificate is a JSON document: add --format json, or --output with a name that ends in .json".to_owned(),
+        ));
+    }
+    let front = front(arguments)?;
+    let report = ShortestReport::new(&front, arguments.error);
+    let drawn = || Ok(drawing::picture(&report)?);
+    let answer = Answer {
+        document: &report::shortest(&report),
+        width: width(common.output.as_deref()),
+        picture: Some(&drawn as Draw),
+        other: &|format| match format {
+            Format::Json if arguments.certificate => certificate(&report),
+            Format::Json => json_text(&json::shortest(&report)),
+            Format::Csv => Ok(drawing::csv(&front)),
+            Format::Code(language) => code::law(&report, language)
+                .map_err(|error| Failure::with_advice(&error, error.help())),
+            format => no_such(format),
+        },
+    };
+    let outcome = answer.outcome(common)?;
+    Ok(Outcome { verdict: report.verdict(), partial: front.is_partial, ..outcome })
+}
+
+/// The laws by length.
+fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
+    let problem = problem(&arguments.problem)?;
+    let typed = formula(&problem, ReadingCommand::Shortest)?;
+    let oscillator = oscillator(&typed, None)?;
+    let (varying, from, to) = range(&arguments.range)?;
+    let values = exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default();
+    let refuse = |error: ShortestError| match &error {
+        ShortestError::Unknown(name) => Failure::Usage(format!("--at {name}: {error}")),
+        _ => Failure::refused(&error, error.help()).of_kind(&error),
+    };
+    let own = oscillator.with_own_names_apart()?;
+    let own_letters = own.letters();
+    let names = varying.symbols().into_iter();
+    let resolved = names.map(|name| (name, own_letters.resolve(name, &own.parameters)));
+    let varying =
+        varying.substitute_all(&resolved.map(|(name, own)| (name, Expr::from(own))).collect())?;
+    let letters = own_letters.in_force();
+    let problem = LawProblem::new(&own, &varying, (&from, to.as_ref()), &values).map_err(refuse)?;
+    let quantity = match arguments.quantity.as_str() {
+        "omega^2" => LawQuantity::FrequencySquared,
+        "T" => LawQuantity::Period,
+        _ => LawQuantity::Frequency,
+    };
+    let options = SearchOptions {
+        quantity,
+        atoms: atoms(arguments, &problem)?,
+        longest: arguments.longest as usize,
+        exact_at_rest: arguments.exact_at_rest,
+        published: published(typed.equation, &problem, &values),
+    };
+    let supervision = session::supervision();
+    let found = with_progress("of the search", || search(problem, &options, supervision));
+    drop(letters);
+    found.map_err(refuse)
+}
+
+/// What varies, and the ends of its range; `None` for infinity.
+fn range(text: &str) -> Result<(Expr, Rational, Option<Rational>), Failure> {
+    let form = || {
+        Failure::Usage(format!(
+            "--range {text}: expected NAME=FROM:TO, such as A=0:2.8, eps=0:10 or eps*A^2=0:inf"
+        ))
+    };
+    let wrong = |error: &dyn std::fmt::Display| Failure::Usage(format!("--range {text}: {error}"));
+    let (name, ends) = text.split_once('=').ok_or_else(form)?;
+    let (from, to) = ends.split_once(':').ok_or_else(form)?;
+    let name = expression(name).map_err(|error| wrong(&error))?;
+    let number = |text: &str| {
+        let value = expression(text).map_err(|error| wrong(&error))?;
+        value.as_number().cloned().ok_or_else(form)
+    };
+    let to = match to.trim() {
+        "inf" | "infinity" => None,
+        to => Some(number(to)?),
+    };
+    Ok((name, number(from)?, to))
+}
+
+/// The quantities of which laws are made: the variable, and those that are asked for under letters of
+/// their own.
+fn atoms(arguments: &ShortestArguments, problem: &LawProblem) -> Result<Vec<Atom>, Failure> {
+    if arguments.atom.is_empty() {
+        return Ok(vec![]);
+    }
+    let mut atoms = vec![Atom { name: problem.variable, meaning: Expr::from(problem.variable) }];
+    let mut taken = vec![problem.variable, problem.oscillator.coordinate];
+    for text in &arguments.atom {
+        let meaning =
+            expression(text).map_err(|error| Failure::Usage(format!("--atom {text}: {error}")))?;
+        if meaning.as_symbol() == Some(problem.variable) {
+            continue;
+        }
+        if meaning.symbols().into_iter().ne([problem.variable]) {
+            let error = ShortestError::Atom(meaning, problem.variable);
+            return Err(Failure::refused(&error, error.help()).of_kind(&error));
+        }
+        let name: Symbol = fresh("c", &taken);
+        taken.push(name);
+        atoms.push(Atom { name, meaning });
+    }
+    Ok(atoms)
+}
+
+/// The published formulas of an entry of the catalogue with this equation.
+fn published(equation: &str, problem: &LawProblem, values: &Values) -> Vec<PublishedFormula> {
+    let entry = catalog::CATALOG.iter().find(|entry| entry.equation == equation);
+    let Some(entry) = entry.filter(|_| values.is_empty() && problem.meaning.is_none()) else {
+        return vec![];
+    };
+    let own = catalog::RANGE_FORMULAS.iter().filter(|formula| formula.entry == entry.name);
+    own.map(|formula| PublishedFormula {
+        text: formula.period.to_owned(),
+        quantity: LawQuantity::Period,
+        source: formula.source.to_owned(),
+    })
+    .collect()
+}
+
+/// The certificate of the law that is shown first.
+fn certificate(report: &ShortestReport) -> Result<String, Failure> {
+    let law = report.shown().ok_or_else(|| Failure::because("no law was found"))?;
+    match &law.proof {
+        Ok((certificate, _)) => json_text(&json::law_certificate(certificate)),
+        Err(reason) => Err(Failure::refused(
+            &format!("there is no certificate: {reason}"),
+            Some("leave out --certificate: the laws have their measured errors".to_owned()),
+        )
+        .of_kind(reason)),
+    }
+}

@@ -1,0 +1,168 @@
+//! The shortest laws, measured again by elliptic integrals, and their proofs.
+//!
+//! omega of the pendulum is the arithmetic-geometric mean of 1 and cos(A/2), that of `x'' + x + s x^3 = 0`
+//! released from 1 `sqrt(1 + s)` times that of 1 and `sqrt(1 - m)`, `m = s/(2 (1 + s))` (DLMF 19.8.5, 22.19).
+
+use std::collections::BTreeMap;
+
+use lindstedt::certificate::{LawQuantity, check_law};
+use lindstedt::exact::Rational;
+use lindstedt::exact::rational::to_f64;
+use lindstedt::shortest::{Front, LawProblem, SearchOptions, length, search};
+use lindstedt::{Oscillator, Supervision, Symbol};
+use lindstedt_expr::parallel::on_threads;
+
+/// The arithmetic-geometric mean.
+fn mean(mut a: f64, mut b: f64) -> f64 {
+    while (a - b).abs() > 1e-15 * a {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    a
+}
+
+fn front(
+    equation: &str,
+    varying: &str,
+    to: Option<&str>,
+    quantity: LawQuantity,
+    longest: usize,
+) -> Front {
+    let oscillator = Oscillator::parse(equation).expect(equation);
+    let to: Option<Rational> = to.map(|to| to.parse().expect("a fraction"));
+    let zero: Rational = "0".parse().expect("a fraction");
+    let varying = varying.parse().expect("an expression");
+    let at = "".parse().expect("no values");
+    let problem =
+        LawProblem::new(&oscillator, &varying, (&zero, to.as_ref()), &at).expect(equation);
+    let options =
+        SearchOptions { quantity, atoms: vec![], longest, exact_at_rest: None, published: vec![] };
+    search(problem, &options, Supervision::default()).expect(equation)
+}
+
+/// Holds every proved bound against ten thousand values of the quantity.
+fn remeasured(front: &Front, places: &[f64], truth: impl Fn(f64) -> f64) {
+    let variable: Symbol = front.problem.variable;
+    for law in &front.laws {
+        let (certificate, error) =
+            law.proof.as_ref().unwrap_or_else(|reason| panic!("{}: {reason}", law.formula));
+        let measured = places.iter().map(|&place| {
+            let value = certificate.law.evaluate(&BTreeMap::from([(variable, place)]));
+            (value.expect("a value") / truth(place) - 1.0).abs()
+        });
+        let largest = measured.fold(0.0, f64::max);
+        let claims = certificate.claim.each_ref().map(to_f64);
+        assert!(largest <= claims[1], "{}: {largest} beyond {claims:?}", law.formula);
+        assert!(
+            claims[0] <= error.lower && largest >= 0.99 * claims[0],
+            "{}: {largest}",
+            law.formula
+        );
+        assert_eq!(law.length, length(&law.formula.to_string()));
+    }
+    for pair in front.laws.windows(2) {
+        assert!(pair[0].length < pair[1].length && pair[0].error > pair[1].error);
+    }
+}
+
+#[test]
+fn laws_of_the_pendulum_to_specification() {
+    let found = front("x'' + sin(x) = 0", "A", Some("14/5"), LawQuantity::Frequency, 18);
+    let places: Vec<f64> = (0..=10_000).map(|i| 2.8 * f64::from(i) / 1e4).collect();
+    remeasured(&found, &places, |amplitude| mean(1.0, (amplitude / 2.0).cos()));
+    let within = |error: f64| found.shortest_within(error).expect("a law").length;
+    assert!(within(0.0011) <= 15, "{}", within(0.0011));
+    assert!(within(0.0003) <= 21, "{}", within(0.0003));
+    // A proof is checked from its claims alone, and a smaller claim is refused.
+    let law = found.shortest_within(0.0011).expect("a law");
+    let (certificate, error) = law.proof.as_ref().expect("a proof");
+    assert_eq!(check_law(certificate).as_ref(), Ok(error));
+    let mut false_one = certificate.clone();
+    false_one.claim[1] = "1/1000".parse().expect("a fraction");
+    assert!(check_law(&false_one).is_err());
+}
+
+#[test]
+fn laws_that_are_exact_at_rest() {
+    let pendulum = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
+    let ends = ["0", "14/5"].map(|end| end.parse::<Rational>().expect("a fraction"));
+    let varying = "A".parse().expect("an expression");
+    let at = "".parse().expect("no values");
+    let problem = LawProblem::new(&pendulum, &varying, (&ends[0], Some(&ends[1])), &at);
+    let options = SearchOptions {
+        quantity: LawQuantity::Frequency,
+        atoms: vec![],
+        longest: 16,
+        exact_at_rest: Some(2),
+        published: vec![],
+    };
+    let found =
+        search(problem.expect("a problem"), &options, Supervision::default()).expect("laws");
+    let last = found.laws.last().expect("a law");
+    assert!(last.error < 0.01 && last.proof.is_ok(), "{}", last.formula);
+    // omega = 1 - A^2/16 + O(A^4): the error of each law falls with the fourth power of the amplitude.
+    for law in &found.laws {
+        let (certificate, _) = law.proof.as_ref().expect("a proof");
+        let error = |amplitude: f64| {
+            let value = certificate.law.evaluate(&BTreeMap::from([(Symbol::new("A"), amplitude)]));
+            (value.expect("a value") / mean(1.0, (amplitude / 2.0).cos()) - 1.0).abs()
+        };
+        assert!(error(0.02) < 1e-7 && error(0.04) < 17.0 * error(0.02) + 1e-13, "{}", law.formula);
+    }
+}
+
+#[test]
+fn the_best_short_law_is_found() {
+    // Of all formulas of eight symbols the published one is the best.
+    let found = front("x'' + sin(x) = 0", "A", Some("14/5"), LawQuantity::Period, 8);
+    let last = found.laws.last().expect("a law");
+    let known = (4.0 / (1.0 + 1.4_f64.cos().sqrt()).powi(2) * mean(1.0, 1.4_f64.cos()) - 1.0).abs();
+    assert_eq!(last.length, 8);
+    assert!((last.error / known - 1.0).abs() < 1e-9, "{}", last.formula);
+}
+
+#[test]
+fn laws_of_a_hardening_spring_to_infinity() {
+    let found = front("x'' + x + eps*x^3 = 0", "eps*A^2", None, LawQuantity::Frequency, 18);
+    let places: Vec<f64> =
+        (0..=10_000).map(|i| 10.0_f64.powf(f64::from(i) / 500.0 - 8.0)).collect();
+    let truth = |s: f64| (1.0 + s).sqrt() * mean(1.0, (1.0 - s / (2.0 * (1.0 + s))).sqrt());
+    remeasured(&found, &places, truth);
+    let homotopy = "sqrt((1 + 3*s/4)/2 + sqrt((1 + 3*s/4)^2 - 3*s^2/32)/2)";
+    let within = found.shortest_within(6e-5).expect("a law").length;
+    assert!(within <= length(homotopy), "{within}");
+}
+
+#[test]
+fn a_law_of_another_growth_has_no_bound() {
+    let found = front("x'' + x + eps*x^3 = 0", "eps*A^2", None, LawQuantity::Frequency, 7);
+    let (certificate, _) = found.laws.last().expect("a law").proof.as_ref().expect("a proof");
+    for (law, words) in [("1 + s", "different powers"), ("sqrt(1 + s)/(s - 2)", "not certified")] {
+        let mut other = certificate.clone();
+        other.law = law.parse().expect("an expression");
+        let refusal = check_law(&other).expect_err(law).to_string();
+        assert!(refusal.contains(words), "{refusal}");
+    }
+    let mut other = certificate.clone();
+    other.force = "x + s*x^3 + 1/2".parse().expect("an expression");
+    assert!(
+        check_law(&other).expect_err("no equilibrium").to_string().contains("equilibrium at zero")
+    );
+}
+
+#[test]
+fn limit_cycles_have_laws_without_a_proof() {
+    let found = front("x'' - mu*(1 - x^2)*x' + x = 0", "mu", Some("2"), LawQuantity::Period, 8);
+    let last = found.laws.last().expect("a law");
+    assert!(last.error < 0.01 && last.proof.is_err(), "{}", last.formula);
+}
+
+#[test]
+fn one_thread_finds_what_two_find() {
+    let texts = |threads: usize| {
+        let found = on_threads(threads, || {
+            front("x'' + x + eps*x^3 = 0", "eps*A^2", None, LawQuantity::FrequencySquared, 12)
+        });
+        found.laws.iter().map(|law| law.formula.to_string()).collect::<Vec<String>>()
+    };
+    assert_eq!(texts(1), texts(2));
+}

@@ -86,9 +86,9 @@ pub use lindstedt_oscillator::{method, oscillator, solution};
 #[doc(inline)]
 pub use lindstedt_series::series;
 #[doc(inline)]
-pub use lindstedt_verify::{
-    absorber_verdict, certificate, hill, response, shortest, trajectory, verify,
-};
+pub use lindstedt_verify::{absorber_verdict, certificate, hill, response};
+#[doc(no_inline)]
+pub use lindstedt_verify::{shortest, trajectory, verify};
 
 use lindstedt_expr::{decimal, spelling, symbol, values};
 use lindstedt_numeric::interrupt;

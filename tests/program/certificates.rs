@@ -446,6 +446,41 @@ fn what_certify_writes_check_proves() {
     }
 }
 
+/// Laws on ranges are proved by both programs, and false claims by neither.
+#[test]
+fn both_programs_prove_laws_on_ranges() {
+    let Some(python) = python() else {
+        eprintln!("python3 is not here: the second program was not run");
+        return;
+    };
+    let folder = folder("laws");
+    let program = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/check_certificate.py");
+    for (equation, range, longest) in
+        [("pendulum", "A=0:2.8", "8"), ("duffing", "eps*A^2=0:inf", "9")]
+    {
+        let question = ["shortest", equation, "--range", range, "--longest", longest];
+        let output = run(&[&question[..], &["--certificate", "--format", "json"]].concat());
+        let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let file = folder.join("law.json");
+        let proved = |document: &Value| {
+            std::fs::write(&file, document.to_string()).expect("a file");
+            let own = run(&["check", file.to_str().expect("a path in text")]).status.success();
+            let second = Command::new(&python).args(["-I", "-S", program]).arg(&file).output();
+            let second = second.expect("Python starts");
+            let errors = String::from_utf8_lossy(&second.stderr);
+            assert!(second.status.success() || errors.starts_with("not proved: "), "{errors}");
+            [own, second.status.success()]
+        };
+        assert_eq!(proved(&document), [true, true], "{equation}");
+        let claims = document["error"].as_array().expect("two numbers").clone();
+        for (which, value) in [(1, claims[0].clone()), (0, claims[1].clone())] {
+            let mut changed = document.clone();
+            changed["error"][which] = value;
+            assert_eq!(proved(&changed), [false, false], "{equation}");
+        }
+    }
+}
+
 /// omega, of a driven motion the amplitude, from below and from above, by the second program;
 /// `None` where it does not prove the certificate with all its claims.
 fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {

@@ -87,7 +87,7 @@ pub use lindstedt_oscillator::{method, oscillator, solution};
 pub use lindstedt_series::series;
 #[doc(inline)]
 pub use lindstedt_verify::{absorber_verdict, certificate, hill, response};
-#[doc(no_inline)]
+#[doc(inline)]
 pub use lindstedt_verify::{shortest, trajectory, verify};
 
 use lindstedt_expr::{decimal, spelling, symbol, values};

@@ -160,7 +160,7 @@ fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     found.map_err(refuse)
 }
 
-/// What varies, and the ends of its range; `None` for infinity.
+/// The variable quantity and the ends of its range; `None` for infinity.
 fn range(text: &str) -> Result<(Expr, Rational, Option<Rational>), Failure> {
     let form = || {
         Failure::Usage(format!(

@@ -42,7 +42,7 @@ pub struct LawCertificateDocument {
     pub variable: String,
     /// x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a positive number.
     pub start: String,
-    /// What the law gives: `omega`, `omega^2` or `T/(2*pi)`.
+    /// The quantity of the law: `omega`, `omega^2` or `T/(2*pi)`.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["omega", "omega^2", "T/(2*pi)"])))]
     pub quantity: String,
     /// The law, an expression in the variable.

@@ -22,7 +22,7 @@ pub struct ShortestDocument {
     pub equation: String,
     /// The name of the variable.
     pub variable: String,
-    /// What the variable stands for, `eps*A^2` say; null for the amplitude or a parameter.
+    /// The product that the variable stands for, `eps*A^2` say; null for the amplitude or a parameter.
     pub meaning: Option<String>,
     /// The amplitude where a parameter varies; null where the amplitude does, and for limit cycles.
     pub amplitude: Option<Constant>,
@@ -30,7 +30,7 @@ pub struct ShortestDocument {
     pub from: Constant,
     /// The upper end; null for infinity.
     pub to: Option<Constant>,
-    /// What the laws give: `omega`, `omega^2` or `T/(2*pi)`.
+    /// The quantity of the laws: `omega`, `omega^2` or `T/(2*pi)`.
     pub quantity: String,
     /// The names in the laws besides the variable, each with its meaning.
     pub atoms: Map<String>,
@@ -71,7 +71,7 @@ pub struct ShortLawDocument {
 pub struct PublishedFormulaDocument {
     /// The formula.
     pub formula: String,
-    /// What it gives: `omega`, `omega^2` or `T/(2*pi)`.
+    /// Its quantity: `omega`, `omega^2` or `T/(2*pi)`.
     pub quantity: String,
     /// The publication.
     pub source: String,

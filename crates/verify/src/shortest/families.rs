@@ -141,12 +141,10 @@ impl Structure {
             rows.swap(done, pivot);
             let scale = rows[done][column].recip();
             rows[done].iter_mut().for_each(|entry| *entry *= &scale);
-            for row in (0..orders).filter(|&row| row != done) {
-                let factor = rows[row][column].clone();
-                for k in 0..=count {
-                    let less = &factor * &rows[done][k];
-                    rows[row][k] -= less;
-                }
+            let own = rows[done].clone();
+            for (_, row) in rows.iter_mut().enumerate().filter(|(row, _)| *row != done) {
+                let factor = row[column].clone();
+                row.iter_mut().zip(&own).for_each(|(entry, own)| *entry -= &factor * own);
             }
             pivots.push(column);
         }

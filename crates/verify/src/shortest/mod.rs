@@ -40,7 +40,7 @@ use problem::TrueFrequencies;
 use rest::RestSeries;
 use trees::Trees;
 
-/// What a search may use, and how long it goes on.
+/// The quantity, the means and the extent of a search.
 #[derive(Clone, Debug)]
 pub struct SearchOptions {
     /// The quantity that a law gives.

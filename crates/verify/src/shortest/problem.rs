@@ -38,7 +38,7 @@ pub struct LawProblem {
     pub oscillator: Oscillator,
     /// The variable.
     pub variable: Symbol,
-    /// What the variable stands for, `eps*A^2` say; `None` for the amplitude or a parameter.
+    /// The product that the variable stands for, `eps*A^2` say; `None` for the amplitude or a parameter.
     pub meaning: Option<Expr>,
     /// The start of the motion; `None` for a limit cycle.
     pub start: Option<StartOfLaw>,
@@ -80,7 +80,7 @@ pub enum ShortestError {
     NotAlone {
         /// The product.
         product: Expr,
-        /// What it depends on besides.
+        /// The letter on which it depends besides.
         still: Symbol,
     },
     /// Values are missing.

@@ -15,6 +15,9 @@ use crate::parallel::par_map;
 /// The whole numbers that are formulas by themselves.
 const WHOLE_NUMBERS: [i64; 9] = [1, 2, 3, 4, 5, 6, 7, 8, 9];
 
+/// Number of formulas after which no longer ones are kept.
+const MOST: usize = 200_000;
+
 /// The highest power of an atom.
 const HIGHEST_POWER: i64 = 4;
 
@@ -85,39 +88,45 @@ impl<'a> Trees<'a> {
         let mut found = Self { atoms, trees: vec![], ends: vec![0], has_logarithms };
         let mut known = HashSet::new();
         for length in 1..=longest {
-            let mut made: Vec<Tree> = match length {
-                1 => {
-                    let own = values.iter().enumerate().map(|(i, values)| Tree {
-                        made: Made::Atom(i),
-                        length,
-                        is_number: false,
-                        values: values.clone().into(),
-                    });
-                    let numbers = WHOLE_NUMBERS.iter().map(|&number| Tree {
-                        made: Made::WholeNumber(number),
-                        length,
-                        is_number: true,
-                        values: vec![number as f64; places].into(),
-                    });
-                    own.chain(numbers).collect()
+            if found.trees.len() > MOST {
+                break;
+            }
+            let mut kept: Vec<Tree> = vec![];
+            let mut keep = |tree: Tree| {
+                let is_new = tree.values.iter().all(|value| value.is_finite() && *value != 0.0)
+                    && known.insert(fingerprint(&tree.values, |value| value));
+                if is_new {
+                    kept.push(tree);
                 }
-                _ => found.next(length),
             };
-            made.retain(|tree| {
-                tree.values.iter().all(|value| value.is_finite() && *value != 0.0)
-                    && known.insert(fingerprint(&tree.values, |value| value))
-            });
-            found.trees.extend(made);
+            match length {
+                1 => {
+                    for (i, values) in values.iter().enumerate() {
+                        let (made, values) = (Made::Atom(i), values.clone().into());
+                        keep(Tree { made, length, is_number: false, values });
+                    }
+                    for number in WHOLE_NUMBERS {
+                        let values = vec![number as f64; places].into();
+                        keep(Tree {
+                            made: Made::WholeNumber(number),
+                            length,
+                            is_number: true,
+                            values,
+                        });
+                    }
+                }
+                _ => found.next(length, &mut keep),
+            }
+            found.trees.extend(kept);
             found.ends.push(found.trees.len());
         }
         found
     }
 
-    /// The formulas of a length, with those that are known already among them.
-    fn next(&self, length: usize) -> Vec<Tree> {
-        let mut made = vec![];
-        let mut push = |made_of: Made, values: Box<[f64]>| {
-            made.push(Tree { made: made_of, length, is_number: false, values });
+    /// Makes the formulas of a length, with those that are known already among them.
+    fn next(&self, length: usize, keep: &mut dyn FnMut(Tree)) {
+        let mut push = |made: Made, values: Box<[f64]>| {
+            keep(Tree { made, length, is_number: false, values });
         };
         for i in self.of_length(length - 1) {
             let values = &self.trees[i].values;
@@ -145,7 +154,6 @@ impl<'a> Trees<'a> {
             let pairs = self.trees[i].values.iter().zip(&self.trees[j].values);
             push(Made::Joined(sign, i, j), pairs.map(|(a, b)| sign.of(*a, *b)).collect());
         }
-        made
     }
 
     fn of_length(&self, length: usize) -> std::ops::Range<usize> {

@@ -1,0 +1,498 @@
+//! `1/omega` of the motions of a range, enclosed: on each of some pieces a polynomial in the variable with
+//! a bound of its distance from the truth.
+//!
+//! In: a force with a variable, and a range of it. Out: pieces, each as wide as a bound of `|1/omega|` on
+//! a disc of complex values about it allows. A piece costs some seventeen series of `G^(-1/2)`, of a
+//! force that is not odd with the other turning point of each motion besides.
+//!
+//! Equations and sources: those of [`law_on_range`](super).
+
+use std::collections::BTreeMap;
+
+use num_traits::Zero as _;
+
+use super::super::coordinate;
+use super::super::force::{along_all, is_odd};
+use super::super::fourier_series::{FourierSeries, WORKING};
+use super::jet::widened;
+use super::{LawNotProved, StartOfLaw};
+use crate::conservative::CentredForce;
+use crate::exact::ball::Ball;
+use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
+use crate::exact::{Integer, Rational};
+use crate::expr::Expr;
+use crate::interrupt::Supervision;
+use crate::symbol::Symbol;
+
+/// The force of a law and its derivatives, in one variable.
+pub(super) struct ForceOnRange {
+    /// The start of the motion.
+    start: StartOfLaw,
+    /// The variable.
+    variable: Symbol,
+    /// The force, in the variable or its reciprocal r.
+    force: Expr,
+    /// Its derivative by the position.
+    by_place: Expr,
+    /// Whether it is odd.
+    is_odd: bool,
+    /// Its derivative by the variable along the motion, in x, the derivative of x and the variable.
+    slope: Expr,
+    /// The derivative of that along an odd motion, whose places change in proportion to the variable.
+    curvature: Expr,
+    /// The second derivative by the position.
+    bend: Expr,
+    /// The power d of r with which `r^d f` has a value at r = 0; zero in the variable itself.
+    pub(super) power: u32,
+    /// Whether the variable is r.
+    pub(super) is_far: bool,
+}
+
+/// `1/omega` on a part of the range, as a polynomial in `e = (v - middle)/half`.
+pub(super) struct TruthPiece {
+    pub(super) middle: Rational,
+    pub(super) half: Rational,
+    /// Its coefficients, the constant first.
+    pub(super) coefficients: Vec<Ball>,
+    /// Bound of the distance of `1/omega` from the polynomial.
+    pub(super) remainder: Bound,
+}
+
+/// Number of places at which `1/omega` is computed on a piece, and the ratio of the radius of the disc
+/// on which it is bounded to half of its width.
+const NODES: usize = 16;
+const WIDER: u32 = 4;
+
+/// The least part of the range that a piece may be, as a power of two.
+const THINNEST: u32 = 14;
+
+/// The symbol that stands for the derivative of a place of the motion by the variable.
+fn moving() -> Symbol {
+    coordinate().derivative()
+}
+
+/// The motion `x = m + r cos(theta)`.
+struct Extent {
+    middle: Ball,
+    radius: Ball,
+}
+
+impl ForceOnRange {
+    pub(super) fn new(
+        start: &StartOfLaw,
+        variable: Symbol,
+        force: Expr,
+        power: u32,
+        is_far: bool,
+    ) -> Result<Self, LawNotProved> {
+        let by_place = force.differentiate(coordinate())?;
+        let bend = by_place.differentiate(coordinate())?;
+        let along = Expr::from(moving());
+        let slope = &by_place * &along + force.differentiate(variable)?;
+        let curvature = &bend * &along.integer_power(2)?
+            + Expr::from(2) * &along * by_place.differentiate(variable)?
+            + force.differentiate(variable)?.differentiate(variable)?;
+        let is_odd = is_odd(&force, &[coordinate()])?;
+        let start = start.clone();
+        Ok(Self { start, variable, force, by_place, is_odd, slope, curvature, bend, power, is_far })
+    }
+
+    /// The pieces of a range, each as wide as a bound on a disc about it allows.
+    pub(super) fn pieces(
+        &self,
+        from: &Rational,
+        to: &Rational,
+        supervision: Supervision,
+    ) -> Result<Vec<TruthPiece>, LawNotProved> {
+        let steps = 1_u32 << THINNEST;
+        let place =
+            |position: u32| from + (to - from) * Rational::new(position.into(), steps.into());
+        let (mut position, mut width) = (0, steps / 4);
+        let mut pieces = vec![];
+        while position < steps {
+            if supervision.interrupt.is_requested() {
+                return Err(LawNotProved::Stopped);
+            }
+            let next = (position + width).min(steps);
+            match self.piece(&place(position), &place(next)) {
+                Ok(piece) => {
+                    pieces.push(piece);
+                    (position, width) = (next, 2 * width);
+                }
+                Err(error @ LawNotProved::NoValue(_)) if width == 1 => return Err(error),
+                Err(LawNotProved::NoValue(_)) => width = (width / 2).min(next - position),
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(pieces)
+    }
+
+    /// `1/omega` between two places: the polynomial through its values at points like those of
+    /// Chebyshev. With `|1/omega| <= M` on the disc of radius rho about the middle and `|v - middle| <=
+    /// h`, it is off by at most `M rho/(rho - h) max |w(v)|/(rho - h)^n`, w the product of the distances
+    /// from the points.
+    fn piece(&self, from: &Rational, to: &Rational) -> Result<TruthPiece, LawNotProved> {
+        let two = Integer::from(2);
+        let (middle, half) = ((from + to) / &two, (to - from) / &two);
+        let radius = &half * Integer::from(WIDER);
+        let begins_at_rest = self.start == StartOfLaw::Variable && from.is_zero();
+        let largest = match begins_at_rest {
+            true => self.bound_about_rest(&(&radius + &middle))?,
+            false => self.bound_on_disc(&middle, &radius)?,
+        };
+        let nodes = nodes();
+        let values = nodes
+            .iter()
+            .map(|node| self.inverse_frequency(&WORKING.fraction(&(&middle + &half * node))));
+        let values = values.collect::<Result<Vec<Ball>, _>>()?;
+        // |w| on [-1, 1] in units of h, and the distance of the circle from the points in the same.
+        let outside = f64::from(WIDER - 1);
+        let apart = (0..NODES).fold(largest_product(&nodes), |bound, _| bound.over(outside));
+        let remainder = largest * Bound::exactly(f64::from(WIDER)).over(outside) * apart;
+        Ok(TruthPiece { middle, half, coefficients: interpolated(&nodes, values), remainder })
+    }
+
+    /// x(0) with the variable in a ball, and its derivative by the variable.
+    fn start(&self, variable: &Ball) -> [Ball; 2] {
+        match &self.start {
+            StartOfLaw::Variable => [variable.clone(), WORKING.integer(1)],
+            StartOfLaw::Fixed(start) => [WORKING.fraction(start), Ball::zero()],
+        }
+    }
+
+    /// An expression along a motion with the variable in a ball; the second extent is the derivative
+    /// of the first by the variable.
+    fn along(
+        &self,
+        expression: &Expr,
+        variable: &Ball,
+        [extent, change]: [&Extent; 2],
+    ) -> Result<FourierSeries, LawNotProved> {
+        let series = |extent: &Extent| {
+            let cosines = vec![extent.middle.clone(), extent.radius.clone()];
+            FourierSeries::exactly(cosines, vec![]).of_digits(DIGITS)
+        };
+        let (motion, change) = (series(extent), series(change));
+        let variable = FourierSeries::constant(variable.clone());
+        let letters = [(coordinate(), &motion), (moving(), &change), (self.variable, &variable)];
+        Ok(along_all(expression, &letters)?)
+    }
+
+    /// An expression at a place of the coordinate.
+    fn at(&self, expression: &Expr, variable: &Ball, place: &Ball) -> Result<Ball, LawNotProved> {
+        let there = Extent { middle: place.clone(), radius: Ball::zero() };
+        let nothing = Extent::of_odd(Ball::zero());
+        Ok(self.along(expression, variable, [&there, &nothing])?.at_zero())
+    }
+
+    /// The stiffness at rest, a constant.
+    fn stiffness(&self, variable: &Ball) -> Result<FourierSeries, LawNotProved> {
+        Ok(FourierSeries::constant(self.at(&self.by_place, variable, &Ball::zero())?))
+    }
+
+    /// The motion at a value of the variable.
+    fn extent(&self, place: &Ball) -> Result<Extent, LawNotProved> {
+        let [start, _] = self.start(place);
+        match self.is_odd {
+            true => Ok(Extent::of_odd(start)),
+            false => {
+                let end = self.turning_point(place, &start)?;
+                Ok(Extent::between(&start, &end))
+            }
+        }
+    }
+
+    /// The other turning point: a number in doubles, improved by Newton's iteration on `V(a) - V(b)`,
+    /// whose derivative by b is -f(b), and then the interval in which that has its zero.
+    fn turning_point(&self, place: &Ball, start: &Ball) -> Result<Ball, LawNotProved> {
+        const STEPS: usize = 1;
+        let none = || LawNotProved::NoValue("the turning point".to_owned());
+        let numbers = BTreeMap::from([(self.variable, WORKING.nearest(place))]);
+        let from = WORKING.nearest(start);
+        let force = CentredForce::new(&self.force, coordinate(), &Expr::zero(), &numbers, from);
+        let end = force.and_then(|force| force.turning_point(from).ok()).and_then(from_f64);
+        let mut end = WORKING.fraction(&end.ok_or_else(none)?);
+        let nothing = Extent::of_odd(Ball::zero());
+        let mut work = Ball::zero();
+        for step in 0..=STEPS {
+            let extent = Extent::between(start, &end);
+            let series = self.along(&self.force, place, [&extent, &nothing])?;
+            work = WORKING.product(&work_between(&series), &WORKING.scaled(&extent.radius, 2));
+            if step < STEPS {
+                let force = self.at(&self.force, place, &end)?;
+                let more = WORKING.quotient(&work, &force).ok_or_else(none)?;
+                end = widened(&WORKING.sum(&end, &more), Bound::ZERO);
+                end.radius = Bound::ZERO;
+            }
+        }
+        let force = WORKING.distance_from_zero(&self.at(&self.force, place, &end)?);
+        let distance = WORKING.magnitude(&work).over(force) * Bound::exactly(2.0);
+        let around = widened(&end, distance);
+        let least = WORKING.distance_from_zero(&self.at(&self.force, place, &around)?);
+        match WORKING.magnitude(&work).over(least) < distance {
+            true => Ok(around),
+            false => Err(none()),
+        }
+    }
+
+    /// `1/omega` at a place that is not rest.
+    pub(super) fn inverse_frequency(&self, place: &Ball) -> Result<Ball, LawNotProved> {
+        let extent = self.extent(place)?;
+        let nothing = Extent::of_odd(Ball::zero());
+        let rate = mean_rate(&self.along(&self.force, place, [&extent, &nothing])?);
+        let rate = rate.over(&extent.radius);
+        Ok(mean(&root(&rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))?)?))
+    }
+
+    /// `1/omega` in the limit of small amplitudes.
+    pub(super) fn at_rest(&self) -> Result<Ball, LawNotProved> {
+        Ok(mean(&root(&self.stiffness(&Ball::zero())?)?))
+    }
+
+    /// A bound of `|1/omega|` for all complex values of the variable within a distance of one: by the
+    /// mean value theorem, whose norms hold for complex numbers too.
+    fn bound_on_disc(&self, middle: &Rational, radius: &Rational) -> Result<Bound, LawNotProved> {
+        let (place, spread) = (WORKING.fraction(middle), Bound::of_fraction(radius));
+        let all = widened(&place, spread);
+        let rate = match (self.is_odd, &self.start) {
+            (false, _) => self.rate_on_disc(&place, &all, spread)?,
+            (true, StartOfLaw::Fixed(_)) => self.rate_by_parameter(&place, &all, spread)?,
+            (true, StartOfLaw::Variable) => self.rate_by_amplitude(&place, &all, spread)?,
+        };
+        Ok(root(&rate)?.norm())
+    }
+
+    /// G on a disc of a parameter, of an odd force whose motion has one amplitude.
+    fn rate_by_parameter(
+        &self,
+        place: &Ball,
+        all: &Ball,
+        spread: Bound,
+    ) -> Result<FourierSeries, LawNotProved> {
+        let (extent, nothing) = (self.extent(place)?, Extent::of_odd(Ball::zero()));
+        let at = |expression: &Expr, variable: &Ball| {
+            self.along(expression, variable, [&extent, &nothing])
+        };
+        let over = |series: FourierSeries| {
+            let rate = mean_rate(&series).over(&extent.radius);
+            rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))
+        };
+        let slope = at(&self.slope, place)?.widened(spread * at(&self.curvature, all)?.norm());
+        Ok(over(at(&self.force, place)?)?.widened(spread * over(slope)?.norm()))
+    }
+
+    /// G on a disc of amplitudes, of an odd force: `G = f'(0) + L[g]/a` with `g = f - f'(0) x`, whose terms
+    /// are of the size a^3.
+    fn rate_by_amplitude(
+        &self,
+        place: &Ball,
+        all: &Ball,
+        spread: Bound,
+    ) -> Result<FourierSeries, LawNotProved> {
+        let change = Extent::of_odd(WORKING.integer(1));
+        let at = |expression: &Expr, variable: &Ball| {
+            let extent = Extent::of_odd(variable.clone());
+            self.along(expression, variable, [&extent, &change])
+        };
+        let stiffness = self.stiffness(place)?;
+        let subtracted = |series: FourierSeries, size: &Ball| {
+            let line = FourierSeries::exactly(vec![Ball::zero(), size.clone()], vec![]);
+            series.difference(&line.product(&stiffness))
+        };
+        let slope = at(&self.slope, place)?.widened(spread * at(&self.curvature, all)?.norm());
+        let own = subtracted(at(&self.force, place)?, place);
+        let slope = subtracted(slope, &WORKING.integer(1));
+        let own_on_all = own.clone().widened(spread * slope.norm());
+        let over = |series: &FourierSeries, by: &Ball| {
+            let rate = mean_rate(series).over(by);
+            rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))
+        };
+        let rate = stiffness.sum(&over(&own, place)?);
+        let square = WORKING.product(all, all);
+        let by_variable = over(&slope, all)?.difference(&over(&own_on_all, &square)?);
+        Ok(rate.widened(spread * by_variable.norm()))
+    }
+
+    /// G on a disc, of a force that is not odd: the other turning point b moves by
+    /// `b' = (f(a) a' + int_b^a f_p dx)/f(b)`, which is bounded on a disc about it that it does not leave.
+    fn rate_on_disc(
+        &self,
+        place: &Ball,
+        all: &Ball,
+        spread: Bound,
+    ) -> Result<FourierSeries, LawNotProved> {
+        let none = || LawNotProved::NoValue("the turning point".to_owned());
+        let ([start, _], [start_on_all, change]) = (self.start(place), self.start(all));
+        let end = self.turning_point(place, &start)?;
+        let nothing = Extent::of_odd(Ball::zero());
+        let by_variable = self.force.differentiate(self.variable)?;
+        let rate_of_end = |end_on_all: &Ball| -> Result<Ball, LawNotProved> {
+            let extent = Extent::between(&start_on_all, end_on_all);
+            let by_variable = self.along(&by_variable, all, [&extent, &nothing])?.norm();
+            let length = WORKING.magnitude(&extent.radius) * Bound::exactly(2.0);
+            let force = WORKING.product(&self.at(&self.force, all, &start_on_all)?, &change);
+            let work = widened(&force, length * by_variable);
+            WORKING.quotient(&work, &self.at(&self.force, all, end_on_all)?).ok_or_else(none)
+        };
+        // A disc twice as large as the rate at its middle asks for.
+        let guess = WORKING.magnitude(&rate_of_end(&end)?) * spread * Bound::exactly(2.0);
+        let end_on_all = widened(&end, guess);
+        let rate_of_end = rate_of_end(&end_on_all)?;
+        if WORKING.magnitude(&rate_of_end) * spread > guess {
+            return Err(none());
+        }
+        let extent = Extent::between(&start, &end);
+        let on_all = Extent::between(&start_on_all, &end_on_all);
+        let change = Extent::between(&change, &rate_of_end);
+        let force = self.along(&self.force, place, [&extent, &nothing])?;
+        let slope = self.along(&self.slope, all, [&on_all, &change])?;
+        let force_on_all = force.clone().widened(spread * slope.norm());
+        let over = |series: &FourierSeries, by: &Ball| mean_rate(series).over(by).ok_or_else(none);
+        let square = WORKING.product(&on_all.radius, &on_all.radius);
+        let turned = FourierSeries::constant(change.radius.clone());
+        let by_variable = over(&slope, &on_all.radius)?
+            .difference(&over(&force_on_all, &square)?.product(&turned));
+        Ok(over(&force, &extent.radius)?.widened(spread * by_variable.norm()))
+    }
+
+    /// A bound of `|1/omega|` for all complex amplitudes up to a size R: `f(x) = f'(0) x + g(x)` with
+    /// `|g| <= |x|^2 M/2`, M a bound of f'' on `|x| <= 2 R`.
+    ///
+    /// ```text
+    /// f odd:  |G - f'(0)| <= R M/2
+    /// else:   V = f'(0) x^2/2 (1 + e(x)),  |e| <= e_0 = 2 R M/(3 f'(0)),   b = -v u,  u^2 = (1 + e(v))/(1 + e(b)),
+    ///         |u - 1| <= w = 2 e_0/(1 - e_0) <= 1,    |G - f'(0)| <= (2/3) R M (1 + w)^2/(1 - w/2)
+    /// ```
+    fn bound_about_rest(&self, size: &Rational) -> Result<Bound, LawNotProved> {
+        let spread = Bound::of_fraction(size);
+        let stiffness = self.stiffness(&Ball::zero())?;
+        let nothing = Extent::of_odd(Ball::zero());
+        let bend = |size: Bound| -> Result<Bound, LawNotProved> {
+            let all = Extent::of_odd(widened(&Ball::zero(), size));
+            Ok(self.along(&self.bend, &Ball::zero(), [&all, &nothing])?.norm())
+        };
+        let distance = match self.is_odd {
+            true => spread * bend(spread)? / 2,
+            false => {
+                let bend = bend(spread * Bound::exactly(2.0))?;
+                let least = WORKING.distance_from_zero(&stiffness.at_zero());
+                let uneven = (spread * bend * Bound::exactly(2.0) / 3).over(least);
+                let w = (uneven * Bound::exactly(2.0)).over(uneven.below_complement());
+                if w.value() > 1.0 {
+                    return Err(LawNotProved::NoValue("the turning point".to_owned()));
+                }
+                let wide = Bound::exactly(1.0) + w;
+                let third = spread * bend * wide * wide * Bound::exactly(2.0) / 3;
+                third.over((w / 2).below_complement())
+            }
+        };
+        Ok(root(&stiffness.widened(distance))?.norm())
+    }
+}
+
+impl Extent {
+    /// The motion of an odd force with this amplitude.
+    fn of_odd(amplitude: Ball) -> Self {
+        Self { middle: Ball::zero(), radius: amplitude }
+    }
+
+    /// The motion between two turning points, the first one on the right.
+    fn between(start: &Ball, end: &Ball) -> Self {
+        Self {
+            middle: WORKING.divided(&WORKING.sum(start, end), 2),
+            radius: WORKING.divided(&WORKING.difference(start, end), 2),
+        }
+    }
+}
+
+/// `F_0 - sum_q F_2q/(4 q^2 - 1)`, the work between two turning points over twice their distance from
+/// the middle.
+fn work_between(force: &FourierSeries) -> Ball {
+    let mut sum = force.cosine(0);
+    for k in (2..force.length()).step_by(2) {
+        let divisor = u32::try_from(k * k - 1).unwrap_or(u32::MAX);
+        sum = WORKING.difference(&sum, &WORKING.divided(&force.cosine(k), divisor));
+    }
+    widened(&sum, force.tail)
+}
+
+/// `G^(-1/2)`.
+fn root(rate: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
+    let root = rate.clone().of_digits(DIGITS).inverse_root(2);
+    root.ok_or_else(|| LawNotProved::NoValue("G^(-1/2)".to_owned()))
+}
+
+/// Fractions near the points of Chebyshev between -1 and 1.
+fn nodes() -> Vec<Rational> {
+    let node = |i: usize| {
+        let angle = std::f64::consts::PI * (i as f64 + 0.5) / NODES as f64;
+        Rational::new(((angle.cos() * 65536.0).round() as i64).into(), 65536.into())
+    };
+    (0..NODES).map(node).collect()
+}
+
+/// A bound of `prod |e - e_j|` for e between -1 and 1: the largest value at points `1/N` apart, where
+/// the distances from the next one add at most that to each factor.
+fn largest_product(nodes: &[Rational]) -> Bound {
+    const POINTS: i64 = 4096;
+    let product = |point: i64| -> Bound {
+        let place = Rational::new(point.into(), POINTS.into());
+        let step = Bound::of_fraction(&Rational::new(1.into(), (2 * POINTS).into()));
+        let factors = nodes.iter().map(|node| Bound::of_fraction(&(&place - node)) + step);
+        factors.fold(Bound::exactly(1.0), |product, factor| product * factor)
+    };
+    (-POINTS..=POINTS).map(product).fold(Bound::ZERO, Bound::max)
+}
+
+/// The coefficients of the polynomial with these values at the nodes, by Newton's divided differences.
+fn interpolated(nodes: &[Rational], mut values: Vec<Ball>) -> Vec<Ball> {
+    let count = nodes.len();
+    for order in 1..count {
+        for i in (order..count).rev() {
+            let over = WORKING.fraction(&(&nodes[i] - &nodes[i - order]).recip());
+            let difference = WORKING.difference(&values[i], &values[i - 1]);
+            values[i] = WORKING.product(&difference, &over);
+        }
+    }
+    // Horner's scheme in the products of the distances, from the last difference on.
+    let mut coefficients = vec![Ball::zero(); count];
+    for i in (0..count).rev() {
+        let node = WORKING.fraction(&nodes[i]);
+        for k in (0..count).rev() {
+            let lower = if k > 0 { coefficients[k - 1].clone() } else { values[i].clone() };
+            let product = WORKING.product(&coefficients[k], &node);
+            coefficients[k] = WORKING.difference(&lower, &product);
+        }
+    }
+    coefficients
+}
+
+/// Binary digits of the series, whose errors need only be small beside the error of a law.
+const DIGITS: usize = 48;
+
+/// `r G` of the series of a force along `m + r cos(theta)`.
+fn mean_rate(force: &FourierSeries) -> FourierSeries {
+    let length = force.length();
+    let mut cosines = vec![Ball::zero(); length.max(1)];
+    // From the highest harmonic down, the sum over k = l + 1, l + 3, ... grows by a term each time; the
+    // two parities take turns.
+    let mut sums = [Ball::zero(), Ball::zero()];
+    for l in (1..length).rev() {
+        let k = l + 1;
+        let sum = &mut sums[l % 2];
+        if k < length {
+            let divisor = u32::try_from(k * k - 1).unwrap_or(u32::MAX);
+            *sum = WORKING.sum(sum, &WORKING.divided(&force.cosine(k), divisor));
+        }
+        cosines[l] = WORKING.scaled(sum, 4 * l as i64);
+    }
+    cosines[0] = force.cosine(1);
+    let tail = force.tail * Bound::exactly(4.0) / 3;
+    FourierSeries::exactly(cosines, vec![]).widened(tail).of_digits(DIGITS)
+}
+
+/// The mean of a series.
+fn mean(series: &FourierSeries) -> Ball {
+    widened(&series.cosine(0), series.tail)
+}

@@ -167,3 +167,17 @@ fn one_thread_finds_what_two_find() {
     };
     assert_eq!(texts(1), texts(2));
 }
+
+#[test]
+fn motions_of_another_kind_are_measured_and_not_proved() {
+    // About the equilibrium at one, and with an inertia that changes along the motion.
+    for (equation, words) in [
+        ("x'' - x + x^3 = 0", "swing about another one"),
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "of the position and the variable alone"),
+    ] {
+        let found = front(equation, "A", Some("1/4"), LawQuantity::Frequency, 5);
+        let last = found.laws.last().expect("a law");
+        let reason = last.proof.as_ref().expect_err(equation).to_string();
+        assert!(reason.contains(words), "{reason}");
+    }
+}

@@ -123,9 +123,12 @@ pub struct LawError {
 pub enum LawNotProved {
     /// The motion does not swing about zero.
     #[error(
-        "a proof on a range is of motions about an equilibrium at zero, and `{0}` is not zero there"
+        "a proof on a range is of motions about an equilibrium at zero, and those of `{0}` swing about another one"
     )]
     NotCentred(String),
+    /// Letters or ends that do not belong together.
+    #[error("a proof on a range is of a force of the position and the variable alone: {0}")]
+    Malformed(&'static str),
     /// A part of the force or of the law has no enclosure.
     #[error("`{0}` has no value over cosine series")]
     NoValue(String),
@@ -252,6 +255,7 @@ impl TrueFrequency {
         supervision: Supervision,
     ) -> Result<Self, LawNotProved> {
         let LawCertificate { force, variable, start, .. } = certificate;
+        certificate.well_formed().map_err(LawNotProved::Malformed)?;
         let at_zero = force.substitute(coordinate(), &Expr::zero())?.expand()?;
         if !at_zero.is_zero() {
             return Err(LawNotProved::NotCentred(force.to_string()));

@@ -452,6 +452,9 @@ fn certificate(
     candidate: Option<&Candidate>,
 ) -> Result<LawCertificate, LawNotProved> {
     let Some(start) = problem.start.clone() else { return Err(LawNotProved::LimitCycle) };
+    if !problem.is_centred() {
+        return Err(LawNotProved::NotCentred(problem.oscillator.force.to_string()));
+    }
     let law = match candidate {
         None => Expr::one(),
         Some(candidate) => {

@@ -239,6 +239,11 @@ impl LawProblem {
         Ok(Self { oscillator, variable, meaning, start, from, to, solution })
     }
 
+    /// Whether the motions swing about zero.
+    pub(super) fn is_centred(&self) -> bool {
+        self.solution.equilibrium.is_zero()
+    }
+
     /// The letter of the amplitude and its value where a parameter varies.
     pub(super) fn amplitude(&self) -> Option<(Symbol, &Rational)> {
         match &self.start {

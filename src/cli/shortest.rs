@@ -53,7 +53,7 @@ pub struct ShortestArguments {
     longest: u32,
     /// Keep the law exact at rest: its series is that of the true frequency up to this power of the
     /// variable, 0 for the frequency at rest alone
-    #[arg(long, value_name = "ORDER", allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     exact_at_rest: Option<u32>,
     /// With JSON: the certificate of the law, which `check` reads, in place of the laws
     #[arg(long)]
@@ -129,7 +129,10 @@ fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     let typed = formula(&problem, ReadingCommand::Shortest)?;
     let oscillator = oscillator(&typed, None)?;
     let (varying, from, to) = range(&arguments.range)?;
-    let values = exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default();
+    // The range takes the place of a value of the file.
+    let ranged: Vec<Symbol> = varying.symbols().into_iter().collect();
+    let of_file = problem.values_of_motion().map(|values| values.split(&ranged).1);
+    let values = exact_values(&arguments.at, of_file)?.unwrap_or_default();
     let refuse = |error: ShortestError| match &error {
         ShortestError::Unknown(name) => Failure::Usage(format!("--at {name}: {error}")),
         _ => Failure::refused(&error, error.help()).of_kind(&error),

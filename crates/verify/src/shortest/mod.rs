@@ -431,13 +431,15 @@ fn of_structure(
 
 /// The candidates of which none is longer than one with a smaller error.
 fn best(mut found: Vec<Candidate>) -> Vec<Candidate> {
+    /// The same function in another form errs alike to rounding, and is no gain.
+    const GAIN: f64 = 1e-6;
     found.sort_by(|one, other| {
         let order = one.length.cmp(&other.length).then(one.error.total_cmp(&other.error));
         order.then_with(|| one.formula.to_string().cmp(&other.formula.to_string()))
     });
     let mut least = f64::INFINITY;
     found.retain(|candidate| {
-        let is_better = candidate.error < least;
+        let is_better = candidate.error < (1.0 - GAIN) * least;
         least = least.min(candidate.error);
         is_better
     });

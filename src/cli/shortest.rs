@@ -139,12 +139,17 @@ fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     };
     let own = oscillator.with_own_names_apart()?;
     let own_letters = own.letters();
+    let resolved = |name: Symbol| own_letters.resolve(name, &own.parameters);
     let names = varying.symbols().into_iter();
-    let resolved = names.map(|name| (name, own_letters.resolve(name, &own.parameters)));
     let varying =
-        varying.substitute_all(&resolved.map(|(name, own)| (name, Expr::from(own))).collect())?;
+        varying.substitute_all(&names.map(|name| (name, Expr::from(resolved(name)))).collect())?;
+    let mut own_values = Values::default();
+    for (name, value) in values.iter() {
+        own_values.insert(resolved(name), value.clone())?;
+    }
     let letters = own_letters.in_force();
-    let problem = LawProblem::new(&own, &varying, (&from, to.as_ref()), &values).map_err(refuse)?;
+    let problem =
+        LawProblem::new(&own, &varying, (&from, to.as_ref()), &own_values).map_err(refuse)?;
     let quantity = match arguments.quantity.as_str() {
         "omega^2" => LawQuantity::FrequencySquared,
         "T" => LawQuantity::Period,

@@ -54,7 +54,7 @@ pub fn picture(report: &ShortestReport) -> Result<String, FigureError> {
         x_label: &variable,
         y_label: "error of the law (%)",
         x_scale: if is_infinite { Scale::Logarithmic } else { Scale::Linear },
-        curves: vec![Curve { label: &label, points: &positive, style: CurveStyle::DIFFERENCE }],
+        curves: vec![Curve { label: &label, points: &positive, style: CurveStyle::THIRD_FORMULA }],
         ..Panel::default()
     };
     figure(&[lengths, errors], &format!("{}; {}.", report.equation, report.range()))

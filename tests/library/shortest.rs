@@ -172,7 +172,7 @@ fn one_thread_finds_what_two_find() {
 fn motions_of_another_kind_are_measured_and_not_proved() {
     // About the equilibrium at one, and with an inertia that changes along the motion.
     for (equation, words) in [
-        ("x'' - x + x^3 = 0", "swing about another one"),
+        ("x'' + x + x^3 - 1/4 = 0", "swing about another one"),
         ("(1 + x^2)*x'' + x*x'^2 + x = 0", "of the position and the variable alone"),
     ] {
         let found = front(equation, "A", Some("1/4"), LawQuantity::Frequency, 5);

@@ -95,6 +95,14 @@ fn a_certificate_is_checked_and_a_false_one_refused() {
 }
 
 #[test]
+fn a_parameter_may_have_the_letter_of_the_amplitude() {
+    let question = ["shortest", "x'' + A*x + x^3 = 0", "--range", "C=0:1", "--at", "A=1"];
+    let text = printed(&[&question[..], &["--longest", "6"]].concat());
+    assert!(text.contains("released at rest from x(0) = C, 0 <= C <= 1"), "{text}");
+    assert!(text.contains("%  proved"), "{text}");
+}
+
+#[test]
 fn what_no_law_is_searched_for_says_why() {
     for (arguments, code, words) in [
         (vec!["pendulum", "--range", "A=2:1"], 1, "is empty or begins below zero"),

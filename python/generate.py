@@ -454,6 +454,7 @@ def commands_text(commands: list[dict[str, Any]]) -> str:
     kinds["DampedCertificateDocument"] = "certificate"
     kinds["ModeCertificateDocument"] = "certificate"
     kinds["CoupledCertificateDocument"] = "certificate"
+    kinds["LawCertificateDocument"] = "certificate"
     imports = [
         f"    from .documents.{kinds[name].replace('-', '_')} import {name}" for name in classes
     ]

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .documents.absorber import Absorber
     from .documents.certificate import CoupledCertificateDocument
     from .documents.certificate import DampedCertificateDocument
+    from .documents.certificate import LawCertificateDocument
     from .documents.certificate import ModeCertificateDocument
     from .documents.certificate_range import CertificateRange
     from .documents.impact_certificate import ImpactCertificate
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .documents.orbits import Orbits
     from .impacts import Impact
     from .law import Law
+    from .laws import Shortest
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .normal_modes import Modes
     from .slow import SlowEquations
@@ -370,6 +372,50 @@ def orbits(
     return ask("orbits", problem, {"wall": wall, "restitution": restitution, "impacts": impacts, "periods": periods, "vary": vary, "along": along, "tolerance": tolerance, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
+def shortest(
+    problem: Problem,
+    *,
+    range: Values | None = None,
+    error: float | None = None,
+    quantity: Literal["omega", "omega^2", "T"] | None = None,
+    atom: Sequence[str] | None = None,
+    longest: int | None = None,
+    exact_at_rest: int | None = None,
+    certificate: bool = False,
+    timeout: float | None = None,
+    at: Values | None = None,
+    progress: Progress | None = None,
+    **values: Value,
+) -> Shortest | LawCertificateDocument:
+    """The shortest frequency law within an error on a whole range, with a proof of the bound, and the front of length against error.
+
+    Args:
+        problem: An equation, an `Oscillator`, a name of the catalogue, the path of a problem
+            file, or the tables of one.
+        range: What varies, and from where to where: the amplitude (A=0:2.8), a parameter
+            (mu=0:10), or a product on which the frequency alone depends (eps*A^2=0:inf).
+        error: The largest relative error that is allowed, 0.001 say; without it the whole
+            front.
+        quantity: What the law gives: omega, omega^2, or T, the period over 2 pi.
+        atom: A quantity of which laws are made, counted as one symbol, such as cos(A/2);
+            repeatable, those of the equation without it.
+        longest: The greatest length of a law in symbols.
+        exact_at_rest: Keep the law exact at rest: its series is that of the true frequency up
+            to this power of the variable, 0 for the frequency at rest alone.
+        certificate: With JSON: the certificate of the law, which `check` reads, in place of the
+            laws.
+        timeout: Give up after so many seconds.
+        at: Values of symbols whose names are options or no words, `{"small": 1}`.
+        progress: Is called with the parts done and all of them; an exception ends the work.
+        **values: The values of symbols, exact where they are text or fractions.
+
+    Raises:
+        Refused: The problem is refused, with the term and a way forward.
+        UsageError: An option has a value that it cannot have.
+    """
+    return ask("shortest", problem, {"range": range, "error": error, "quantity": quantity, "atom": atom, "longest": longest, "exact_at_rest": exact_at_rest, "certificate": certificate, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+
+
 def friction(
     *,
     alpha: float | None = None,
@@ -630,7 +676,7 @@ def check(
     tolerance: float | None = None,
     timeout: float | None = None,
     progress: Progress | None = None,
-) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument:
+) -> Certificate | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument:
     """Check a certificate that `certify` wrote, in exact arithmetic.
 
     Args:

@@ -548,6 +548,58 @@ CoupledCertificateDocument.OPTIONAL = frozenset(['drive', 'p', 'phase_of', 'sigm
 CoupledCertificateDocument.CONSTANTS = {'nu': '1'}
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class LawCertificateDocument(Answer):
+    """A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, and how
+    far it is off. All numbers are text: integers, fractions such as `14/5`, decimals such as
+    `0.0011`.
+
+    Attributes:
+        schema: The kind of document.
+        ode: The equation that f belongs to.
+        f: The force, an expression in x, zero at x = 0, and in the variable where that is a
+            parameter.
+        variable: The name of the variable.
+        start: x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a
+            positive number.
+        quantity: What the law gives: `omega`, `omega^2` or `T/(2*pi)`.
+        law: The law, an expression in the variable.
+        from_: The lower end of the range, not negative.
+        to: The upper end; null for infinity.
+        worst: A value of the variable at which the error is at least the first of `error`.
+        error: The largest `|law/truth - 1|` on the range is at least and at most this.
+    """
+
+    schema: Literal["lindstedt/certificate/1"]
+    ode: Literal["x''+f(x,p)=0"]
+    f: str
+    variable: str
+    start: str
+    quantity: Literal["omega", "omega^2", "T/(2*pi)"]
+    law: str
+    from_: str
+    to: str | None
+    worst: str
+    error: tuple[str, str]
+
+
+LawCertificateDocument.FIELDS = (
+    ("schema", "schema", None),
+    ("ode", "ode", None),
+    ("f", "f", None),
+    ("variable", "variable", None),
+    ("start", "start", None),
+    ("quantity", "quantity", None),
+    ("law", "law", None),
+    ("from_", "from", None),
+    ("to", "to", None),
+    ("worst", "worst", None),
+    ("error", "error", tuple),
+)
+LawCertificateDocument.CONSTANTS = {'ode': "x''+f(x,p)=0"}
+
+
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative
-#: motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates.
-Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument
+#: motion, a limit cycle, a driven motion, or a free or a driven motion of several coordinates; or
+#: how far a frequency law is off on a range.
+Certificate: TypeAlias = CertificateDocument | DampedCertificateDocument | ModeCertificateDocument | CoupledCertificateDocument | LawCertificateDocument

@@ -20,7 +20,7 @@ class Shortest(ShortestDocument):
     >>> found.front.column("length").tolist()[-1]
     8
     >>> found(A=[0.5, 1.5]).round(4)
-    array([1.0158, 1.162 ])
+    array([1.0159, 1.162 ])
     """
 
     @property

@@ -47,7 +47,7 @@ class PublishedFormula(Document):
 
     Attributes:
         formula: The formula.
-        quantity: What it gives: `omega`, `omega^2` or `T/(2*pi)`.
+        quantity: Its quantity: `omega`, `omega^2` or `T/(2*pi)`.
         source: The publication.
         length: The number of its symbols.
         measured: The largest relative error that was measured; null where it has no value
@@ -81,13 +81,13 @@ class Shortest(Answer):
         schema: The kind of document.
         equation: The equation of motion, `... = 0`, with numbers for all but the variable.
         variable: The name of the variable.
-        meaning: What the variable stands for, `eps*A^2` say; null for the amplitude or a
-            parameter.
+        meaning: The product that the variable stands for, `eps*A^2` say; null for the amplitude
+            or a parameter.
         amplitude: The amplitude where a parameter varies; null where the amplitude does, and for
             limit cycles.
         from_: The lower end of the range.
         to: The upper end; null for infinity.
-        quantity: What the laws give: `omega`, `omega^2` or `T/(2*pi)`.
+        quantity: The quantity of the laws: `omega`, `omega^2` or `T/(2*pi)`.
         atoms: The names in the laws besides the variable, each with its meaning.
         chosen: The number of the shortest law within that error, counted from zero; null where
             none is, and the last one without an error.

@@ -200,7 +200,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("shortest", laws[1..].to_vec(), vec!["--at", "k=1"]),
         ("shortest", laws[1..].to_vec(), vec!["--atom", "A^2"]),
         ("shortest", laws[1..].to_vec(), vec!["--longest", "4"]),
-        ("shortest", laws[1..].to_vec(), vec!["--exact-at-rest", "0"]),
+        ("shortest", laws[1..].to_vec(), vec!["--exact-at-rest", "4"]),
         ("shortest", laws[1..].to_vec(), vec!["--certificate"]),
         ("shortest", laws[1..].to_vec(), vec!["--format", "csv"]),
         ("shortest", laws[1..].to_vec(), vec!["--format", "latex"]),

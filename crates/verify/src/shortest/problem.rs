@@ -197,11 +197,13 @@ impl LawProblem {
             return Err(ShortestError::NotPeriodic);
         }
         let amplitude = AmplitudeConvention::Initial.symbol();
+        // The name by which the amplitude goes where the equation has its letter for something else.
+        let written = Symbol::new(amplitude.written());
         let is_cycle = general.limit_cycle.is_some();
         let is_parameter = |name: &Symbol| oscillator.parameters.contains(name);
         let (oscillator, variable, start, meaning) = match varying.as_symbol() {
             Some(name) if name == amplitude && !is_cycle => {
-                (oscillator.clone(), name, Some(StartOfLaw::Variable), None)
+                (oscillator.clone(), written, Some(StartOfLaw::Variable), None)
             }
             Some(name) if is_parameter(&name) && is_cycle => (oscillator.clone(), name, None, None),
             Some(name) if is_parameter(&name) => {
@@ -214,7 +216,8 @@ impl LawProblem {
             None => {
                 let (scaled, variable) = scaled(oscillator, varying, amplitude)?;
                 let start = Some(StartOfLaw::Fixed(Rational::one()));
-                (scaled, variable, start, Some(varying.clone()))
+                let meaning = varying.substitute(amplitude, &Expr::from(written))?;
+                (scaled, variable, start, Some(meaning))
             }
         };
         let needed: Vec<Symbol> =
@@ -300,7 +303,8 @@ impl LawProblem {
                 insert(AmplitudeConvention::Initial.symbol(), start.clone());
                 insert(self.variable, exact);
             }
-            _ => insert(self.variable, exact),
+            Some(StartOfLaw::Variable) => insert(AmplitudeConvention::Initial.symbol(), exact),
+            None => insert(self.variable, exact),
         }
         let judged = judge_motion(&self.oscillator, &self.solution, &values, ANY);
         let frequency = judged.map(|judged| judged.true_frequency).map_err(|reason| {

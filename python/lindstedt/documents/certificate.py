@@ -562,7 +562,7 @@ class LawCertificateDocument(Answer):
         variable: The name of the variable.
         start: x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a
             positive number.
-        quantity: What the law gives: `omega`, `omega^2` or `T/(2*pi)`.
+        quantity: The quantity of the law: `omega`, `omega^2` or `T/(2*pi)`.
         law: The law, an expression in the variable.
         from_: The lower end of the range, not negative.
         to: The upper end; null for infinity.

@@ -11,7 +11,7 @@
 //!
 //! The sum of the sizes of the coefficients of `r G` is at most 4/3 of that of f, so that the tail of f
 //! is a bound for that of `r G`. The mean is the constant of the series of `G^(-1/2)`, a function of
-//! [`FourierSeries`]. On each of some pieces of the range `1/omega` is a polynomial through sixteen of
+//! `FourierSeries`. On each of some pieces of the range `1/omega` is a polynomial through sixteen of
 //! its values, with a remainder from a bound on a disc of complex values of the variable about the
 //! piece. On an interval `|v - m| <= h` the quotient `q = law/truth` is within `h max |q'|` of its value
 //! in the middle, and intervals are halved until that is within the claim; a range to infinity ends with

@@ -4,9 +4,9 @@
 //! [`Front`], the law with the smallest largest error for each length, none longer than one that is
 //! better, and of each the proof of its error.
 //!
-//! Laws come from two searches: [`trees`], all short formulas without constants of their own, and
-//! [`families`], powers of quotients of sums whose constants are found by [`minimax`] and made short by
-//! [`constants`]. Both are the same for any number of threads.
+//! Laws come from two searches: `trees`, all short formulas without constants of their own, and
+//! `families`, powers of quotients of sums whose constants are found by `minimax` and made short by
+//! `constants`. Both are the same for any number of threads.
 
 mod constants;
 mod families;

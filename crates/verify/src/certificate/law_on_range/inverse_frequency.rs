@@ -5,7 +5,7 @@
 //! a disc of complex values about it allows. A piece costs some seventeen series of `G^(-1/2)`, of a
 //! force that is not odd with the other turning point of each motion besides.
 //!
-//! Equations and sources: those of [`law_on_range`](super).
+//! Equations and sources: those of `law_on_range`.
 
 use std::collections::BTreeMap;
 

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use lindstedt::certificate::{LawQuantity, check_law};
 use lindstedt::exact::Rational;
 use lindstedt::exact::rational::to_f64;
+use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 use lindstedt::shortest::{Front, LawProblem, SearchOptions, length, search};
 use lindstedt::{Oscillator, Supervision, Symbol};
 use lindstedt_expr::parallel::on_threads;
@@ -180,4 +181,15 @@ fn motions_of_another_kind_are_measured_and_not_proved() {
         let reason = last.proof.as_ref().expect_err(equation).to_string();
         assert!(reason.contains(words), "{reason}");
     }
+}
+
+#[test]
+fn laws_of_a_spring_that_is_not_even() {
+    let found = front("x'' + x + x^2/4 = 0", "A", Some("1"), LawQuantity::Frequency, 7);
+    let force = |x: f64| x + 0.25 * x * x;
+    let places: Vec<f64> = (1..=400).map(|i| f64::from(i) / 400.0).collect();
+    remeasured(&found, &places, |amplitude| {
+        let period = conservative_period(&PiecewiseForce::smooth(&force), 0.0, amplitude);
+        std::f64::consts::TAU / period.expect("a period")
+    });
 }

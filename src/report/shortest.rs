@@ -149,7 +149,12 @@ pub fn shortest<'a>(report: &'a ShortestReport<'a>) -> Document<'a> {
     reasons.sort();
     reasons.dedup();
     blocks.extend(reasons.into_iter().map(|reason| Block::Note(format!("not proved: {reason}"))));
-    sections.push(blocks);
+    sections.push(match front.laws.is_empty() {
+        false => blocks,
+        true => vec![Block::Note(
+            "no law of this length was found: raise --longest, or ask for less at rest".to_owned(),
+        )],
+    });
     if !front.published.is_empty() {
         let rows = front.published.iter().map(|own| {
             let error = match own.error.is_finite() {

@@ -223,7 +223,7 @@ fn followed(mut grown: Vec<Partial>) -> Vec<Partial> {
     kept
 }
 
-/// Those with a smaller error than all of fewer digits.
+/// Constants with a smaller error than all of fewer digits.
 fn improving(mut whole: Vec<(usize, ShortConstants)>) -> Vec<(usize, ShortConstants)> {
     whole.sort_by(|one, other| one.0.cmp(&other.0).then(one.1.error.total_cmp(&other.1.error)));
     let mut least = f64::INFINITY;

@@ -21,7 +21,7 @@ pub(super) const MOST_CONSTANTS: usize = 6;
 pub(super) struct QuotientOfSums<'a> {
     /// The functions of the numerator, at the places.
     pub(super) numerator: Vec<&'a [f64]>,
-    /// Those of the denominator, beside one.
+    /// The functions of the denominator, beside one.
     pub(super) denominator: Vec<&'a [f64]>,
     /// z at the places.
     pub(super) target: &'a [f64],

@@ -431,7 +431,7 @@ fn of_structure(
 
 /// The candidates of which none is longer than one with a smaller error.
 fn best(mut found: Vec<Candidate>) -> Vec<Candidate> {
-    /// The same function in another form errs alike to rounding, and is no gain.
+    /// A function in another form errs alike to rounding, and is no gain.
     const GAIN: f64 = 1e-6;
     found.sort_by(|one, other| {
         let order = one.length.cmp(&other.length).then(one.error.total_cmp(&other.error));
@@ -495,13 +495,4 @@ fn proved(
     let [below, _] = neighbours(&from_f64(lower).unwrap_or_else(Rational::zero), DIGITS);
     certificate.claim[0] = below;
     Ok((certificate, LawError { lower, upper }))
-}
-
-/// A quantity of formulas of this text, in a variable.
-///
-/// # Errors
-/// A text that cannot be read.
-pub fn atom(text: &str, name: Symbol) -> Result<Atom, ShortestError> {
-    let meaning = parse_expression(text).map_err(Box::new)?;
-    Ok(Atom { name, meaning })
 }

@@ -12,7 +12,7 @@ use crate::certificate::StartOfLaw;
 use crate::decimal::decimal;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
-use crate::expr::{Expr, ExprError, Function, ParseError};
+use crate::expr::{Expr, ExprError, Function};
 
 use crate::method::{Options, Refusal, solve};
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -101,9 +101,6 @@ pub enum ShortestError {
     /// An expression that cannot be written.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// The text of a formula that cannot be read.
-    #[error(transparent)]
-    Formula(#[from] Box<ParseError>),
     /// There is no true motion at a value of the range.
     #[error("at {variable} = {at}: {reason}")]
     Truth {

@@ -218,7 +218,7 @@ impl<'a> Trees<'a> {
     }
 
     /// The formulas nearest to the truth by length, up to one that is longer than those that are kept.
-    /// Those of the longer lengths are made of two that are kept, or are the square root of such.
+    /// Formulas of the longer lengths are made of two that are kept, or are the square root of such.
     pub(super) fn nearest(&self, truth: &[f64], longest: usize) -> Vec<Formula> {
         /// Number of formulas of each length that are tried at more places.
         const KEPT: usize = 6;

@@ -143,7 +143,7 @@ pub(super) struct ScaledJet {
 }
 
 impl ScaledJet {
-    /// The same number with another, smaller power; `None` if the power of the variable has no value.
+    /// This number written with another, smaller power; `None` if the power of the variable has no value.
     fn with_power(&self, power: &Rational, variable: &Variable) -> Option<Self> {
         let more = &self.power - power;
         let jet = match more.is_zero() {

@@ -43,7 +43,7 @@ pub enum Formula {
 /// use lindstedt::shortest::length;
 ///
 /// assert_eq!(length("4/(1 + sqrt(c))^2"), 8);
-/// assert_eq!(length("(1 - 0.125*A^2)^0.5"), 12);
+/// assert_eq!(length("(1 - 0.125*A^2)^0.5"), 11);
 /// ```
 pub fn length(text: &str) -> usize {
     let (mut count, mut rest) = (0, text);

@@ -17,13 +17,7 @@ fn searches(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("pendulum", longest), |bencher| {
             bencher.iter(|| {
                 let problem = LawProblem::new(&pendulum, &varying, (&ends[0], Some(&ends[1])), &at);
-                let options = SearchOptions {
-                    quantity: LawQuantity::Frequency,
-                    atoms: vec![],
-                    longest,
-                    exact_at_rest: None,
-                    published: vec![],
-                };
+                let options = SearchOptions::new(LawQuantity::Frequency, longest);
                 search(problem.expect("a problem"), &options, Supervision::default()).expect("laws")
             });
         });

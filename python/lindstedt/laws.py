@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -40,14 +41,22 @@ class Shortest(ShortestDocument):
         return self.laws[-1 if self.chosen is None else self.chosen]
 
     def function(self, law: ShortLaw | None = None) -> Callable[..., Any]:
-        """A law as a function of its variable, of numbers, lists and arrays; without one the law that is chosen."""
+        """A law as a function of its variable, of numbers, lists and arrays; without one the law that is chosen.
+
+        A law of a contact is a function of those of its variable and its restitution e that occur in it.
+        """
         from ._compile import numpy_functions
 
         law = self.law if law is None else law
-        lines = [f"    {name} = {python(meaning)}" for name, meaning in self.atoms.items()]
+        # The restitution of a contact has no formula in the variable, and is an argument of its own.
+        given = [name for name, meaning in self.atoms.items() if meaning == "restitution"]
+        known = {name: meaning for name, meaning in self.atoms.items() if name not in given}
+        lines = [f"    {name} = {python(meaning)}" for name, meaning in known.items()]
+        letters = set(re.findall(r"\w+", law.formula))
+        arguments = [name for name in [self.variable, *given] if name in letters or not given]
         program = [
             "from math import cos, exp, log, sin, sqrt, tan",
-            f"def angular_frequency({self.variable}):",
+            f"def angular_frequency({', '.join(arguments)}):",
             '    """A law of the frequency."""',
             *lines,
             f"    return {python(law.formula)}",

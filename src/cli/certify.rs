@@ -327,7 +327,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
     // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
-    if ode == json::EQUATION_ON_A_RANGE {
+    if json::EQUATIONS_ON_A_RANGE.contains(&ode.as_str()) {
         let document: LawCertificateDocument =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
         let law = document.read().map_err(|error| unread(&error))?;

@@ -129,7 +129,7 @@ impl EquationArguments {
 }
 
 /// The names of the conventions, and the convention of each.
-fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
+pub(super) fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
     let names = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic]
         .map(AmplitudeConvention::name);
     let unknown = || "no convention of this name".to_owned();

@@ -3,23 +3,27 @@
 use std::path::Path;
 
 use crate::catalog;
-use crate::certificate::LawQuantity;
+use crate::certificate::{LawQuantity, restitution};
+use crate::coupled::CoupledEquations;
 use crate::exact::Rational;
 use crate::export::{code, json, shortest as drawing};
 use crate::expr::Expr;
-use crate::problem::ReadingCommand;
+use crate::modes::{ModeError, ModeOptions, derive};
+use crate::problem::{Problem, ReadingCommand};
 use crate::report::{self, ShortestReport};
 use crate::shortest::{
-    Atom, Front, LawProblem, PublishedFormula, SearchOptions, ShortestError, search,
+    Atom, Front, LawMotion, LawProblem, PublishedFormula, SearchOptions, ShortestError, search,
 };
+use crate::solution::AmplitudeConvention;
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
 use clap::Args;
 
 use super::answer::{Answer, Draw, no_such};
-use super::derive::{exact_values, formula, oscillator};
+use super::derive::{as_meant, convention, exact_values, formula, oscillator};
 use super::files::width;
-use super::problem::{expression, problem};
+use super::modes::{free_system, refused};
+use super::problem::{coupled_equations, expression, problem};
 use super::progress::with_progress;
 use super::{Common, Failure, Format, Outcome, Work, json_text, session};
 
@@ -37,9 +41,16 @@ pub struct ShortestArguments {
     /// The largest relative error that is allowed, 0.001 say; without it the whole front
     #[arg(long, value_name = "R", value_parser = super::positive, allow_hyphen_values = true)]
     error: Option<f64>,
-    /// What the law gives: omega, omega^2, or T, the period over 2 pi
-    #[arg(long, value_parser = ["omega", "omega^2", "T"], default_value = "omega")]
+    /// What the law gives: omega, omega^2, T, the period over 2 pi, or contact-time, the duration of a
+    /// contact x'' + k*x^n*(1 + c*x') = 0 over that without damping
+    #[arg(long, value_parser = ["omega", "omega^2", "T", "contact-time"], default_value = "omega")]
     quantity: String,
+    /// Which normal mode of coupled equations, 1 for the slowest
+    #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
+    mode: Option<u32>,
+    /// What the amplitude of a mode measures
+    #[arg(long, value_parser = convention())]
+    amplitude: Option<AmplitudeConvention>,
     /// The value of another parameter, exact (1.5, 3/2); of the amplitude where a parameter varies
     /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE,...")]
@@ -55,6 +66,9 @@ pub struct ShortestArguments {
     /// variable, 0 for the frequency at rest alone
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     exact_at_rest: Option<u32>,
+    /// Keep laws that grow as this power of the variable towards infinity, 1/2 say, whatever the range
+    #[arg(long, value_name = "POWER", allow_hyphen_values = true)]
+    growth: Option<String>,
     /// With JSON: the certificate of the law, which `check` reads, in place of the laws
     #[arg(long)]
     certificate: bool,
@@ -123,20 +137,105 @@ fn run(arguments: &ShortestArguments) -> Result<Outcome, Failure> {
     Ok(Outcome { verdict: report.verdict(), partial: front.is_partial, ..outcome })
 }
 
+/// What varies, and the ends of its range; `None` for infinity.
+type Range = (Expr, Rational, Option<Rational>);
+
 /// The laws by length.
 fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     let problem = problem(&arguments.problem)?;
-    let typed = formula(&problem, ReadingCommand::Shortest)?;
+    let range = range(&arguments.range)?;
+    let is_contact = quantity(arguments) == LawQuantity::ContactTime;
+    if let Some(equations) = coupled_equations(&problem, ReadingCommand::Shortest)? {
+        if is_contact {
+            return Err(Failure::Usage(
+                "--quantity contact-time: a contact has one coordinate".to_owned(),
+            ));
+        }
+        return front_of_mode(arguments, equations, &problem, range);
+    }
+    for (option, given) in
+        [("--mode", arguments.mode.is_some()), ("--amplitude", arguments.amplitude.is_some())]
+    {
+        if given {
+            return Err(Failure::Usage(format!(
+                "{option}: it is of the modes of coupled equations"
+            )));
+        }
+    }
+    match is_contact {
+        true => front_of_contact(arguments, &problem, range),
+        false => front_of_motion(arguments, &problem, range),
+    }
+}
+
+fn refuse(error: ShortestError) -> Failure {
+    match &error {
+        ShortestError::Unknown(name) => Failure::Usage(format!("--at {name}: {error}")),
+        _ => Failure::refused(&error, error.help()).of_kind(&error),
+    }
+}
+
+/// The laws of the duration of a contact.
+fn front_of_contact(
+    arguments: &ShortestArguments,
+    problem: &Problem,
+    (varying, from, to): Range,
+) -> Result<Front, Failure> {
+    let oscillator = oscillator(&formula(problem, ReadingCommand::Shortest)?, None)?;
+    let values = exact_values(&arguments.at, Ok(Values::default()))?.unwrap_or_default();
+    let range = (&from, to.as_ref());
+    let problem = LawProblem::of_contact(&oscillator, &varying, range, &values).map_err(refuse)?;
+    searched(arguments, problem, &[])
+}
+
+/// The laws of the backbone of a normal mode.
+fn front_of_mode(
+    arguments: &ShortestArguments,
+    equations: CoupledEquations,
+    problem: &Problem,
+    (varying, from, to): Range,
+) -> Result<Front, Failure> {
+    let number = arguments.mode.ok_or_else(|| {
+        Failure::Usage("--mode: coupled equations have several modes: add --mode 1".to_owned())
+    })?;
+    let refused = |error: ModeError| refused(&error, problem.equation.as_deref());
+    let system = free_system(equations, problem)?;
+    let letters = system.letters;
+    let _letters = letters.in_force();
+    let own: Vec<Symbol> = varying.symbols().into_iter().collect();
+    let of_file = problem.values_of_motion().map(|values| values.split(&own).1);
+    let values = exact_values(&arguments.at, of_file)?.unwrap_or_default();
+    let values = as_meant(&values, |name| system.resolve(name))?;
+    let (values, others) = values.split(&system.equations.parameters);
+    if let Some((name, _)) = others.iter().next() {
+        return Err(refuse(ShortestError::Unknown(name)));
+    }
+    let system = system.with_values(&values).map_err(refused)?;
+    let options = ModeOptions {
+        mode: Some(number as usize),
+        amplitude: arguments.amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic),
+        supervision: session::supervision(),
+        ..ModeOptions::default()
+    };
+    let modes = derive(&system, &options).map_err(refused)?;
+    let range = (&from, to.as_ref());
+    let problem = LawProblem::of_mode(&modes, number as usize, &varying, range).map_err(refuse)?;
+    searched(arguments, problem, &[])
+}
+
+/// The laws of free motions of one coordinate.
+fn front_of_motion(
+    arguments: &ShortestArguments,
+    problem: &Problem,
+    range: Range,
+) -> Result<Front, Failure> {
+    let typed = formula(problem, ReadingCommand::Shortest)?;
     let oscillator = oscillator(&typed, None)?;
-    let (varying, from, to) = range(&arguments.range)?;
+    let (varying, from, to) = range;
     // The range takes the place of a value of the file.
     let ranged: Vec<Symbol> = varying.symbols().into_iter().collect();
     let of_file = problem.values_of_motion().map(|values| values.split(&ranged).1);
     let values = exact_values(&arguments.at, of_file)?.unwrap_or_default();
-    let refuse = |error: ShortestError| match &error {
-        ShortestError::Unknown(name) => Failure::Usage(format!("--at {name}: {error}")),
-        _ => Failure::refused(&error, error.help()).of_kind(&error),
-    };
     let own = oscillator.with_own_names_apart()?;
     let own_letters = own.letters();
     let resolved = |name: Symbol| own_letters.resolve(name, &own.parameters);
@@ -147,29 +246,50 @@ fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     for (name, value) in values.iter() {
         own_values.insert(resolved(name), value.clone())?;
     }
-    let letters = own_letters.in_force();
+    let _letters = own_letters.in_force();
     let problem =
         LawProblem::new(&own, &varying, (&from, to.as_ref()), &own_values).map_err(refuse)?;
-    let quantity = match arguments.quantity.as_str() {
-        "omega^2" => LawQuantity::FrequencySquared,
-        "T" => LawQuantity::Period,
-        _ => LawQuantity::Frequency,
-    };
+    let published = published(typed.equation, &problem, &values);
+    searched(arguments, problem, &published)
+}
+
+/// The laws of a problem, with published formulas beside them.
+fn searched(
+    arguments: &ShortestArguments,
+    problem: LawProblem,
+    published: &[PublishedFormula],
+) -> Result<Front, Failure> {
     let options = SearchOptions {
-        quantity,
+        quantity: quantity(arguments),
         atoms: atoms(arguments, &problem)?,
         longest: arguments.longest as usize,
         exact_at_rest: arguments.exact_at_rest,
-        published: published(typed.equation, &problem, &values),
+        growth: arguments.growth.as_deref().map(growth).transpose()?,
     };
     let supervision = session::supervision();
     let found = with_progress("of the search", || search(problem, &options, supervision));
-    drop(letters);
-    found.map_err(refuse)
+    Ok(found.map_err(refuse)?.beside(published))
+}
+
+/// The quantity that is asked for.
+fn quantity(arguments: &ShortestArguments) -> LawQuantity {
+    match arguments.quantity.as_str() {
+        "omega^2" => LawQuantity::FrequencySquared,
+        "T" => LawQuantity::Period,
+        "contact-time" => LawQuantity::ContactTime,
+        _ => LawQuantity::Frequency,
+    }
+}
+
+/// The power of growth that is asked for.
+fn growth(text: &str) -> Result<Rational, Failure> {
+    let value = expression(text).ok().and_then(|value| value.as_number().cloned());
+    let wrong = || Failure::Usage(format!("--growth {text}: expected a number such as 1/2 or -1"));
+    value.ok_or_else(wrong)
 }
 
 /// The variable quantity and the ends of its range; `None` for infinity.
-fn range(text: &str) -> Result<(Expr, Rational, Option<Rational>), Failure> {
+fn range(text: &str) -> Result<Range, Failure> {
     let form = || {
         Failure::Usage(format!(
             "--range {text}: expected NAME=FROM:TO, such as A=0:2.8, eps=0:10 or eps*A^2=0:inf"
@@ -196,12 +316,20 @@ fn atoms(arguments: &ShortestArguments, problem: &LawProblem) -> Result<Vec<Atom
     if arguments.atom.is_empty() {
         return Ok(vec![]);
     }
-    let mut atoms = vec![Atom { name: problem.variable, meaning: Expr::from(problem.variable) }];
-    let mut taken = vec![problem.variable, problem.oscillator.coordinate];
+    let own = Expr::from(problem.variable);
+    let mut atoms = vec![Atom { name: problem.variable, meaning: Some(own) }];
+    let mut taken = problem.coordinates();
+    taken.extend([problem.variable, restitution()]);
     for text in &arguments.atom {
         let meaning =
             expression(text).map_err(|error| Failure::Usage(format!("--atom {text}: {error}")))?;
         if meaning.as_symbol() == Some(problem.variable) {
+            continue;
+        }
+        if matches!(problem.motion, LawMotion::Contact { .. })
+            && meaning.as_symbol() == Some(restitution())
+        {
+            atoms.push(Atom { name: restitution(), meaning: None });
             continue;
         }
         if meaning.symbols().into_iter().ne([problem.variable]) {
@@ -210,7 +338,7 @@ fn atoms(arguments: &ShortestArguments, problem: &LawProblem) -> Result<Vec<Atom
         }
         let name: Symbol = fresh("c", &taken);
         taken.push(name);
-        atoms.push(Atom { name, meaning });
+        atoms.push(Atom { name, meaning: Some(meaning) });
     }
     Ok(atoms)
 }

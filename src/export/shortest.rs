@@ -45,7 +45,7 @@ pub fn picture(report: &ShortestReport) -> Result<String, FigureError> {
     let along: Vec<(f64, f64)> =
         along.iter().map(|(place, error)| (*place, 100.0 * error)).collect();
     let is_infinite = front.problem.to.is_none();
-    let variable = front.problem.variable.to_string();
+    let variable = front.problem.abscissa().to_string();
     let label = report.shown().map(|law| law.formula.to_string()).unwrap_or_default();
     let positive: Vec<(f64, f64)> =
         along.into_iter().filter(|(place, _)| !is_infinite || *place > 1e-3).collect();

@@ -1,10 +1,12 @@
 //! The shortest frequency law within an error on a range, and the front of length against error.
 
 use super::{Block, Document, size_in_percent};
-use crate::certificate::{LawCertificate, LawError, StartOfLaw};
+use crate::certificate::{LawCertificate, LawError, LawQuantity, StartOfLaw, restitution};
 use crate::decimal::{decimal, significant};
+use crate::exact::Rational;
 use crate::exact::rational::to_f64;
-use crate::shortest::{Front, ShortLaw};
+use crate::shortest::{Front, LawMotion, ShortLaw};
+use crate::solution::AmplitudeConvention;
 use crate::symbol::letters::FREQUENCY;
 use crate::verify::Verdict;
 
@@ -24,7 +26,7 @@ pub struct ShortestReport<'a> {
 impl<'a> ShortestReport<'a> {
     /// A report of a front.
     pub fn new(front: &'a Front, error: Option<f64>) -> Self {
-        let equation = format!("{} = 0", front.problem.oscillator.residual);
+        let equation = front.problem.equation.clone();
         let mut report = Self { front, error, equation, lines: vec![] };
         let law = report.shown();
         report.lines = law.map_or_else(Vec::new, |law| report.lines_of(law));
@@ -62,7 +64,7 @@ impl<'a> ShortestReport<'a> {
         let letters = law.formula.expression().map(|law| law.symbols()).unwrap_or_default();
         let used = self.front.atoms.iter().filter(|atom| letters.contains(&atom.name));
         for atom in used.filter(|atom| atom.name != problem.variable) {
-            lines.push(format!("{} = {}", atom.name, atom.meaning));
+            lines.extend(atom.meaning.iter().map(|meaning| format!("{} = {meaning}", atom.name)));
         }
         lines.extend(
             problem.meaning.iter().map(|meaning| format!("{} = {meaning}", problem.variable)),
@@ -73,24 +75,47 @@ impl<'a> ShortestReport<'a> {
     /// The range in words.
     pub fn range(&self) -> String {
         let problem = &self.front.problem;
-        let from = decimal(to_f64(&problem.from));
-        match &problem.to {
-            Some(to) => format!("{from} <= {} <= {}", problem.variable, decimal(to_f64(to))),
+        let number = |end: &Rational| decimal(to_f64(end));
+        let from = number(&problem.from);
+        let own = match &problem.to {
+            Some(to) => format!("{from} <= {} <= {}", problem.variable, number(to)),
             None => format!("{} >= {from}", problem.variable),
+        };
+        match &problem.motion {
+            LawMotion::Contact { restitution: Some([from, to]), .. } => {
+                let e = restitution();
+                format!("{} <= {e} <= {}, that is {own}", number(from), number(to))
+            }
+            _ => own,
         }
     }
 
     /// The motion in words.
     fn motion(&self) -> String {
         let problem = &self.front.problem;
-        let x = problem.oscillator.coordinate;
-        let amplitude = match (&problem.start, &problem.meaning) {
-            (None, _) => return format!("limit cycle, {}", self.range()),
-            (Some(StartOfLaw::Variable), _) => problem.variable.to_string(),
-            (Some(StartOfLaw::Fixed(_)), Some(_)) => "A".to_owned(),
-            (Some(StartOfLaw::Fixed(start)), None) => start.to_string(),
-        };
-        format!("released at rest from {x}(0) = {amplitude}, {}", self.range())
+        let range = self.range();
+        match &problem.motion {
+            LawMotion::Free { oscillator, start, .. } => {
+                let amplitude = match (start, &problem.meaning) {
+                    (None, _) => return format!("limit cycle, {range}"),
+                    (Some(StartOfLaw::Variable), _) => problem.variable.to_string(),
+                    (Some(StartOfLaw::Fixed(_)), Some(_)) => "A".to_owned(),
+                    (Some(StartOfLaw::Fixed(start)), None) => start.to_string(),
+                };
+                format!("released at rest from {}(0) = {amplitude}, {range}", oscillator.coordinate)
+            }
+            LawMotion::Contact { .. } => format!(
+                "touched with the speed v, {} the coefficient of restitution, T_0 the duration without damping, {range}",
+                restitution()
+            ),
+            LawMotion::Mode { mode, .. } => {
+                let measure = match mode.amplitude {
+                    AmplitudeConvention::Initial => "the start of the first coordinate",
+                    AmplitudeConvention::FirstHarmonic => "the amplitude of the first harmonic",
+                };
+                format!("normal mode {}, {} {measure}, {range}", mode.number, problem.variable)
+            }
+        }
     }
 }
 
@@ -186,8 +211,13 @@ pub fn law_certificate<'a>(certificate: &LawCertificate, error: &LawError) -> Do
         None => format!("{} >= {}", certificate.variable, certificate.from),
     };
     let upper = certificate.claim.each_ref().map(|end| 100.0 * to_f64(end))[1];
+    let is_contact = certificate.quantity == LawQuantity::ContactTime;
+    let motion = match is_contact {
+        true => format!("touched with x' = {start}, {} the restitution", restitution()),
+        false => format!("from rest at x(0) = {start}"),
+    };
     let facts = vec![
-        ("motion", format!("x'' + f = 0, f = {}, from rest at x(0) = {start}", certificate.force)),
+        ("motion", format!("x'' + f = 0, f = {}, {motion}", certificate.force)),
         ("law", format!("{} = {}", certificate.quantity.name(), certificate.law)),
         ("range", range),
         (
@@ -201,7 +231,10 @@ pub fn law_certificate<'a>(certificate: &LawCertificate, error: &LawError) -> Do
         ),
         ("at", format!("{} = {}", certificate.variable, decimal(to_f64(&certificate.worst)))),
     ];
-    let question = Block::Note(format!("a law of {FREQUENCY} on a range"));
+    let question = Block::Note(match is_contact {
+        true => "a law of the duration of contacts on a range".to_owned(),
+        false => format!("a law of {FREQUENCY} on a range"),
+    });
     Document {
         sections: vec![
             vec![question],

@@ -2,14 +2,18 @@
 //!
 //! omega of the pendulum is the arithmetic-geometric mean of 1 and cos(A/2), that of `x'' + x + s x^3 = 0`
 //! released from 1 `sqrt(1 + s)` times that of 1 and `sqrt(1 - m)`, `m = s/(2 (1 + s))` (DLMF 19.8.5, 22.19).
+//! Contacts are measured by the closed form of Hunt and Crossley in the phase plane.
 
 use std::collections::BTreeMap;
 
-use lindstedt::certificate::{LawQuantity, check_law};
-use lindstedt::exact::Rational;
+use lindstedt::certificate::{LawQuantity, check_law, restitution};
 use lindstedt::exact::rational::to_f64;
+use lindstedt::exact::{Integer, Rational};
+use lindstedt::impact::contact::{HuntCrossley, PowerLaw};
+use lindstedt::modes::{FreeSystem, ModeOptions, derive};
 use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 use lindstedt::shortest::{Front, LawProblem, SearchOptions, length, search};
+use lindstedt::solution::AmplitudeConvention;
 use lindstedt::{Oscillator, Supervision, Symbol};
 use lindstedt_expr::parallel::on_threads;
 
@@ -35,20 +39,25 @@ fn front(
     let at = "".parse().expect("no values");
     let problem =
         LawProblem::new(&oscillator, &varying, (&zero, to.as_ref()), &at).expect(equation);
-    let options =
-        SearchOptions { quantity, atoms: vec![], longest, exact_at_rest: None, published: vec![] };
-    search(problem, &options, Supervision::default()).expect(equation)
+    search(problem, &SearchOptions::new(quantity, longest), Supervision::default()).expect(equation)
 }
 
-/// Holds every proved bound against ten thousand values of the quantity.
+/// Holds every proved bound against many values of the quantity.
 fn remeasured(front: &Front, places: &[f64], truth: impl Fn(f64) -> f64) {
+    let places: Vec<[f64; 3]> = places.iter().map(|&place| [place, 1.0, truth(place)]).collect();
+    remeasured_at(front, &places);
+}
+
+/// Holds every proved bound against places, restitutions and true values there.
+fn remeasured_at(front: &Front, places: &[[f64; 3]]) {
     let variable: Symbol = front.problem.variable;
     for law in &front.laws {
         let (certificate, error) =
             law.proof.as_ref().unwrap_or_else(|reason| panic!("{}: {reason}", law.formula));
-        let measured = places.iter().map(|&place| {
-            let value = certificate.law.evaluate(&BTreeMap::from([(variable, place)]));
-            (value.expect("a value") / truth(place) - 1.0).abs()
+        let measured = places.iter().map(|&[place, e, truth]| {
+            let values = BTreeMap::from([(variable, place), (restitution(), e)]);
+            let value = certificate.law.evaluate(&values);
+            (value.expect("a value") / truth - 1.0).abs()
         });
         let largest = measured.fold(0.0, f64::max);
         let claims = certificate.claim.each_ref().map(to_f64);
@@ -89,13 +98,8 @@ fn laws_that_are_exact_at_rest() {
     let varying = "A".parse().expect("an expression");
     let at = "".parse().expect("no values");
     let problem = LawProblem::new(&pendulum, &varying, (&ends[0], Some(&ends[1])), &at);
-    let options = SearchOptions {
-        quantity: LawQuantity::Frequency,
-        atoms: vec![],
-        longest: 16,
-        exact_at_rest: Some(2),
-        published: vec![],
-    };
+    let options =
+        SearchOptions { exact_at_rest: Some(2), ..SearchOptions::new(LawQuantity::Frequency, 16) };
     let found =
         search(problem.expect("a problem"), &options, Supervision::default()).expect("laws");
     let last = found.laws.last().expect("a law");
@@ -131,6 +135,116 @@ fn laws_of_a_hardening_spring_to_infinity() {
     let homotopy = "sqrt((1 + 3*s/4)/2 + sqrt((1 + 3*s/4)^2 - 3*s^2/32)/2)";
     let within = found.shortest_within(6e-5).expect("a law").length;
     assert!(within <= length(homotopy), "{within}");
+}
+
+/// The contacts of an exponent for products of damping and speed: that product, the restitution, and the
+/// duration over that without damping.
+fn contacts(exponent: f64, products: impl Iterator<Item = f64>) -> Vec<[f64; 3]> {
+    let elastic = PowerLaw::new(exponent, 1.0, 1.0).expect("a contact").duration;
+    let contact = |s: f64| {
+        let contact = HuntCrossley::new(exponent, 1.0, s, 1.0).expect("a contact");
+        [s, contact.restitution, contact.duration / elastic]
+    };
+    products.map(contact).collect()
+}
+
+fn contact_front(force: &str, varying: &str, ends: [&str; 2], longest: usize) -> Front {
+    let equation = Oscillator::parse(&format!("x'' + {force} = 0")).expect(force);
+    let [from, to] = ends.map(|end| end.parse::<Rational>().expect("a fraction"));
+    let varying = varying.parse().expect("an expression");
+    let at = "".parse().expect("no values");
+    let problem = LawProblem::of_contact(&equation, &varying, (&from, Some(&to)), &at);
+    let options = SearchOptions::new(LawQuantity::ContactTime, longest);
+    search(problem.expect(force), &options, Supervision::default()).expect(force)
+}
+
+#[test]
+fn laws_of_the_time_of_a_contact() {
+    let hertz = "k*x^(3/2)*(1 + lambda*x')";
+    let found = contact_front(hertz, "e", ["1/5", "1"], 8);
+    let places = contacts(1.5, (0..=2000).map(|i| 4.919 * f64::from(i) / 2000.0));
+    remeasured_at(&found, &places);
+    // T/T_0 = 0.88 + 0.12/e or better, and the range of s reaches the restitution that is asked for.
+    assert!(found.laws.last().is_some_and(|law| law.largest_error() < 0.005));
+    let end = to_f64(found.problem.to.as_ref().expect("an end"));
+    let [_, e, _] = contacts(1.5, std::iter::once(end))[0];
+    assert!((0.199_99..=0.2).contains(&e), "{e}");
+    // Of a spring and of a cone, over the product and over the speed alone.
+    for (force, exponent) in [("x*(1 + lambda*x')", 1.0), ("4*max(x, 0)^2*(1 + lambda*x')", 2.0)] {
+        let found = contact_front(force, "lambda*v", ["0", "2"], 6);
+        let places = contacts(exponent, (0..=1000).map(|i| f64::from(i) / 500.0));
+        remeasured_at(&found, &places);
+    }
+    let found = contact_front("x^(3/2)*(1 + x'/4)", "v", ["1", "2"], 5);
+    let places = contacts(1.5, (0..=1000).map(|i| 0.25 + 0.25 * f64::from(i) / 1000.0));
+    let places: Vec<[f64; 3]> = places.into_iter().map(|[s, e, time]| [4.0 * s, e, time]).collect();
+    remeasured_at(&found, &places);
+    // Other claims are refused: half the error, and the same law for another exponent.
+    let (certificate, _) = found.laws.last().expect("a law").proof.as_ref().expect("a proof");
+    let mut smaller = certificate.clone();
+    smaller.claim[1] = &smaller.claim[1] / Integer::from(2);
+    let mut cone = certificate.clone();
+    cone.force = "x^4*(1 + x'/4)".parse().expect("a force");
+    let mut spring = certificate.clone();
+    spring.force = "x^(3/2)".parse().expect("a force");
+    for (other, words) in
+        [(smaller, "within its bound"), (cone, "within its bound"), (spring, "x^n*(1 + c*x')")]
+    {
+        let refusal = check_law(&other).expect_err(words).to_string();
+        assert!(refusal.contains(words), "{refusal}");
+    }
+}
+
+#[test]
+fn laws_of_the_backbone_of_a_mode() {
+    // Both masses move alike, as one on the ground.
+    let pair =
+        FreeSystem::parse("x'' + 2*x - y + x^3 = 0; y'' + 2*y - x + y^3 = 0").expect("a pair");
+    let options = ModeOptions {
+        mode: Some(1),
+        amplitude: AmplitudeConvention::Initial,
+        ..ModeOptions::default()
+    };
+    let modes = derive(&pair, &options).expect("modes");
+    let [from, to] = ["0", "2"].map(|end| end.parse::<Rational>().expect("a fraction"));
+    let varying = "A".parse().expect("an expression");
+    let problem = LawProblem::of_mode(&modes, 1, &varying, (&from, Some(&to))).expect("a problem");
+    let options = SearchOptions::new(LawQuantity::Frequency, 8);
+    let found = search(problem, &options, Supervision::default()).expect("laws");
+    let truth = |s: f64| (1.0 + s).sqrt() * mean(1.0, (1.0 - s / (2.0 * (1.0 + s))).sqrt());
+    for law in &found.laws {
+        let law_at = law.formula.expression().expect("an expression");
+        let error = |i: u32| {
+            let amplitude = f64::from(i) / 1000.0;
+            let value = law_at.evaluate(&BTreeMap::from([(Symbol::new("A"), amplitude)]));
+            (value.expect("a value") / truth(amplitude * amplitude) - 1.0).abs()
+        };
+        let largest = (1..=2000).map(error).fold(0.0, f64::max);
+        assert!((largest - law.error).abs() < 1e-5, "{}: {largest}, {}", law.formula, law.error);
+        assert!(law.proof.is_err());
+    }
+    assert!(found.laws.last().is_some_and(|law| law.error < 0.02));
+}
+
+#[test]
+fn laws_of_a_growth_that_is_asked_for() {
+    let oscillator = Oscillator::parse("x'' + x + x^3 = 0").expect("an equation");
+    let [from, to] = ["0", "3"].map(|end| end.parse::<Rational>().expect("a fraction"));
+    let (varying, at) = ("A".parse().expect("a name"), "".parse().expect("no values"));
+    let problem = LawProblem::new(&oscillator, &varying, (&from, Some(&to)), &at);
+    let options = SearchOptions {
+        growth: Some(Rational::from_integer(1.into())),
+        ..SearchOptions::new(LawQuantity::Frequency, 9)
+    };
+    let found =
+        search(problem.expect("a problem"), &options, Supervision::default()).expect("laws");
+    for law in &found.laws {
+        let law = law.formula.expression().expect("an expression");
+        let at = |amplitude: f64| law.evaluate(&BTreeMap::from([(Symbol::new("A"), amplitude)]));
+        let [near, far] = [1e8, 1e9].map(|amplitude| at(amplitude).expect("a value"));
+        assert!((far / near - 10.0).abs() < 1e-3, "{law}");
+    }
+    assert!(found.laws.last().is_some_and(|law| law.error < 0.02 && law.proof.is_ok()));
 }
 
 #[test]

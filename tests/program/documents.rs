@@ -26,6 +26,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
+/// Whether a certificate is that of a law on a range.
+fn is_law(document: &Value) -> bool {
+    json::EQUATIONS_ON_A_RANGE.iter().any(|equation| document["ode"] == *equation)
+}
+
 /// Standard output of a run that must succeed.
 fn output(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
@@ -121,9 +126,7 @@ fn reads_back(document: &Value) {
         DocumentKind::Certificate if document["ode"] == json::EQUATION_OF_CYCLES => {
             again::<DampedCertificateDocument>(document)
         }
-        DocumentKind::Certificate if document["ode"] == json::EQUATION_ON_A_RANGE => {
-            again::<LawCertificateDocument>(document)
-        }
+        DocumentKind::Certificate if is_law(document) => again::<LawCertificateDocument>(document),
         DocumentKind::Certificate if document["ode"] == json::EQUATIONS_OF_MODES => {
             again::<ModeCertificateDocument>(document)
         }
@@ -311,7 +314,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_OF_CYCLES => {
             "/stability"
         }
-        Some("lindstedt/certificate/1") if document["ode"] == json::EQUATION_ON_A_RANGE => "",
+        Some("lindstedt/certificate/1") if is_law(document) => "",
         Some("lindstedt/certificate/1") => "/formula",
         Some("lindstedt/motion-sweep/1") => "/motions/0/final_state",
         Some("lindstedt/primary-sweep/1") => "/rows/0",

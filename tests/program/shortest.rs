@@ -94,6 +94,39 @@ fn a_certificate_is_checked_and_a_false_one_refused() {
     let _ = std::fs::remove_file(&file);
 }
 
+const CONTACT: [&str; 8] = [
+    "shortest",
+    "x'' + k*x^(3/2)*(1 + lambda*x') = 0",
+    "--quantity",
+    "contact-time",
+    "--range",
+    "e=0.3:1",
+    "--longest",
+    "7",
+];
+
+#[test]
+fn laws_of_contacts_and_of_modes() {
+    in_snapshots(|| {
+        insta::assert_snapshot!("shortest-contact", printed(&CONTACT));
+        let mode = ["shortest", PAIR, "--mode", "2", "--range", "a=0:2", "--longest", "8"];
+        insta::assert_snapshot!("shortest-mode", printed(&mode));
+    });
+    let code = printed(&[&CONTACT[..], &["--format", "python"]].concat());
+    assert!(code.contains("def contact_time_ratio(e):"), "{code}");
+    // The certificate is checked again, and not as one of an oscillator.
+    let file = std::env::temp_dir().join(format!("lindstedt-contact-{}.json", std::process::id()));
+    let name = file.to_str().expect("a path in text");
+    let certificate = printed(&[&CONTACT[..], &["--certificate", "--format", "json"]].concat());
+    std::fs::write(&file, &certificate).expect("a file");
+    let text = printed(&["check", name]);
+    assert!(text.contains("T/T_0 = ") && text.contains("for every s of the range"), "{text}");
+    std::fs::write(&file, certificate.replace("x''+f(x,x')=0", "x''+f(x,p)=0")).expect("a file");
+    let output = run(&["check", name]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("`ode` should hold"));
+    let _ = std::fs::remove_file(&file);
+}
+
 #[test]
 fn a_parameter_may_have_the_letter_of_the_amplitude() {
     let question = ["shortest", "x'' + A*x + x^3 = 0", "--range", "C=0:1", "--at", "A=1"];
@@ -101,6 +134,9 @@ fn a_parameter_may_have_the_letter_of_the_amplitude() {
     assert!(text.contains("released at rest from x(0) = C, 0 <= C <= 1"), "{text}");
     assert!(text.contains("%  proved"), "{text}");
 }
+
+const PAIR: &str = "x'' + 2*x - y + x^3 = 0; y'' + 2*y - x + y^3 = 0";
+const HERTZ: &str = "x'' + x^(3/2)*(1 + lambda*x') = 0";
 
 #[test]
 fn what_no_law_is_searched_for_says_why() {
@@ -136,6 +172,44 @@ fn what_no_law_is_searched_for_says_why() {
             "no coefficients that are fractions",
         ),
         (vec!["pendulum", "--range", "A=0:1", "--certificate"], 2, "add --format json"),
+        (vec!["pendulum", "--range", "A=0:1", "--mode", "1"], 2, "--mode: it is of the modes"),
+        (vec!["pendulum", "--range", "A=0:1", "--amplitude", "initial"], 2, "--amplitude: it is"),
+        (vec!["pendulum", "--range", "A=0:1", "--growth", "much"], 2, "expected a number"),
+        (vec![PAIR, "--range", "a=0:1"], 2, "add --mode 1"),
+        (vec![PAIR, "--mode", "3", "--range", "a=0:1"], 1, "mode"),
+        (vec![PAIR, "--mode", "1", "--range", "x=0:1"], 1, "of a mode the amplitude `a` varies"),
+        (vec![PAIR, "--mode", "1", "--range", "a=0:1", "--at", "q=1"], 2, "--at q"),
+        (
+            vec![PAIR, "--mode", "1", "--range", "a=0:1", "--quantity", "contact-time"],
+            2,
+            "one coordinate",
+        ),
+        (
+            vec!["pendulum", "--quantity", "contact-time", "--range", "e=0.5:1"],
+            1,
+            "needs a force k*x^n*(1 + c*x')",
+        ),
+        (
+            vec![HERTZ, "--quantity", "contact-time", "--range", "e=0.5:2"],
+            1,
+            "that of its restitution at one",
+        ),
+        (vec![HERTZ, "--quantity", "contact-time", "--range", "lambda=0:2"], 1, "add --at v=1"),
+        (
+            vec![HERTZ, "--quantity", "contact-time", "--range", "k=0:2"],
+            1,
+            "write --range \"lambda*v=0:5\"",
+        ),
+        (
+            vec![HERTZ, "--quantity", "contact-time", "--range", "lambda*v=0:inf"],
+            1,
+            "ends at a number",
+        ),
+        (
+            vec![HERTZ, "--quantity", "contact-time", "--range", "e=0.5:1", "--at", "q=1"],
+            2,
+            "--at q",
+        ),
         (vec!["damped-pendulum", "--range", "A=0:1", "--at", "zeta=0.1"], 1, "without damping"),
         (vec!["pendulum", "--range", "A=0:1", "--error", "-1"], 2, "expected a positive number"),
     ] {

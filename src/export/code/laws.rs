@@ -4,6 +4,7 @@ use super::program::lines_of;
 use super::{NoCode, Program, Routine, Statement, Value};
 use crate::certificate::LawQuantity;
 use crate::report::{Block, Document, ShortestReport};
+use crate::shortest::Atom;
 
 /// The program of the law that is shown first.
 ///
@@ -18,15 +19,23 @@ pub(super) fn program(report: &ShortestReport, document: &Document) -> Result<Pr
     let variable = front.problem.variable;
     let atoms =
         front.atoms.iter().filter(|atom| atom.name != variable && letters.contains(&atom.name));
-    let body = atoms
-        .map(|atom| Statement::Variable(atom.name, Value::Expression(atom.meaning.clone())))
+    // The restitution of a contact is an argument of its own.
+    let (known, given): (Vec<&Atom>, Vec<&Atom>) = atoms.partition(|atom| atom.meaning.is_some());
+    let meanings = known.iter().filter_map(|atom| Some((atom.name, atom.meaning.clone()?)));
+    let body = meanings
+        .map(|(name, meaning)| Statement::Variable(name, Value::Expression(meaning)))
         .collect();
+    let own = std::iter::once(variable).filter(|name| given.is_empty() || letters.contains(name));
+    let arguments = own.chain(given.iter().map(|atom| atom.name)).collect();
     let (name, about) = match front.quantity {
         LawQuantity::Frequency => ("angular_frequency", "The angular frequency"),
         LawQuantity::FrequencySquared => {
             ("squared_frequency", "The square of the angular frequency")
         }
         LawQuantity::Period => ("period_over_two_pi", "The period over 2 pi"),
+        LawQuantity::ContactTime => {
+            ("contact_time_ratio", "The duration of a contact over that without damping")
+        }
     };
     // The table of all laws and the published ones are not of this program.
     let of_law = document.sections.iter().take(2).map(|section| {
@@ -38,7 +47,7 @@ pub(super) fn program(report: &ShortestReport, document: &Document) -> Result<Pr
         routines: vec![Routine {
             name: name.to_owned(),
             about: format!("{about} for {}", report.range()),
-            arguments: vec![variable],
+            arguments,
             body,
             result: Value::Expression(written),
         }],

@@ -15,17 +15,17 @@ use crate::exact::Rational;
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 
-/// The form of the equation in `ode`.
-pub const EQUATION_ON_A_RANGE: &str = "x''+f(x,p)=0";
+/// The forms of the equation in `ode`, that of a contact last.
+pub const EQUATIONS_ON_A_RANGE: [&str; 2] = ["x''+f(x,p)=0", "x''+f(x,x')=0"];
 
-/// The start where the variable is the amplitude.
+/// The start where the variable is the amplitude, or the speed at the touch.
 const VARIABLE: &str = "variable";
 
 /// A number has at most so many characters.
 const LONGEST_NUMBER: usize = 200;
 
-/// A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, and how far it
-/// is off. All numbers are text: integers, fractions such as `14/5`, decimals such as `0.0011`.
+/// A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, or a law of the
+/// duration of contacts, and how far it is off. All numbers are text: integers, fractions such as `14/5`, decimals such as `0.0011`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -34,18 +34,21 @@ pub struct LawCertificateDocument {
     #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Certificate.schema())))]
     pub schema: String,
     /// The equation that f belongs to.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION_ON_A_RANGE)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = EQUATIONS_ON_A_RANGE)))]
     pub ode: String,
-    /// The force, an expression in x, zero at x = 0, and in the variable where that is a parameter.
+    /// The force, an expression in x, zero at x = 0, and in the variable where that is a parameter; of a
+    /// contact `x^n*(1 + c*x')` with numbers.
     pub f: String,
     /// The name of the variable.
     pub variable: String,
-    /// x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a positive number.
+    /// x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a positive number; of a
+    /// contact x'(0), `variable`.
     pub start: String,
-    /// The quantity of the law: `omega`, `omega^2` or `T/(2*pi)`.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["omega", "omega^2", "T/(2*pi)"])))]
+    /// The quantity of the law: `omega`, `omega^2`, `T/(2*pi)`, or `T/T_0`, the duration of a contact over
+    /// that without damping.
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["omega", "omega^2", "T/(2*pi)", "T/T_0"])))]
     pub quantity: String,
-    /// The law, an expression in the variable.
+    /// The law, an expression in the variable; of a contact in its restitution e as well.
     pub law: String,
     /// The lower end of the range, not negative.
     pub from: String,
@@ -57,12 +60,20 @@ pub struct LawCertificateDocument {
     pub error: [String; 2],
 }
 
+/// The form of the equation for a quantity.
+const fn equation(quantity: LawQuantity) -> &'static str {
+    match quantity {
+        LawQuantity::ContactTime => EQUATIONS_ON_A_RANGE[1],
+        _ => EQUATIONS_ON_A_RANGE[0],
+    }
+}
+
 /// The document of a certificate.
 pub fn law_certificate(certificate: &LawCertificate) -> LawCertificateDocument {
     let error = certificate.claim.each_ref();
     LawCertificateDocument {
         schema: DocumentKind::Certificate.schema().to_owned(),
-        ode: EQUATION_ON_A_RANGE.to_owned(),
+        ode: equation(certificate.quantity).to_owned(),
         f: certificate.force.to_string(),
         variable: certificate.variable.name().to_owned(),
         start: match &certificate.start {
@@ -85,9 +96,6 @@ impl LawCertificateDocument {
     /// A key that holds what it never holds.
     pub fn read(&self) -> Result<LawCertificate, JsonError> {
         check_kind(&self.schema, DocumentKind::Certificate)?;
-        if self.ode != EQUATION_ON_A_RANGE {
-            return unexpected("ode", EQUATION_ON_A_RANGE);
-        }
         let number = |key: &str, text: &str| -> Result<Rational, JsonError> {
             let value =
                 (text.len() <= LONGEST_NUMBER).then(|| parse_expression(text).ok()).flatten();
@@ -103,12 +111,13 @@ impl LawCertificateDocument {
         if !begins || !self.variable.chars().all(is_name) || self.variable.len() > LONGEST_NUMBER {
             return unexpected("variable", "a name");
         }
-        let quantities =
-            [LawQuantity::Frequency, LawQuantity::FrequencySquared, LawQuantity::Period];
-        let quantity = quantities.into_iter().find(|own| own.name() == self.quantity);
+        let quantity = LawQuantity::ALL.into_iter().find(|own| own.name() == self.quantity);
         let Some(quantity) = quantity else {
-            return unexpected("quantity", "`omega`, `omega^2` or `T/(2*pi)`");
+            return unexpected("quantity", "`omega`, `omega^2`, `T/(2*pi)` or `T/T_0`");
         };
+        if self.ode != equation(quantity) {
+            return unexpected("ode", equation(quantity));
+        }
         let [lower, upper] = &self.error;
         let claim = [number("error", lower)?, number("error", upper)?];
         if claim.iter().any(Rational::is_negative) {

@@ -10,7 +10,7 @@ use crate::certificate::StartOfLaw;
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::report::ShortestReport;
-use crate::shortest::{MeasuredFormula, ShortLaw};
+use crate::shortest::{LawMotion, MeasuredFormula, ShortLaw};
 
 /// The best frequency laws on a range: for each length the one with the smallest largest error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,21 +18,25 @@ use crate::shortest::{MeasuredFormula, ShortLaw};
 pub struct ShortestDocument {
     /// The kind of document.
     pub schema: String,
-    /// The equation of motion, `... = 0`, with numbers for all but the variable.
+    /// The equation of motion, `... = 0`, with numbers for all but the variable; of modes all equations,
+    /// separated by `;`.
     pub equation: String,
     /// The name of the variable.
     pub variable: String,
     /// The product that the variable stands for, `eps*A^2` say; null for the amplitude or a parameter.
     pub meaning: Option<String>,
-    /// The amplitude where a parameter varies; null where the amplitude does, and for limit cycles.
+    /// The amplitude where a parameter varies; null where the amplitude does, for limit cycles and contacts.
     pub amplitude: Option<Constant>,
     /// The lower end of the range.
     pub from: Constant,
     /// The upper end; null for infinity.
     pub to: Option<Constant>,
-    /// The quantity of the laws: `omega`, `omega^2` or `T/(2*pi)`.
+    /// The number of the normal mode; null for one coordinate.
+    pub mode: Option<usize>,
+    /// The quantity of the laws: `omega`, `omega^2`, `T/(2*pi)` or `T/T_0`.
     pub quantity: String,
-    /// The names in the laws besides the variable, each with its meaning.
+    /// The names in the laws besides the variable, each with its meaning in it; `restitution` for the
+    /// coefficient of restitution of a contact.
     pub atoms: Map<String>,
     /// The number of the shortest law within that error, counted from zero; null where none is, and the
     /// last one without an error.
@@ -71,7 +75,7 @@ pub struct ShortLawDocument {
 pub struct PublishedFormulaDocument {
     /// The formula.
     pub formula: String,
-    /// Its quantity: `omega`, `omega^2` or `T/(2*pi)`.
+    /// Its quantity: `omega`, `omega^2`, `T/(2*pi)` or `T/T_0`.
     pub quantity: String,
     /// The publication.
     pub source: String,
@@ -96,7 +100,11 @@ pub fn shortest(report: &ShortestReport) -> ShortestDocument {
         equation: report.equation.clone(),
         variable: front.problem.variable.to_string(),
         meaning: front.problem.meaning.as_ref().map(ToString::to_string),
-        amplitude: match &front.problem.start {
+        mode: match &front.problem.motion {
+            LawMotion::Mode { mode, .. } => Some(mode.number),
+            _ => None,
+        },
+        amplitude: match front.problem.start() {
             Some(StartOfLaw::Fixed(start)) if front.problem.meaning.is_none() => {
                 Some(constant(start))
             }
@@ -105,7 +113,10 @@ pub fn shortest(report: &ShortestReport) -> ShortestDocument {
         from: constant(&front.problem.from),
         to: front.problem.to.as_ref().map(constant),
         quantity: front.quantity.name().to_owned(),
-        atoms: named(atoms.map(|atom| (&atom.name, atom.meaning.to_string()))),
+        atoms: named(atoms.map(|atom| {
+            let meaning = atom.meaning.as_ref().map(ToString::to_string);
+            (&atom.name, meaning.unwrap_or_else(|| "restitution".to_owned()))
+        })),
         chosen: report.chosen(),
         laws: front.laws.iter().map(law).collect(),
         published: front.published.iter().map(published).collect(),

@@ -17,6 +17,8 @@
 //! in the middle, and intervals are halved until that is within the claim; a range to infinity ends with
 //! pieces of `r = 1/p`, in which the powers of r are kept apart.
 //!
+//! The duration of a contact is such a mean too: see `contact`.
+//!
 //! In: a force, a law, a range and a claim. Out: bounds of the largest `|q - 1|`. A piece costs some
 //! seventeen series of `G^(-1/2)`, an interval the law and a polynomial of degree 15; there are the more
 //! intervals the smaller the error is, as its root.
@@ -25,6 +27,7 @@
 //! Approximation Theory and Approximation Practice, SIAM 2013, chapter 11, for the remainder (Hermite's
 //! integral); R. E. Moore, Interval Analysis, Prentice-Hall 1966, chapter 6, for the mean value form.
 
+mod contact;
 mod inverse_frequency;
 mod jet;
 
@@ -41,7 +44,9 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::interrupt::Supervision;
 use crate::symbol::Symbol;
-use inverse_frequency::{ForceOnRange, TruthPiece};
+use contact::ContactMean;
+pub use contact::HuntCrossleyForce;
+use inverse_frequency::{ForceOnRange, PiecePolynomial, TruthPiece};
 use jet::{Jet, ScaledJet, Variable, law_along, widened};
 
 /// The quantity that a law gives.
@@ -53,26 +58,38 @@ pub enum LawQuantity {
     FrequencySquared,
     /// The period over 2 pi.
     Period,
+    /// The duration of a contact over that without damping and with the same speed at the touch.
+    ContactTime,
 }
 
 impl LawQuantity {
-    /// The power of omega that the quantity is.
+    /// The power of omega that the quantity is, or of T_0/T.
     pub const fn power(self) -> i32 {
         match self {
             Self::Frequency => 1,
             Self::FrequencySquared => 2,
-            Self::Period => -1,
+            Self::Period | Self::ContactTime => -1,
         }
     }
 
-    /// Its name: `omega`, `omega^2` or `T/(2*pi)`.
+    /// Its name: `omega`, `omega^2`, `T/(2*pi)` or `T/T_0`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Frequency => "omega",
             Self::FrequencySquared => "omega^2",
             Self::Period => "T/(2*pi)",
+            Self::ContactTime => "T/T_0",
         }
     }
+
+    /// All quantities.
+    pub const ALL: [Self; 4] =
+        [Self::Frequency, Self::FrequencySquared, Self::Period, Self::ContactTime];
+}
+
+/// The letter of the coefficient of restitution in the law of a contact.
+pub fn restitution() -> Symbol {
+    Symbol::new("e")
 }
 
 /// The start of the motion, at rest.
@@ -88,15 +105,16 @@ pub enum StartOfLaw {
 /// trusts none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawCertificate {
-    /// `f` of `x'' + f = 0`, in the symbol [`x`](coordinate) and the variable.
+    /// `f` of `x'' + f = 0`, in the symbol [`x`](coordinate) and the variable; of a contact
+    /// `x^n (1 + c x')`, with numbers.
     pub force: Expr,
-    /// The amplitude or the parameter on which the law depends.
+    /// The amplitude or the parameter on which the law depends; of a contact the speed at the touch.
     pub variable: Symbol,
     /// The start of the motion.
     pub start: StartOfLaw,
     /// The quantity.
     pub quantity: LawQuantity,
-    /// The law as an expression in the variable.
+    /// The law as an expression in the variable; of a contact in its [`restitution`] as well.
     pub law: Expr,
     /// The lower end of the range, not negative.
     pub from: Rational,
@@ -129,6 +147,11 @@ pub enum LawNotProved {
     /// Letters or ends that do not belong together.
     #[error("a proof on a range is of a force of the position and the variable alone: {0}")]
     Malformed(&'static str),
+    /// The force is not that of a contact that loses energy.
+    #[error(
+        "the time of a contact is proved for forces x^n*(1 + c*x') with a small fraction n and a number c: not for {0}"
+    )]
+    NoContact(String),
     /// A part of the force or of the law has no enclosure.
     #[error("`{0}` has no value over cosine series")]
     NoValue(String),
@@ -143,6 +166,9 @@ pub enum LawNotProved {
     /// The motion is a limit cycle.
     #[error("a proof on a range is of motions that conserve energy, not of a limit cycle")]
     LimitCycle,
+    /// The motion is one of several coordinates.
+    #[error("a proof on a range is of one coordinate, not of a mode of several")]
+    Mode,
     /// At this place the error is neither proved to be within the claim nor beyond it.
     #[error("at {0} the error is not proved to be within its bound")]
     Open(String),
@@ -205,10 +231,15 @@ impl LawCertificate {
             Some(to) => self.from < *to && self.worst <= *to,
             None => true,
         };
+        let is_contact = self.quantity == LawQuantity::ContactTime;
         let depends_on_variable = self.force.contains(self.variable);
+        let [of_force, of_law] = match is_contact {
+            true => [coordinate().derivative(), restitution()],
+            false => [self.variable; 2],
+        };
         let start = match &self.start {
             StartOfLaw::Variable => self.to.is_some() && !depends_on_variable,
-            StartOfLaw::Fixed(start) => start.is_positive(),
+            StartOfLaw::Fixed(start) => start.is_positive() && !is_contact,
         };
         let demands = [
             (
@@ -217,10 +248,17 @@ impl LawCertificate {
             ),
             (self.variable != coordinate(), "a variable that is the coordinate"),
             (
-                is_known(&self.force, &[coordinate(), self.variable]),
+                !is_contact || self.variable != restitution(),
+                "a variable with the letter of the restitution",
+            ),
+            (
+                is_known(&self.force, &[coordinate(), self.variable, of_force]),
                 "a force with letters that have no value",
             ),
-            (is_known(&self.law, &[self.variable]), "a law with letters that have no value"),
+            (
+                is_known(&self.law, &[self.variable, of_law]),
+                "a law with letters that have no value",
+            ),
             (
                 start,
                 "a start that is not positive, or an amplitude that goes to infinity or is a parameter",
@@ -256,6 +294,9 @@ impl TrueFrequency {
     ) -> Result<Self, LawNotProved> {
         let LawCertificate { force, variable, start, .. } = certificate;
         certificate.well_formed().map_err(LawNotProved::Malformed)?;
+        if certificate.quantity == LawQuantity::ContactTime {
+            return Self::of_contact(certificate, supervision);
+        }
         let at_zero = force.substitute(coordinate(), &Expr::zero())?.expand()?;
         if !at_zero.is_zero() {
             return Err(LawNotProved::NotCentred(force.to_string()));
@@ -275,6 +316,33 @@ impl TrueFrequency {
             }
         };
         Ok(Self { near, far, near_pieces, far_pieces })
+    }
+
+    /// T/T_0 and the restitution of the contact of a certificate.
+    fn of_contact(
+        certificate: &LawCertificate,
+        supervision: Supervision,
+    ) -> Result<Self, LawNotProved> {
+        let no_contact = || LawNotProved::NoContact(certificate.force.to_string());
+        let contact = HuntCrossleyForce::of(&certificate.force, coordinate())?;
+        let contact = contact.ok_or_else(no_contact)?;
+        let damping = contact.damping.as_number().ok_or_else(no_contact)?;
+        let mean = ContactMean::new(&contact.exponent, damping).ok_or_else(no_contact)?;
+        let near = ForceOnRange::of_contact(mean, certificate.variable)?;
+        let to = certificate.to.as_ref().ok_or_else(no_contact)?;
+        let near_pieces = near.pieces(&certificate.from, to, supervision)?;
+        Ok(Self { near, far: None, near_pieces, far_pieces: vec![] })
+    }
+
+    /// `1/omega` at a place of a bounded range, or T/T_0 and the restitution, to the digits of a double.
+    pub fn at(&self, place: f64) -> Option<[f64; 2]> {
+        let exact = from_f64(place)?;
+        let distance = |piece: &TruthPiece| (&exact - &piece.middle).abs() / &piece.half;
+        let piece = self.near_pieces.iter().min_by_key(|piece| distance(piece))?;
+        let e = WORKING.fraction(&((&exact - &piece.middle) / &piece.half));
+        let value = |own: &PiecePolynomial| WORKING.nearest(&own.at(&e, &piece.half).value);
+        let restitution = piece.restitution.as_ref().map_or(f64::NAN, value);
+        Some([value(&piece.truth), restitution])
     }
 
     /// The force in `r = 1/p`, times the power of r with which it has a value at zero.
@@ -322,10 +390,12 @@ impl TrueFrequency {
         let begins_at_rest = certificate.start == StartOfLaw::Variable && place.is_zero();
         let truth = match begins_at_rest {
             true => self.near.at_rest()?,
-            false => self.near.inverse_frequency(&place)?,
+            false => self.near.truth(&place)?,
         };
-        let truth = Jet::constant(truth);
-        let variable = Variable::at(&certificate.worst);
+        let mut truth = truth.into_iter().map(Jet::constant);
+        let mut variable = Variable::at(&certificate.worst);
+        let (truth, e) = (truth.next().ok_or_else(no_value)?, truth.next());
+        variable.restitution = e;
         let quotient =
             quotient(certificate, &self.near, &truth, &variable)?.ok_or_else(no_value)?;
         let error = WORKING.difference(&quotient.value, &WORKING.integer(1));
@@ -412,16 +482,21 @@ impl TruthPiece {
     ) -> Result<f64, LawNotProved> {
         let place = |e: &Rational| &self.middle + &self.half * e;
         let middle = (low + high) / Integer::from(2);
-        let of = |variable: &Variable, e: &Ball| {
-            let truth = self.inverse_frequency(e);
-            quotient(certificate, force, &truth, variable)
+        let of = |mut variable: Variable, e: &Ball| {
+            let truth = self.truth.at(e, &self.half);
+            // The restitution is some number within the remainder of its polynomial.
+            variable.restitution = self.restitution.as_ref().map(|own| {
+                let polynomial = own.at(e, &self.half);
+                Jet { value: widened(&polynomial.value, own.remainder), ..polynomial }
+            });
+            quotient(certificate, force, &truth, &variable)
         };
         let no_value = || LawNotProved::NoValue(certificate.law.to_string());
         let spread = Bound::of_fraction(&((high - low) / Integer::from(2)));
         let e = WORKING.fraction(&middle);
         let whole = Variable::between(&place(low), &place(high));
-        let whole = of(&whole, &widened(&e, spread))?.ok_or_else(no_value)?;
-        let there = of(&Variable::at(&place(&middle)), &e)?.ok_or_else(no_value)?;
+        let whole = of(whole, &widened(&e, spread))?.ok_or_else(no_value)?;
+        let there = of(Variable::at(&place(&middle)), &e)?.ok_or_else(no_value)?;
         let width = spread * Bound::of_fraction(&self.half);
         let by_slope = widened(&there.value, width * WORKING.magnitude(&whole.slope));
         let quotient = match by_slope.radius <= whole.value.radius {
@@ -429,24 +504,12 @@ impl TruthPiece {
             false => whole.value,
         };
         // The polynomial stands for the truth up to a relative error of the remainder.
-        let least = WORKING.distance_from_zero(&self.inverse_frequency(&widened(&e, spread)).value);
-        let apart = self.remainder.over(least);
+        let around = self.truth.at(&widened(&e, spread), &self.half).value;
+        let apart = self.truth.remainder.over(WORKING.distance_from_zero(&around));
         let factor = Jet::constant(widened(&WORKING.integer(1), apart));
         let power = Rational::from_integer(certificate.quantity.power().into());
         let factor = factor.to_power(&power).ok_or_else(no_value)?.value;
         let quotient = WORKING.product(&quotient, &factor);
         Ok(WORKING.magnitude(&WORKING.difference(&quotient, &WORKING.integer(1))).value())
-    }
-
-    /// The polynomial and its derivative by the variable.
-    fn inverse_frequency(&self, e: &Ball) -> Jet {
-        let (mut value, mut slope) = (Ball::zero(), Ball::zero());
-        for coefficient in self.coefficients.iter().rev() {
-            slope = WORKING.sum(&WORKING.product(&slope, e), &value);
-            value = WORKING.sum(&WORKING.product(&value, e), coefficient);
-        }
-        let slope = WORKING.quotient(&slope, &WORKING.fraction(&self.half));
-        let slope = slope.unwrap_or(Ball { middle: Integer::zero(), radius: Bound::UNKNOWN });
-        Jet { value, slope }
     }
 }

@@ -46,7 +46,8 @@ pub use damped::{
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use law_on_range::{
-    LawCertificate, LawError, LawNotProved, LawQuantity, StartOfLaw, TrueFrequency, check_law,
+    HuntCrossleyForce, LawCertificate, LawError, LawNotProved, LawQuantity, StartOfLaw,
+    TrueFrequency, check_law, restitution,
 };
 pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
 pub use radii_polynomial::{NotProved, Proof};

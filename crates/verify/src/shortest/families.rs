@@ -21,6 +21,8 @@ pub(super) struct ShortFunction {
     pub(super) formula: Formula,
     pub(super) length: usize,
     pub(super) values: Vec<f64>,
+    /// The power of the variable as which it grows towards infinity.
+    pub(super) growth: f64,
     /// The first coefficients of its power series in the variable, where laws are exact at rest; empty
     /// where they need not be, or where it has no series of fractions.
     pub(super) series: Vec<Rational>,
@@ -65,11 +67,8 @@ fn powers() -> Vec<Rational> {
         (1, 6),
         (1, 8),
         (-1, 8),
-        (3, 1),
     ];
-    let mut powers: Vec<Rational> = all.iter().map(|&(above, below)| ratio(above, below)).collect();
-    powers.dedup();
-    powers
+    all.iter().map(|&(above, below)| ratio(above, below)).collect()
 }
 
 /// The number of the shortest functions from which one, two and three are chosen.
@@ -215,10 +214,12 @@ fn sum(mut terms: Vec<Formula>) -> Formula {
     terms.fold(first, Formula::plus)
 }
 
-/// The structures with the smallest errors by length, for truths y at the places of the functions.
+/// The structures with the smallest errors by length, for truths y at the places of the functions; where a
+/// growth is given, of those that grow as that power of the variable.
 pub(super) fn structures(
     functions: &[ShortFunction],
     truth: &[f64],
+    growth: Option<f64>,
     longest: usize,
 ) -> Vec<Structure> {
     let one = vec![1.0; truth.len()];
@@ -238,7 +239,8 @@ pub(super) fn structures(
                     return None;
                 }
                 let length = cost + choice.length(functions);
-                if length > longest {
+                let grows = to_f64(&power) * choice.growth(functions);
+                if length > longest || growth.is_some_and(|asked| !is_same_growth(grows, asked)) {
                     return None;
                 }
                 let mut structure = Structure {
@@ -285,7 +287,21 @@ struct Choice {
     denominator: Vec<usize>,
 }
 
+/// Whether two powers of growth, measured at large numbers, are the same.
+pub(super) fn is_same_growth(one: f64, other: f64) -> bool {
+    (one - other).abs() < 1e-2
+}
+
 impl Choice {
+    /// The power of the variable as which the quotient grows towards infinity.
+    fn growth(&self, functions: &[ShortFunction]) -> f64 {
+        let largest = |chosen: &[usize], least: f64| {
+            chosen.iter().map(|&i| functions[i].growth).fold(least, f64::max)
+        };
+        let own = if self.has_constant { 0.0 } else { f64::NEG_INFINITY };
+        largest(&self.numerator, own) - largest(&self.denominator, 0.0)
+    }
+
     /// The length with constants of one digit: `3 + 5*u` over `1 + 7*v`.
     fn length(&self, functions: &[ShortFunction]) -> usize {
         let terms = |chosen: &[usize]| -> usize {

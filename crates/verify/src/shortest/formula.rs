@@ -165,10 +165,13 @@ impl Formula {
     pub fn times(self, number: &Rational) -> Self {
         match &self {
             _ if number.is_one() => self,
-            // 0.3/u for 0.3*(1/u).
-            Self::Quotient(one, divisor) if **one == Self::integer(1) => {
-                Self::Quotient(Self::Number(number.clone()).into(), divisor.clone())
-            }
+            // 0.3/u for 0.3*(1/u), 12/u for 2*(6/u).
+            Self::Quotient(numerator, divisor) => match &**numerator {
+                Self::Number(own) if own.is_one() || own.is_integer() && number.is_integer() => {
+                    Self::Quotient(Self::Number(own * number).into(), divisor.clone())
+                }
+                _ => Self::Product(Self::Number(number.clone()).into(), self.into()),
+            },
             _ => Self::Product(Self::Number(number.clone()).into(), self.into()),
         }
     }

@@ -17,15 +17,13 @@ mod rest;
 mod trees;
 
 pub use formula::{Formula, length};
-pub use problem::{Atom, LawProblem, ShortestError};
+pub use problem::{Atom, LawMotion, LawProblem, ShortestError};
 
 use std::collections::BTreeMap;
 
 use num_traits::{One as _, Zero as _};
 
-use crate::certificate::{
-    LawCertificate, LawError, LawNotProved, LawQuantity, TrueFrequency, coordinate,
-};
+use crate::certificate::{LawCertificate, LawError, LawNotProved, LawQuantity, TrueFrequency};
 use crate::decimal::neighbours;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
@@ -34,7 +32,7 @@ use crate::interrupt::Supervision;
 use crate::parallel::par_map;
 use crate::symbol::Symbol;
 use constants::{rounded_error, shortened};
-use families::{ShortFunction, Structure, structures};
+use families::{ShortFunction, Structure, is_same_growth, structures};
 use minimax::Tie;
 use problem::TrueFrequencies;
 use rest::RestSeries;
@@ -52,8 +50,16 @@ pub struct SearchOptions {
     /// The highest power of the variable up to which the series of a law is that of the truth; `None`
     /// where it need not be.
     pub exact_at_rest: Option<u32>,
-    /// Published formulas, which are measured beside the laws.
-    pub published: Vec<PublishedFormula>,
+    /// The power of the variable as which a law grows towards infinity, whatever the range; `None` where it
+    /// may be any.
+    pub growth: Option<Rational>,
+}
+
+impl SearchOptions {
+    /// A search of laws of a quantity, without conditions.
+    pub fn new(quantity: LawQuantity, longest: usize) -> Self {
+        Self { quantity, atoms: vec![], longest, exact_at_rest: None, growth: None }
+    }
 }
 
 /// A formula as it is published, in the variable of a problem.
@@ -108,19 +114,31 @@ pub struct Front {
     pub laws: Vec<ShortLaw>,
     /// Published formulas beside them.
     pub published: Vec<MeasuredFormula>,
-    /// The truth on which errors are measured.
-    data: SearchData,
     /// Whether the search was stopped before its end.
     pub is_partial: bool,
+    /// The truth on which errors are measured.
+    data: SearchData,
 }
 
 impl Front {
-    /// The error of a law along the range, with its sign.
+    /// The front with published formulas beside it, measured on the same truth.
+    #[must_use]
+    pub fn beside(self, published: &[PublishedFormula]) -> Self {
+        let measured = published.iter().map(|own| self.data.measured(own, &self.atoms)).collect();
+        Self { published: measured, ..self }
+    }
+
+    /// The error of a law along the range, with its sign, over the variable, or over the restitution of a
+    /// contact where that is what has a range.
     pub fn errors_along(&self, law: &ShortLaw) -> Vec<(f64, f64)> {
         let names: Vec<Symbol> = self.atoms.iter().map(|atom| atom.name).collect();
         let value = |place: usize| self.data.value(&law.formula, &names, place);
+        let along = match self.problem.abscissa() == self.problem.variable {
+            true => &self.data.truth.places,
+            false => &self.data.truth.restitutions,
+        };
         let errors = self.data.values.iter().enumerate();
-        errors.map(|(i, truth)| (self.data.truth.places[i], value(i) / truth - 1.0)).collect()
+        errors.map(|(i, truth)| (along[i], value(i) / truth - 1.0)).collect()
     }
 
     /// The shortest law whose largest error is at most this, proved where there is a proof.
@@ -171,19 +189,17 @@ impl SearchData {
         problem: &LawProblem,
         quantity: LawQuantity,
         atoms: &[Atom],
+        enclosed: Option<&TrueFrequency>,
     ) -> Result<Self, ShortestError> {
-        let truth = problem.true_frequencies(PLACES)?;
+        let truth = problem.true_frequencies(PLACES, enclosed)?;
         let values = truth.frequencies.iter().map(|omega| omega.powi(quantity.power()));
         let values = values.collect();
         let at = |atom: &Atom| {
+            let Some(meaning) = &atom.meaning else { return Ok(truth.restitutions.clone()) };
             let value =
-                |place: &f64| atom.meaning.evaluate(&BTreeMap::from([(problem.variable, *place)]));
-            truth
-                .places
-                .iter()
-                .map(value)
-                .collect::<Result<Vec<f64>, _>>()
-                .map_err(|_| ShortestError::Atom(atom.meaning.clone(), problem.variable))
+                |place: &f64| meaning.evaluate(&BTreeMap::from([(problem.variable, *place)]));
+            let values = truth.places.iter().map(value).collect::<Result<Vec<f64>, _>>();
+            values.map_err(|_| ShortestError::Atom(meaning.clone(), problem.variable))
         };
         let atoms = atoms.iter().map(at).collect::<Result<_, _>>()?;
         Ok(Self { truth, values, atoms })
@@ -262,13 +278,7 @@ struct Candidate {
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let range = (&"0".parse()?, Some(&"14/5".parse()?));
 /// let problem = LawProblem::new(&pendulum, &"A".parse()?, range, &"".parse()?)?;
-/// let options = SearchOptions {
-///     quantity: LawQuantity::Period,
-///     atoms: vec![],
-///     longest: 8,
-///     exact_at_rest: None,
-///     published: vec![],
-/// };
+/// let options = SearchOptions::new(LawQuantity::Period, 8);
 /// let front = search(problem, &options, Supervision::default())?;
 /// assert!(front.laws.last().is_some_and(|law| law.error < 0.0076));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -282,14 +292,25 @@ pub fn search(
         true => problem.usual_atoms(),
         false => options.atoms.clone(),
     };
-    let data = SearchData::new(&problem, options.quantity, &atoms)?;
+    let enclosed = || {
+        let certificate = certificate(&problem, options.quantity, &atoms, None)?;
+        TrueFrequency::new(&certificate, supervision)
+    };
+    // What is known of a contact is its enclosure; that of a frequency is made once there are laws.
+    let of_contact = match problem.motion {
+        LawMotion::Contact { .. } => Some(enclosed().map_err(|error| match error {
+            LawNotProved::Stopped => ShortestError::Stopped,
+            error => ShortestError::Contact(error),
+        })?),
+        _ => None,
+    };
+    let data = SearchData::new(&problem, options.quantity, &atoms, of_contact.as_ref())?;
     let rest = options.exact_at_rest.map(|order| RestSeries::new(&problem, options, order));
     let rest = rest.transpose()?;
     let question =
         SearchQuestion { problem: &problem, atoms: &atoms, options, rest: rest.as_ref() };
     let (found, is_partial) = laws(&data, &question, supervision);
-    let truth = certificate(&problem, options.quantity, &atoms, None)
-        .and_then(|certificate| TrueFrequency::new(&certificate, supervision));
+    let truth = of_contact.map_or_else(enclosed, Ok);
     let proofs = par_map(&found, |candidate| {
         truth.as_ref().map_err(LawNotProved::clone).and_then(|truth| {
             let certificate = certificate(&problem, options.quantity, &atoms, Some(candidate))?;
@@ -302,9 +323,8 @@ pub fn search(
     });
     let laws: Vec<ShortLaw> = laws.collect();
     let is_partial = is_partial || supervision.interrupt.is_requested();
-    let published = options.published.iter().map(|own| data.measured(own, &atoms));
-    let published = published.collect();
-    Ok(Front { problem, quantity: options.quantity, atoms, laws, published, data, is_partial })
+    let quantity = options.quantity;
+    Ok(Front { problem, quantity, atoms, laws, published: vec![], data, is_partial })
 }
 
 /// The question of a search.
@@ -316,14 +336,27 @@ struct SearchQuestion<'a> {
 }
 
 impl SearchQuestion<'_> {
+    /// The power of the variable as which a formula grows towards infinity, from its values at two large
+    /// numbers; not a number where it has none.
+    fn growth(&self, formula: &Formula) -> f64 {
+        const FAR: [f64; 2] = [1e30, 1e31];
+        let [near, far] = FAR.map(|place| {
+            formula.value(&|name| {
+                let atom = self.atoms.iter().find(|atom| atom.name == name);
+                let meaning = atom.and_then(|atom| atom.meaning.as_ref());
+                let values = BTreeMap::from([(self.problem.variable, place)]);
+                meaning.and_then(|meaning| meaning.evaluate(&values).ok()).unwrap_or(f64::NAN)
+            })
+        });
+        (far / near).abs().log10()
+    }
+
     /// The first coefficients of a formula in powers of the variable; empty without a condition at rest,
     /// and where they are no fractions.
     fn series(&self, formula: &Formula) -> Vec<Rational> {
         let Some(rest) = self.rest else { return vec![] };
         let law = formula.expression().ok();
-        let meanings = self.atoms.iter().filter(|atom| atom.name != self.problem.variable);
-        let meanings = meanings.map(|atom| (atom.name, atom.meaning.clone())).collect();
-        let law = law.and_then(|law| law.substitute_all(&meanings).ok());
+        let law = law.and_then(|law| law.substitute_all(&meanings(self.atoms)).ok());
         let series = law
             .and_then(|law| rest::power_series(&law, self.problem.variable, rest.quantity.len()));
         series.unwrap_or_default()
@@ -338,6 +371,7 @@ fn laws(
 ) -> (Vec<Candidate>, bool) {
     let SearchQuestion { problem, atoms, options, rest } = *question;
     let longest = options.longest;
+    let growth = options.growth.as_ref().map(to_f64);
     let names: Vec<Symbol> = atoms.iter().map(|atom| atom.name).collect();
     let few: Vec<Vec<f64>> =
         data.atoms.iter().map(|values| SearchData::some(values, OF_TREES)).collect();
@@ -348,6 +382,9 @@ fn laws(
     let mut front: Vec<Candidate> = vec![];
     let mut offer = |formula: Formula| {
         let length = formula.length();
+        if growth.is_some_and(|growth| !is_same_growth(question.growth(&formula), growth)) {
+            return;
+        }
         if rest.is_some_and(|rest| question.series(&formula) != rest.quantity) {
             return;
         }
@@ -365,12 +402,12 @@ fn laws(
             let formula = trees.formula(tree);
             let places = (0..PLACES).step_by(step);
             let values = places.map(|place| data.value(&formula, &names, place)).collect();
-            let series = question.series(&formula);
-            ShortFunction { formula, length, values, series }
+            let (series, growth) = (question.series(&formula), question.growth(&formula));
+            ShortFunction { formula, length, values, growth, series }
         })
         .collect();
     let truth = SearchData::some(&data.values, OF_FIT);
-    let chosen = structures(&functions, &truth, longest);
+    let chosen = structures(&functions, &truth, growth, longest);
     supervision.progress.begin(chosen.len());
     let found = par_map(&chosen, |structure| {
         let formulas = match supervision.interrupt.is_requested() {
@@ -453,24 +490,19 @@ fn certificate(
     atoms: &[Atom],
     candidate: Option<&Candidate>,
 ) -> Result<LawCertificate, LawNotProved> {
-    let Some(start) = problem.start.clone() else { return Err(LawNotProved::LimitCycle) };
-    if !problem.is_centred() {
-        return Err(LawNotProved::NotCentred(problem.oscillator.force.to_string()));
-    }
+    let (force, start) = problem.of_certificate()?;
     let law = match candidate {
         None => Expr::one(),
         Some(candidate) => {
             let no_value = |_| LawNotProved::NoValue(candidate.formula.to_string());
             let law = candidate.formula.expression().map_err(no_value)?;
-            let own = atoms.iter().filter(|atom| atom.name != problem.variable);
-            law.substitute_all(&own.map(|atom| (atom.name, atom.meaning.clone())).collect())?
+            law.substitute_all(&meanings(atoms))?
         }
     };
-    let x = problem.oscillator.coordinate;
     let worst = candidate.and_then(|candidate| from_f64(candidate.worst));
     let bound = candidate.map_or_else(Rational::one, |candidate| rounded_error(candidate.error));
     Ok(LawCertificate {
-        force: problem.oscillator.force.substitute(x, &Expr::from(coordinate()))?,
+        force,
         variable: problem.variable,
         start,
         quantity,
@@ -480,6 +512,11 @@ fn certificate(
         worst: worst.unwrap_or_else(|| problem.from.clone()),
         claim: [Rational::zero(), bound],
     })
+}
+
+/// The names of quantities with their meanings in the variable.
+fn meanings(atoms: &[Atom]) -> BTreeMap<Symbol, Expr> {
+    atoms.iter().filter_map(|atom| Some((atom.name, atom.meaning.clone()?))).collect()
 }
 
 /// The proof of the largest error of a law.

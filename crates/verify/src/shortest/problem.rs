@@ -1,53 +1,83 @@
 //! The question of a search: a motion, a quantity of it, and the range of what it depends on.
 //!
-//! In: an equation, what varies (the amplitude, a parameter, or a product such as `eps*A^2` on which the
-//! frequency alone depends), its range, and numbers for all else. Out: one equation in one variable, and
-//! its true frequency at any value of it.
+//! In: an equation, a contact or a mode of several coordinates, what varies (the amplitude, a parameter, or a
+//! product such as `eps*A^2` on which the frequency alone depends), its range, and numbers for all else. Out:
+//! one motion in one variable, and its true frequency at any value of it.
 
 use std::collections::BTreeMap;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
-use crate::certificate::StartOfLaw;
-use crate::decimal::decimal;
+use crate::certificate::{
+    HuntCrossleyForce, LawNotProved, StartOfLaw, TrueFrequency, coordinate, restitution,
+};
+use crate::decimal::{decimal, neighbours};
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::expr::{Expr, ExprError, Function};
 
 use crate::method::{Options, Refusal, solve};
+use crate::modes::{FreeSystem, NonlinearMode, NormalModes};
+use crate::numeric::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::parallel::par_map;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
-use crate::verify::{VerificationError, judge_motion};
+use crate::verify::{VerificationError, judge_motion, mode_frequencies};
 
 /// A quantity that stands in formulas as one name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Atom {
     /// Its name.
     pub name: Symbol,
-    /// Its meaning in the variable; the variable itself has its own name.
-    pub meaning: Expr,
+    /// Its meaning in the variable, the variable itself for that; `None` for the restitution of a contact.
+    pub meaning: Option<Expr>,
 }
 
-/// A motion that depends on one variable.
+/// A family of motions that depends on one variable.
+#[derive(Clone, Debug)]
+pub enum LawMotion {
+    /// Free motions of one coordinate that repeat, with numbers for all parameters but the variable.
+    Free {
+        /// The equation.
+        oscillator: Box<Oscillator>,
+        /// The start of the motion; `None` for a limit cycle.
+        start: Option<StartOfLaw>,
+        /// The solution whose truth is asked for.
+        solution: Box<Solution>,
+    },
+    /// Contacts that lose energy.
+    Contact {
+        /// `x^n (1 + c x')`, in which the variable is the speed at the touch.
+        force: Expr,
+        /// The range of the restitution where that is what is asked for.
+        restitution: Option<[Rational; 2]>,
+    },
+    /// Nonlinear normal modes of several coordinates, with numbers for all parameters.
+    Mode {
+        /// The equations.
+        system: Box<FreeSystem>,
+        /// The mode.
+        mode: Box<NonlinearMode>,
+    },
+}
+
+/// The motions, the variable and its range.
 #[derive(Clone, Debug)]
 pub struct LawProblem {
-    /// The equation, with numbers for all parameters but the variable.
-    pub oscillator: Oscillator,
+    /// The motions.
+    pub motion: LawMotion,
+    /// Their equations as text, with the variable in them.
+    pub equation: String,
     /// The variable.
     pub variable: Symbol,
     /// The product that the variable stands for, `eps*A^2` say; `None` for the amplitude or a parameter.
     pub meaning: Option<Expr>,
-    /// The start of the motion; `None` for a limit cycle.
-    pub start: Option<StartOfLaw>,
     /// The lower end of the range, not negative.
     pub from: Rational,
     /// The upper end; `None` for infinity.
     pub to: Option<Rational>,
-    /// The solution whose truth is asked for.
-    solution: Solution,
 }
 
 /// The reason why no law is searched for.
@@ -62,6 +92,36 @@ pub enum ShortestError {
         /// Its upper end.
         to: String,
     },
+    /// A force that is not that of a contact.
+    #[error("the time of a contact needs a force k*x^n*(1 + c*x'), which loses energy: not {0}")]
+    NoContact(Expr),
+    /// A quantity on which the time of a contact does not depend alone.
+    #[error(
+        "`{varying}` does not determine the contact: its time over that without damping depends on {product} alone, or on the restitution e"
+    )]
+    NotOfContact {
+        /// What varies.
+        varying: Expr,
+        /// The product of damping and speed.
+        product: Expr,
+    },
+    /// A contact to infinity, or restitutions beyond one.
+    #[error("the range of a contact ends at a number, that of its restitution at one")]
+    EndOfContact,
+    /// The time of the contact is not enclosed.
+    #[error("the time of the contact is not known on the whole range: {0}")]
+    Contact(LawNotProved),
+    /// The mode has no formula from which its motions are followed.
+    #[error("mode {number} has no formula: {reason}")]
+    Mode {
+        /// Its number.
+        number: usize,
+        /// The reason.
+        reason: String,
+    },
+    /// What varies of a mode is not its amplitude.
+    #[error("of a mode the amplitude `{0}` varies, not `{1}`")]
+    NotAmplitude(Symbol, Expr),
     /// The name that varies is neither the amplitude nor a parameter.
     #[error("`{0}` is neither the amplitude `{1}` nor a parameter of the equation")]
     NoVariable(Expr, Symbol),
@@ -143,6 +203,16 @@ impl ShortestError {
                 Some(format!("add {}", values.join(" ")))
             }
             Self::NoSeries(_) => Some("leave --exact-at-rest out".to_owned()),
+            Self::NoContact(_) => Some(
+                "write it as x'' + k*x^(3/2)*(1 + lambda*x') = 0, with --range lambda*v=0:5 or e=0.2:1"
+                    .to_owned(),
+            ),
+            Self::NotOfContact { product, .. } => {
+                Some(format!("write --range \"{product}=0:5\", or --range e=0.2:1"))
+            }
+            Self::NotAmplitude(amplitude, _) => {
+                Some(format!("write --range {amplitude}=0:1, and numbers by --at"))
+            }
             Self::NotPeriodic => Some(
                 "leave the damping and the drive out, or derive the decay: `lindstedt derive`"
                     .to_owned(),
@@ -166,8 +236,10 @@ impl ShortestError {
 pub(super) struct TrueFrequencies {
     /// The values of the variable, in ascending order.
     pub(super) places: Vec<f64>,
-    /// omega there.
+    /// omega there; of a contact T_0/T.
     pub(super) frequencies: Vec<f64>,
+    /// The restitution of a contact there; nothing of other motions.
+    pub(super) restitutions: Vec<f64>,
 }
 
 impl LawProblem {
@@ -182,10 +254,7 @@ impl LawProblem {
         (from, to): (&Rational, Option<&Rational>),
         at: &Values,
     ) -> Result<Self, ShortestError> {
-        if from.is_negative() || to.is_some_and(|to| to <= from) {
-            let to = to.map_or("inf".to_owned(), Rational::to_string);
-            return Err(ShortestError::Range { from: from.to_string(), to });
-        }
+        ends(from, to)?;
         let solved =
             |oscillator: &Oscillator| solve(oscillator, &Options::default()).map_err(Box::new);
         let general = solved(oscillator)?;
@@ -233,20 +302,171 @@ impl LawProblem {
         if !missing.is_empty() {
             return Err(ShortestError::Missing(missing));
         }
-        let oscillator = oscillator.with_values(&values).map_err(Box::new)?;
-        let solution = solved(&oscillator)?;
-        let (from, to) = (from.clone(), to.cloned());
-        Ok(Self { oscillator, variable, meaning, start, from, to, solution })
+        let oscillator = Box::new(oscillator.with_values(&values).map_err(Box::new)?);
+        let solution = Box::new(solved(&oscillator)?);
+        let equation = format!("{} = 0", oscillator.residual);
+        let motion = LawMotion::Free { oscillator, start, solution };
+        Ok(Self { motion, equation, variable, meaning, from: from.clone(), to: to.cloned() })
     }
 
-    /// Whether the motions swing about zero.
-    pub(super) fn is_centred(&self) -> bool {
-        self.solution.equilibrium.is_zero()
+    /// The problem of a contact `x'' + k x^n (1 + c x') = 0`, touched with the speed v: its duration over that
+    /// without damping depends on c v alone. What varies is that product, one of its letters, or the
+    /// restitution e.
+    ///
+    /// # Errors
+    /// [`ShortestError`].
+    pub fn of_contact(
+        oscillator: &Oscillator,
+        varying: &Expr,
+        (from, to): (&Rational, Option<&Rational>),
+        at: &Values,
+    ) -> Result<Self, ShortestError> {
+        let to = ends(from, to)?.ok_or(ShortestError::EndOfContact)?;
+        let contact = HuntCrossleyForce::of(&oscillator.force, oscillator.coordinate)?;
+        let contact = contact.ok_or_else(|| ShortestError::NoContact(oscillator.force.clone()))?;
+        let product = &contact.damping * &Expr::from(Symbol::new(SPEED));
+        let letters = product.symbols();
+        if let Some((name, _)) = at.iter().find(|(name, _)| !letters.contains(name)) {
+            return Err(ShortestError::Unknown(name));
+        }
+        let equation = format!("{} = 0", oscillator.residual);
+        let taken: Vec<Symbol> = letters.iter().copied().chain([oscillator.coordinate]).collect();
+        let fresh_letter = fresh("s", &taken);
+        let force = |damping: Rational| -> Result<Expr, ShortestError> {
+            let [depth, speed] = [coordinate(), coordinate().derivative()].map(Expr::from);
+            let depth = Expr::power(&depth, &Expr::number(contact.exponent.clone()))?;
+            Ok(depth * (Expr::one() + Expr::number(damping) * speed))
+        };
+        if varying.as_symbol() == Some(restitution()) && !letters.contains(&restitution()) {
+            let one = Rational::one();
+            if to > one || !from.is_positive() {
+                return Err(ShortestError::EndOfContact);
+            }
+            let [most, least] = [from, &to].map(|e| damping_of(to_f64(e)));
+            let [below, above] = [least, most].map(|s| from_f64(s).unwrap_or_else(Rational::zero));
+            let (from, to) = (from.clone(), to);
+            return Ok(Self {
+                motion: LawMotion::Contact { force: force(one)?, restitution: Some([from, to]) },
+                equation,
+                variable: fresh_letter,
+                meaning: Some(product),
+                from: neighbours(&below, DIGITS)[0].clone(),
+                to: Some(neighbours(&above, DIGITS)[1].clone()),
+            });
+        }
+        let (values, _) = at.split(&taken);
+        let given = product.substitute_all(&values)?;
+        let factor = Expr::divide(&given, varying)?.expand()?;
+        let Some(damping) = factor.as_number().filter(|c| c.is_positive()).cloned() else {
+            let own = varying.symbols();
+            let mut missing = given.symbols();
+            missing.retain(|name| !own.contains(name));
+            let names: Vec<Symbol> = missing.into_iter().collect();
+            return Err(match own.iter().all(|name| letters.contains(name)) && !names.is_empty() {
+                true => ShortestError::Missing(names),
+                false => ShortestError::NotOfContact { varying: varying.clone(), product },
+            });
+        };
+        let (variable, meaning) = match varying.as_symbol() {
+            Some(name) => (name, None),
+            None => (fresh_letter, Some(varying.clone())),
+        };
+        let motion = LawMotion::Contact { force: force(damping)?, restitution: None };
+        Ok(Self { motion, equation, variable, meaning, from: from.clone(), to: Some(to) })
+    }
+
+    /// The problem of the backbone of a normal mode: its frequency against its amplitude. The system has
+    /// numbers for all parameters.
+    ///
+    /// # Errors
+    /// [`ShortestError`].
+    pub fn of_mode(
+        modes: &NormalModes,
+        number: usize,
+        varying: &Expr,
+        (from, to): (&Rational, Option<&Rational>),
+    ) -> Result<Self, ShortestError> {
+        let to = ends(from, to)?;
+        let variable = modes.amplitude.symbol();
+        if varying.as_symbol() != Some(variable) {
+            return Err(ShortestError::NotAmplitude(variable, varying.clone()));
+        }
+        let parameters = &modes.system.equations.parameters;
+        if !parameters.is_empty() {
+            return Err(ShortestError::Missing(parameters.clone()));
+        }
+        let none = |reason: String| ShortestError::Mode { number, reason };
+        let mode = modes.modes.iter().find(|mode| match mode {
+            Ok(mode) => mode.number == number,
+            Err(_) => modes.modes.len() == 1,
+        });
+        let mode = match mode {
+            Some(Ok(mode)) => mode.clone(),
+            Some(Err(error)) => return Err(none(error.to_string())),
+            None => return Err(none(format!("there are {} modes", modes.count))),
+        };
+        let sides = modes.system.equations.equations.iter();
+        let equations = sides.map(|(left, right)| format!("{left} = {right}"));
+        Ok(Self {
+            equation: equations.collect::<Vec<_>>().join("; "),
+            motion: LawMotion::Mode {
+                system: Box::new(modes.system.clone()),
+                mode: Box::new(mode),
+            },
+            variable,
+            meaning: None,
+            from: from.clone(),
+            to,
+        })
+    }
+
+    /// The force of a certificate of the law in the coordinate [`x`](coordinate), and the start of the motion.
+    ///
+    /// # Errors
+    /// Motions of which no law is proved.
+    pub(super) fn of_certificate(&self) -> Result<(Expr, StartOfLaw), LawNotProved> {
+        match &self.motion {
+            LawMotion::Free { start: None, .. } => Err(LawNotProved::LimitCycle),
+            LawMotion::Free { oscillator, start: Some(start), solution } => {
+                if !solution.equilibrium.is_zero() {
+                    return Err(LawNotProved::NotCentred(oscillator.force.to_string()));
+                }
+                let x = Expr::from(coordinate());
+                Ok((oscillator.force.substitute(oscillator.coordinate, &x)?, start.clone()))
+            }
+            LawMotion::Contact { force, .. } => Ok((force.clone(), StartOfLaw::Variable)),
+            LawMotion::Mode { .. } => Err(LawNotProved::Mode),
+        }
+    }
+
+    /// The start of a free motion of one coordinate.
+    pub fn start(&self) -> Option<&StartOfLaw> {
+        match &self.motion {
+            LawMotion::Free { start, .. } => start.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The letter of what has a range: the variable, or the restitution of a contact.
+    pub fn abscissa(&self) -> Symbol {
+        match &self.motion {
+            LawMotion::Contact { restitution: Some(_), .. } => restitution(),
+            _ => self.variable,
+        }
+    }
+
+    /// The letters of the coordinates.
+    pub fn coordinates(&self) -> Vec<Symbol> {
+        match &self.motion {
+            LawMotion::Free { oscillator, .. } => vec![oscillator.coordinate],
+            LawMotion::Contact { .. } => vec![],
+            LawMotion::Mode { system, .. } => system.equations.coordinates.clone(),
+        }
     }
 
     /// The letter of the amplitude and its value where a parameter varies.
     pub(super) fn amplitude(&self) -> Option<(Symbol, &Rational)> {
-        match &self.start {
+        match self.start() {
             Some(StartOfLaw::Fixed(start)) => Some((AmplitudeConvention::Initial.symbol(), start)),
             _ => None,
         }
@@ -263,7 +483,12 @@ impl LawProblem {
     }
 
     /// The true frequency at so many places, which are closer to each other at the ends of the range.
-    pub(super) fn true_frequencies(&self, count: usize) -> Result<TrueFrequencies, ShortestError> {
+    /// Those of a contact come from its enclosure.
+    pub(super) fn true_frequencies(
+        &self,
+        count: usize,
+        enclosed: Option<&TrueFrequency>,
+    ) -> Result<TrueFrequencies, ShortestError> {
         /// Parts of the range that stand for its ends where these have no motion.
         const LEAST: f64 = 1e-6;
         const MOST: f64 = 1.0 - 1e-8;
@@ -275,27 +500,50 @@ impl LawProblem {
                 self.place(part.max(least).min(if self.to.is_none() { MOST } else { 1.0 }))
             })
             .collect();
-        let found = par_map(&places, |&place| self.true_frequency(place));
-        let frequencies = found.into_iter().collect::<Result<Vec<f64>, _>>()?;
-        Ok(TrueFrequencies { places, frequencies })
+        let mut restitutions = vec![];
+        let frequencies = match &self.motion {
+            LawMotion::Free { oscillator, start, solution } => {
+                let motion = (&**oscillator, start.as_ref(), &**solution);
+                let found = par_map(&places, |&place| self.true_frequency(motion, place));
+                found.into_iter().collect::<Result<_, _>>()?
+            }
+            LawMotion::Contact { .. } => {
+                let known = places.iter().map(|&place| enclosed?.at(place));
+                let known: Option<Vec<[f64; 2]>> = known.collect();
+                let known = known.ok_or(ShortestError::Stopped)?;
+                restitutions = known.iter().map(|[_, e]| *e).collect();
+                known.iter().map(|[duration, _]| duration.recip()).collect()
+            }
+            LawMotion::Mode { system, mode } => {
+                mode_frequencies(system, mode, &places).map_err(|reason| {
+                    let at = places.last().copied().map_or_else(String::new, decimal);
+                    ShortestError::Truth { variable: self.variable, at, reason: Box::new(reason) }
+                })?
+            }
+        };
+        Ok(TrueFrequencies { places, frequencies, restitutions })
     }
 
-    /// The true frequency at a value of the variable.
+    /// The true frequency of a free motion at a value of the variable.
     ///
     /// # Errors
     /// No periodic motion there.
-    pub fn true_frequency(&self, place: f64) -> Result<f64, ShortestError> {
+    fn true_frequency(
+        &self,
+        (oscillator, start, solution): (&Oscillator, Option<&StartOfLaw>, &Solution),
+        place: f64,
+    ) -> Result<f64, ShortestError> {
         /// Every formula passes: the truth alone is asked for.
         const ANY: f64 = 1.0;
         let at = || decimal(place);
-        let _letters = self.solution.letters().in_force();
+        let _letters = solution.letters().in_force();
         let mut values = Values::default();
         let mut insert = |name: Symbol, value: Rational| {
             // A number is a value, and each name is given once.
             let _ = values.insert(name, Expr::number(value));
         };
         let exact = from_f64(place).unwrap_or_else(Rational::zero);
-        match &self.start {
+        match start {
             Some(StartOfLaw::Fixed(start)) => {
                 insert(AmplitudeConvention::Initial.symbol(), start.clone());
                 insert(self.variable, exact);
@@ -303,7 +551,7 @@ impl LawProblem {
             Some(StartOfLaw::Variable) => insert(AmplitudeConvention::Initial.symbol(), exact),
             None => insert(self.variable, exact),
         }
-        let judged = judge_motion(&self.oscillator, &self.solution, &values, ANY);
+        let judged = judge_motion(oscillator, solution, &values, ANY);
         let frequency = judged.map(|judged| judged.true_frequency).map_err(|reason| {
             ShortestError::Truth { variable: self.variable, at: at(), reason: Box::new(reason) }
         })?;
@@ -313,21 +561,64 @@ impl LawProblem {
         }
     }
 
-    /// The quantities of which formulas are made where none are given: the variable, and for forces of
-    /// sines the cosine of half an amplitude, which the energy of a pendulum offers.
+    /// The quantities of which formulas are made where none are given: the variable, for forces of sines
+    /// the cosine of half an amplitude, which the energy of a pendulum offers, and for contacts the
+    /// restitution; that alone where it is what has a range.
     pub fn usual_atoms(&self) -> Vec<Atom> {
         let variable = Expr::from(self.variable);
-        let mut atoms = vec![Atom { name: self.variable, meaning: variable.clone() }];
-        let force = &self.oscillator.force;
-        let has_waves =
-            [Function::Sin, Function::Cos].map(|function| force.contains_function(function));
-        if self.start == Some(StartOfLaw::Variable) && has_waves.contains(&true) {
-            let half = Expr::divide(&variable, &Expr::from(2)).and_then(|half| half.cos());
-            let name = fresh("c", &[self.variable, self.oscillator.coordinate]);
-            atoms.extend(half.ok().map(|meaning| Atom { name, meaning }));
+        let own = Atom { name: self.variable, meaning: Some(variable.clone()) };
+        match &self.motion {
+            LawMotion::Contact { restitution: asked, .. } => {
+                let restitution = Atom { name: restitution(), meaning: None };
+                match asked {
+                    Some(_) => vec![restitution],
+                    None => vec![own, restitution],
+                }
+            }
+            LawMotion::Mode { .. } => vec![own],
+            LawMotion::Free { oscillator, start, .. } => {
+                let force = &oscillator.force;
+                let waves = [Function::Sin, Function::Cos];
+                let has_waves = waves.iter().any(|wave| force.contains_function(*wave));
+                if *start != Some(StartOfLaw::Variable) || !has_waves {
+                    return vec![own];
+                }
+                let half = Expr::divide(&variable, &Expr::from(2)).and_then(|half| half.cos());
+                let name = fresh("c", &[self.variable, oscillator.coordinate]);
+                let cosine = half.ok().map(|meaning| Atom { name, meaning: Some(meaning) });
+                std::iter::once(own).chain(cosine).collect()
+            }
         }
-        atoms
     }
+}
+
+/// The letter of the speed at the touch.
+const SPEED: &str = "v";
+
+/// Significant digits of the ends of a range that follow from those of a restitution.
+const DIGITS: usize = 6;
+
+/// The upper end of a range, `None` for infinity, if the range is one.
+fn ends(from: &Rational, to: Option<&Rational>) -> Result<Option<Rational>, ShortestError> {
+    if from.is_negative() || to.is_some_and(|to| to <= from) {
+        let to = to.map_or("inf".to_owned(), Rational::to_string);
+        return Err(ShortestError::Range { from: from.to_string(), to });
+    }
+    Ok(to.cloned())
+}
+
+/// The product of damping and speed whose contact has this restitution:
+/// `G(s) = G(-e s)`, `G(z) = z - log(1 + z)`.
+fn damping_of(restitution: f64) -> f64 {
+    if restitution >= 1.0 {
+        return 0.0;
+    }
+    let lost = |z: f64| z - z.ln_1p();
+    let missing = |s: f64| lost(s) - lost(-restitution * s);
+    // For little loss s is 3 (1 - e)/2.
+    let least = 1e-2 * (1.0 - restitution);
+    let most = restitution.recip() * (1.0 - f64::EPSILON);
+    find_root(missing, least, most).unwrap_or(most)
 }
 
 /// The equation of `x = A y` in which a product with a parameter stands for that parameter, and its name.

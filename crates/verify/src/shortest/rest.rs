@@ -6,7 +6,7 @@
 use num_traits::{One as _, Zero as _};
 
 use super::SearchOptions;
-use super::problem::{LawProblem, ShortestError};
+use super::problem::{LawMotion, LawProblem, ShortestError};
 use crate::exact::rational::{factorial, power};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
@@ -29,8 +29,9 @@ impl RestSeries {
         order: u32,
     ) -> Result<Self, ShortestError> {
         let none = || ShortestError::NoSeries(problem.variable);
+        let LawMotion::Free { oscillator, .. } = &problem.motion else { return Err(none()) };
         let asked = Options { order: Some(order.max(1)), ..Options::default() };
-        let solution = solve(&problem.oscillator, &asked).map_err(Box::new)?;
+        let solution = solve(oscillator, &asked).map_err(Box::new)?;
         let law = Expr::from(solution.law.frequency_squared().ok_or_else(none)?);
         let law = match problem.amplitude() {
             Some((name, amplitude)) => law.substitute(name, &Expr::number(amplitude.clone()))?,

@@ -196,7 +196,12 @@ impl<'a> Trees<'a> {
             Made::Logarithm(tree) => Formula::Logarithm(part(tree)),
             Made::Joined(Sign::Plus, left, right) => Formula::Sum(part(left), part(right)),
             Made::Joined(Sign::Minus, left, right) => Formula::Difference(part(left), part(right)),
-            Made::Joined(Sign::Times, left, right) => Formula::Product(part(left), part(right)),
+            Made::Joined(Sign::Times, left, right) => match self.trees[left].made {
+                Made::WholeNumber(number) => {
+                    self.formula(right).times(&Rational::from_integer(number.into()))
+                }
+                _ => Formula::Product(part(left), part(right)),
+            },
             Made::Joined(Sign::Over, left, right) => Formula::Quotient(part(left), part(right)),
         }
     }

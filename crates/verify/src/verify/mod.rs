@@ -45,6 +45,7 @@ pub use convergence::{Singularity, converges, converges_everywhere, nearest_sing
 pub use driven::JudgedState;
 pub use error::VerificationError;
 pub use motions::{Motions, TimedState, motions, true_motion};
+pub(crate) use normal_mode::mode_frequencies;
 pub use normal_mode::{BackbonePoint, JudgedMode, judge_mode};
 pub use one_harmonic::{JudgedOneHarmonic, OneHarmonicMotion, judge_one_harmonic};
 pub use slow_equations::{

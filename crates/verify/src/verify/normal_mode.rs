@@ -20,6 +20,7 @@ use crate::exact::{Doubles, Polynomial};
 use crate::interrupt::Interrupt;
 use crate::modes::{BalanceStart, FreeSystem, ModeInNumbers, NearResonance, NonlinearMode};
 use crate::numeric::continuation::in_amplitude;
+use crate::parallel::par_map;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, defined_values};
 use crate::symbol::Symbol;
@@ -200,6 +201,52 @@ pub fn judge_mode(
         paths: [by_formula, whole.path],
         verdict: Verdict::from_passed(relative_error.is_some_and(|error| error.abs() <= tolerance)),
     })
+}
+
+/// omega of the true motions of a mode at these amplitudes, of a system with numbers for all parameters.
+///
+/// # Errors
+/// [`VerificationError`] where no true motion is found up to the largest amplitude.
+pub(crate) fn mode_frequencies(
+    system: &FreeSystem,
+    mode: &NonlinearMode,
+    amplitudes: &[f64],
+) -> Result<Vec<f64>, VerificationError> {
+    /// The motions that are known around an amplitude, through which its guess is interpolated.
+    const AROUND: usize = 4;
+    /// The part of the largest amplitude below which the frequency is that of the linear mode and a term in
+    /// a^2, whose error is of the fourth power.
+    const SMALL: f64 = 1e-3;
+    let symbol = mode.amplitude.symbol();
+    let largest = amplitudes.iter().copied().fold(0.0, f64::max);
+    let numbers = BTreeMap::from([(symbol, largest)]);
+    let truth = TrueMode::new(system, mode, &numbers, Interrupt::default())?;
+    let known = truth.followed_to(largest, mode.number, symbol)?;
+    let near = |part: f64| {
+        let mut nearest: Vec<&(f64, Motion)> = known.iter().collect();
+        nearest.sort_by(|one, other| (one.0 - part).abs().total_cmp(&(other.0 - part).abs()));
+        nearest.truncate(AROUND);
+        let mut guess = DVector::zeros(truth.shape.len() + 1);
+        for (at, motion) in &nearest {
+            let others = nearest.iter().map(|(other, _)| other).filter(|other| *other != at);
+            let weight: f64 = others.map(|other| (part - other) / (at - other)).product();
+            guess += &motion.unknowns * weight;
+        }
+        let none = VerificationError::NoMode {
+            number: mode.number,
+            amplitude: symbol,
+            reached: part * largest,
+        };
+        let motion = truth.motion_near(guess, part * largest);
+        motion.map(|motion| motion.frequency()).ok_or(none)
+    };
+    // omega = omega_0 + c a^2 + ... at amplitudes whose motions are lost in rounding.
+    let bend = near(SMALL)? - truth.linear_frequency;
+    let found = par_map(amplitudes, |&amplitude| match amplitude / largest {
+        part if part < SMALL => Ok(truth.linear_frequency + bend * (part / SMALL).powi(2)),
+        part => near(part),
+    });
+    found.into_iter().collect()
 }
 
 /// The coefficients of `omega^2` in powers of the amplitude.

@@ -1,7 +1,7 @@
-//! `1/omega` of the motions of a range, enclosed: on each of some pieces a polynomial in the variable with
-//! a bound of its distance from the truth.
+//! `1/omega` of the motions of a range, or T/T_0 and the restitution of its contacts, enclosed: on each of
+//! some pieces a polynomial in the variable with a bound of its distance from the truth.
 //!
-//! In: a force with a variable, and a range of it. Out: pieces, each as wide as a bound of `|1/omega|` on
+//! In: a force with a variable, and a range of it. Out: pieces, each as wide as a bound of these on
 //! a disc of complex values about it allows. A piece costs some seventeen series of `G^(-1/2)`, of a
 //! force that is not odd with the other turning point of each motion besides.
 //!
@@ -14,7 +14,8 @@ use num_traits::Zero as _;
 use super::super::coordinate;
 use super::super::force::{along_all, is_odd};
 use super::super::fourier_series::{FourierSeries, WORKING};
-use super::jet::widened;
+use super::contact::{self, ContactMean};
+use super::jet::{Jet, widened};
 use super::{LawNotProved, StartOfLaw};
 use crate::conservative::CentredForce;
 use crate::exact::ball::Ball;
@@ -23,6 +24,7 @@ use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
 use crate::interrupt::Supervision;
+use crate::parallel::par_map;
 use crate::symbol::Symbol;
 
 /// The force of a law and its derivatives, in one variable.
@@ -47,16 +49,39 @@ pub(super) struct ForceOnRange {
     pub(super) power: u32,
     /// Whether the variable is r.
     pub(super) is_far: bool,
+    /// The contact whose time the motion gives; `None` for the frequency.
+    contact: Option<ContactMean>,
 }
 
-/// `1/omega` on a part of the range, as a polynomial in `e = (v - middle)/half`.
+/// `1/omega`, or T/T_0 and the restitution, on a part of the range.
 pub(super) struct TruthPiece {
     pub(super) middle: Rational,
     pub(super) half: Rational,
+    pub(super) truth: PiecePolynomial,
+    /// The restitution of a contact; `None` for a frequency.
+    pub(super) restitution: Option<PiecePolynomial>,
+}
+
+/// A quantity on a part of the range, as a polynomial in `e = (v - middle)/half`.
+pub(super) struct PiecePolynomial {
     /// Its coefficients, the constant first.
-    pub(super) coefficients: Vec<Ball>,
-    /// Bound of the distance of `1/omega` from the polynomial.
+    coefficients: Vec<Ball>,
+    /// Bound of the distance of the quantity from the polynomial.
     pub(super) remainder: Bound,
+}
+
+impl PiecePolynomial {
+    /// The polynomial and its derivative by the variable, on a piece of this half width.
+    pub(super) fn at(&self, e: &Ball, half: &Rational) -> Jet {
+        let (mut value, mut slope) = (Ball::zero(), Ball::zero());
+        for coefficient in self.coefficients.iter().rev() {
+            slope = WORKING.sum(&WORKING.product(&slope, e), &value);
+            value = WORKING.sum(&WORKING.product(&value, e), coefficient);
+        }
+        let slope = WORKING.quotient(&slope, &WORKING.fraction(half));
+        let slope = slope.unwrap_or(Ball { middle: Integer::zero(), radius: Bound::UNKNOWN });
+        Jet { value, slope }
+    }
 }
 
 /// Number of places at which `1/omega` is computed on a piece, and the ratio of the radius of the disc
@@ -73,9 +98,16 @@ fn moving() -> Symbol {
 }
 
 /// The motion `x = m + r cos(theta)`.
-struct Extent {
-    middle: Ball,
-    radius: Ball,
+pub(super) struct Extent {
+    pub(super) middle: Ball,
+    pub(super) radius: Ball,
+}
+
+/// G on a disc of complex values of the variable.
+struct RateOnDisc {
+    rate: FourierSeries,
+    /// The motions of the disc, and their other turning points; `None` for an odd force.
+    motions: Option<(Extent, Ball)>,
 }
 
 impl ForceOnRange {
@@ -95,7 +127,26 @@ impl ForceOnRange {
             + force.differentiate(variable)?.differentiate(variable)?;
         let is_odd = is_odd(&force, &[coordinate()])?;
         let start = start.clone();
-        Ok(Self { start, variable, force, by_place, is_odd, slope, curvature, bend, power, is_far })
+        let contact = None;
+        Ok(Self {
+            start,
+            variable,
+            force,
+            by_place,
+            is_odd,
+            slope,
+            curvature,
+            bend,
+            power,
+            is_far,
+            contact,
+        })
+    }
+
+    /// The swing whose mean is the time of a contact.
+    pub(super) fn of_contact(contact: ContactMean, variable: Symbol) -> Result<Self, LawNotProved> {
+        let swing = Self::new(&StartOfLaw::Variable, variable, contact::force()?, 0, false)?;
+        Ok(Self { contact: Some(contact), ..swing })
     }
 
     /// The pieces of a range, each as wide as a bound on a disc about it allows.
@@ -108,6 +159,8 @@ impl ForceOnRange {
         let steps = 1_u32 << THINNEST;
         let place =
             |position: u32| from + (to - from) * Rational::new(position.into(), steps.into());
+        let nodes = nodes();
+        let product = largest_product(&nodes);
         let (mut position, mut width) = (0, steps / 4);
         let mut pieces = vec![];
         while position < steps {
@@ -115,7 +168,7 @@ impl ForceOnRange {
                 return Err(LawNotProved::Stopped);
             }
             let next = (position + width).min(steps);
-            match self.piece(&place(position), &place(next)) {
+            match self.piece([&place(position), &place(next)], &nodes, product) {
                 Ok(piece) => {
                     pieces.push(piece);
                     (position, width) = (next, 2 * width);
@@ -128,11 +181,16 @@ impl ForceOnRange {
         Ok(pieces)
     }
 
-    /// `1/omega` between two places: the polynomial through its values at points like those of
+    /// The quantities between two places: the polynomials through their values at points like those of
     /// Chebyshev. With `|1/omega| <= M` on the disc of radius rho about the middle and `|v - middle| <=
     /// h`, it is off by at most `M rho/(rho - h) max |w(v)|/(rho - h)^n`, w the product of the distances
     /// from the points.
-    fn piece(&self, from: &Rational, to: &Rational) -> Result<TruthPiece, LawNotProved> {
+    fn piece(
+        &self,
+        [from, to]: [&Rational; 2],
+        nodes: &[Rational],
+        largest_product: Bound,
+    ) -> Result<TruthPiece, LawNotProved> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
         let radius = &half * Integer::from(WIDER);
@@ -141,23 +199,33 @@ impl ForceOnRange {
             true => self.bound_about_rest(&(&radius + &middle))?,
             false => self.bound_on_disc(&middle, &radius)?,
         };
-        let nodes = nodes();
-        let values = nodes
-            .iter()
-            .map(|node| self.inverse_frequency(&WORKING.fraction(&(&middle + &half * node))));
-        let values = values.collect::<Result<Vec<Ball>, _>>()?;
+        let place = |node: &Rational| WORKING.fraction(&(&middle + &half * node));
+        let values = par_map(nodes, |node| self.truth(&place(node)));
+        let values = values.into_iter().collect::<Result<Vec<Vec<Ball>>, _>>()?;
         // |w| on [-1, 1] in units of h, and the distance of the circle from the points in the same.
         let outside = f64::from(WIDER - 1);
-        let apart = (0..NODES).fold(largest_product(&nodes), |bound, _| bound.over(outside));
-        let remainder = largest * Bound::exactly(f64::from(WIDER)).over(outside) * apart;
-        Ok(TruthPiece { middle, half, coefficients: interpolated(&nodes, values), remainder })
+        let apart = (0..NODES).fold(largest_product, |bound, _| bound.over(outside));
+        let apart = Bound::exactly(f64::from(WIDER)).over(outside) * apart;
+        let quantity = |number: usize, largest: &Bound| {
+            let values = values.iter().filter_map(|all| all.get(number).cloned()).collect();
+            let coefficients = interpolated(nodes, values);
+            PiecePolynomial { coefficients, remainder: *largest * apart }
+        };
+        let mut quantities = largest.iter().enumerate().map(|(i, bound)| quantity(i, bound));
+        let none = || LawNotProved::NoValue("1/omega".to_owned());
+        let truth = quantities.next().ok_or_else(none)?;
+        Ok(TruthPiece { middle, half, truth, restitution: quantities.next() })
     }
 
     /// x(0) with the variable in a ball, and its derivative by the variable.
-    fn start(&self, variable: &Ball) -> [Ball; 2] {
-        match &self.start {
-            StartOfLaw::Variable => [variable.clone(), WORKING.integer(1)],
-            StartOfLaw::Fixed(start) => [WORKING.fraction(start), Ball::zero()],
+    fn start(&self, variable: &Ball) -> Result<[Ball; 2], LawNotProved> {
+        match (&self.contact, &self.start) {
+            (Some(contact), _) => {
+                let none = || LawNotProved::NoValue("log(1 + c*v)".to_owned());
+                contact.start(variable).ok_or_else(none)
+            }
+            (None, StartOfLaw::Variable) => Ok([variable.clone(), WORKING.integer(1)]),
+            (None, StartOfLaw::Fixed(start)) => Ok([WORKING.fraction(start), Ball::zero()]),
         }
     }
 
@@ -193,7 +261,7 @@ impl ForceOnRange {
 
     /// The motion at a value of the variable.
     fn extent(&self, place: &Ball) -> Result<Extent, LawNotProved> {
-        let [start, _] = self.start(place);
+        let [start, _] = self.start(place)?;
         match self.is_odd {
             true => Ok(Extent::of_odd(start)),
             false => {
@@ -236,31 +304,58 @@ impl ForceOnRange {
         }
     }
 
-    /// `1/omega` at a place that is not rest.
-    pub(super) fn inverse_frequency(&self, place: &Ball) -> Result<Ball, LawNotProved> {
+    /// `1/omega` at a place that is not rest, or T/T_0 and the restitution.
+    pub(super) fn truth(&self, place: &Ball) -> Result<Vec<Ball>, LawNotProved> {
         let extent = self.extent(place)?;
         let nothing = Extent::of_odd(Ball::zero());
         let rate = mean_rate(&self.along(&self.force, place, [&extent, &nothing])?);
         let rate = rate.over(&extent.radius);
-        Ok(mean(&root(&rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))?)?))
+        let root = self.root(&rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))?)?;
+        let Some(contact) = &self.contact else { return Ok(vec![mean(&root)]) };
+        let end = WORKING.difference(&extent.middle, &extent.radius);
+        let values = contact.values(&root, (&extent, &end), place);
+        Ok(values.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
     }
 
-    /// `1/omega` in the limit of small amplitudes.
-    pub(super) fn at_rest(&self) -> Result<Ball, LawNotProved> {
-        Ok(mean(&root(&self.stiffness(&Ball::zero())?)?))
+    /// That in the limit of small amplitudes.
+    pub(super) fn at_rest(&self) -> Result<Vec<Ball>, LawNotProved> {
+        match &self.contact {
+            Some(_) => Ok(vec![WORKING.integer(1); 2]),
+            None => Ok(vec![mean(&self.root(&self.stiffness(&Ball::zero())?)?)]),
+        }
     }
 
-    /// A bound of `|1/omega|` for all complex values of the variable within a distance of one: by the
-    /// mean value theorem, whose norms hold for complex numbers too.
-    fn bound_on_disc(&self, middle: &Rational, radius: &Rational) -> Result<Bound, LawNotProved> {
+    /// `G^(-1/2)`, or the power that is that of the contact.
+    fn root(&self, rate: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
+        let rate = rate.clone().of_digits(DIGITS);
+        let root = match &self.contact {
+            Some(contact) => contact.weighted(&rate),
+            None => rate.inverse_root(2),
+        };
+        root.ok_or_else(|| LawNotProved::NoValue("G^(-1/2)".to_owned()))
+    }
+
+    /// Bounds of the sizes of the quantities for all complex values of the variable within a distance of
+    /// one: by the mean value theorem, whose norms hold for complex numbers too.
+    fn bound_on_disc(
+        &self,
+        middle: &Rational,
+        radius: &Rational,
+    ) -> Result<Vec<Bound>, LawNotProved> {
         let (place, spread) = (WORKING.fraction(middle), Bound::of_fraction(radius));
         let all = widened(&place, spread);
-        let rate = match (self.is_odd, &self.start) {
+        let of_odd = |rate: FourierSeries| RateOnDisc { rate, motions: None };
+        let on_disc = match (self.is_odd, &self.start) {
             (false, _) => self.rate_on_disc(&place, &all, spread)?,
-            (true, StartOfLaw::Fixed(_)) => self.rate_by_parameter(&place, &all, spread)?,
-            (true, StartOfLaw::Variable) => self.rate_by_amplitude(&place, &all, spread)?,
+            (true, StartOfLaw::Fixed(_)) => of_odd(self.rate_by_parameter(&place, &all, spread)?),
+            (true, StartOfLaw::Variable) => of_odd(self.rate_by_amplitude(&place, &all, spread)?),
         };
-        Ok(root(&rate)?.norm())
+        let root = self.root(&on_disc.rate)?;
+        let (Some(contact), Some((extent, end))) = (&self.contact, &on_disc.motions) else {
+            return Ok(vec![root.norm()]);
+        };
+        let bounds = contact.bounds(&root, (extent, end), &all);
+        Ok(bounds.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
     }
 
     /// G on a disc of a parameter, of an odd force whose motion has one amplitude.
@@ -321,9 +416,9 @@ impl ForceOnRange {
         place: &Ball,
         all: &Ball,
         spread: Bound,
-    ) -> Result<FourierSeries, LawNotProved> {
+    ) -> Result<RateOnDisc, LawNotProved> {
         let none = || LawNotProved::NoValue("the turning point".to_owned());
-        let ([start, _], [start_on_all, change]) = (self.start(place), self.start(all));
+        let ([start, _], [start_on_all, change]) = (self.start(place)?, self.start(all)?);
         let end = self.turning_point(place, &start)?;
         let nothing = Extent::of_odd(Ball::zero());
         let by_variable = self.force.differentiate(self.variable)?;
@@ -353,10 +448,11 @@ impl ForceOnRange {
         let turned = FourierSeries::constant(change.radius.clone());
         let by_variable = over(&slope, &on_all.radius)?
             .difference(&over(&force_on_all, &square)?.product(&turned));
-        Ok(over(&force, &extent.radius)?.widened(spread * by_variable.norm()))
+        let rate = over(&force, &extent.radius)?.widened(spread * by_variable.norm());
+        Ok(RateOnDisc { rate, motions: Some((on_all, end_on_all)) })
     }
 
-    /// A bound of `|1/omega|` for all complex amplitudes up to a size R: `f(x) = f'(0) x + g(x)` with
+    /// Bounds of the sizes of the quantities for all complex amplitudes up to a size R: `f(x) = f'(0) x + g(x)` with
     /// `|g| <= |x|^2 M/2`, M a bound of f'' on `|x| <= 2 R`.
     ///
     /// ```text
@@ -364,16 +460,19 @@ impl ForceOnRange {
     /// else:   V = f'(0) x^2/2 (1 + e(x)),  |e| <= e_0 = 2 R M/(3 f'(0)),   b = -v u,  u^2 = (1 + e(v))/(1 + e(b)),
     ///         |u - 1| <= w = 2 e_0/(1 - e_0) <= 1,    |G - f'(0)| <= (2/3) R M (1 + w)^2/(1 - w/2)
     /// ```
-    fn bound_about_rest(&self, size: &Rational) -> Result<Bound, LawNotProved> {
-        let spread = Bound::of_fraction(size);
+    fn bound_about_rest(&self, size: &Rational) -> Result<Vec<Bound>, LawNotProved> {
+        let spread = match &self.contact {
+            Some(contact) => Bound::of_fraction(&contact.largest_start(size)),
+            None => Bound::of_fraction(size),
+        };
         let stiffness = self.stiffness(&Ball::zero())?;
         let nothing = Extent::of_odd(Ball::zero());
         let bend = |size: Bound| -> Result<Bound, LawNotProved> {
             let all = Extent::of_odd(widened(&Ball::zero(), size));
             Ok(self.along(&self.bend, &Ball::zero(), [&all, &nothing])?.norm())
         };
-        let distance = match self.is_odd {
-            true => spread * bend(spread)? / 2,
+        let (distance, w) = match self.is_odd {
+            true => (spread * bend(spread)? / 2, Bound::ZERO),
             false => {
                 let bend = bend(spread * Bound::exactly(2.0))?;
                 let least = WORKING.distance_from_zero(&stiffness.at_zero());
@@ -384,10 +483,13 @@ impl ForceOnRange {
                 }
                 let wide = Bound::exactly(1.0) + w;
                 let third = spread * bend * wide * wide * Bound::exactly(2.0) / 3;
-                third.over((w / 2).below_complement())
+                (third.over((w / 2).below_complement()), w)
             }
         };
-        Ok(root(&stiffness.widened(distance))?.norm())
+        let root = self.root(&stiffness.widened(distance))?;
+        let Some(contact) = &self.contact else { return Ok(vec![root.norm()]) };
+        let bounds = contact.bounds_about_rest(&root, w, size);
+        Ok(bounds.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
     }
 }
 
@@ -415,12 +517,6 @@ fn work_between(force: &FourierSeries) -> Ball {
         sum = WORKING.difference(&sum, &WORKING.divided(&force.cosine(k), divisor));
     }
     widened(&sum, force.tail)
-}
-
-/// `G^(-1/2)`.
-fn root(rate: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
-    let root = rate.clone().of_digits(DIGITS).inverse_root(2);
-    root.ok_or_else(|| LawNotProved::NoValue("G^(-1/2)".to_owned()))
 }
 
 /// Fractions near the points of Chebyshev between -1 and 1.

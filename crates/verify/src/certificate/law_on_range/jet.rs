@@ -8,7 +8,7 @@ use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use super::super::force::function_of;
 use super::super::fourier_series::{FourierSeries, WORKING};
-use super::LawNotProved;
+use super::{LawNotProved, restitution};
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
@@ -101,18 +101,21 @@ pub(super) struct Variable {
     place: Ball,
     pub(super) from: Rational,
     to: Rational,
+    /// The restitution of a contact there.
+    pub(super) restitution: Option<Jet>,
 }
 
 impl Variable {
     pub(super) fn at(place: &Rational) -> Self {
-        Self { place: WORKING.fraction(place), from: place.clone(), to: place.clone() }
+        let (from, to) = (place.clone(), place.clone());
+        Self { place: WORKING.fraction(place), from, to, restitution: None }
     }
 
     pub(super) fn between(from: &Rational, to: &Rational) -> Self {
         let two = Integer::from(2);
         let half = Bound::of_fraction(&((to - from) / &two));
         let place = widened(&WORKING.fraction(&((from + to) / &two)), half);
-        Self { place, from: from.clone(), to: to.clone() }
+        Self { place, from: from.clone(), to: to.clone(), restitution: None }
     }
 
     /// `r^exponent` with its slope, for an exponent that is not negative.
@@ -182,6 +185,9 @@ pub(super) fn law_along(
                     jet: Jet::constant(WORKING.integer(1)),
                 },
             }),
+            Node::Symbol(name) if *name == restitution() => {
+                variable.restitution.clone().map(unscaled)
+            }
             Node::Symbol(_) => None,
             Node::Sum(_) => {
                 let least = parts.iter().map(|part| &part.power).min()?;

@@ -1,10 +1,10 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
 A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, of one
-coordinate or several, whose equations have polynomials, sin and cos, and of laws on a range: the largest error of a formula for the
-frequency over all amplitudes up to one, or all values of a parameter, up to infinity too. What a file claims of the stability is not
-looked at. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a series is a list of cosine coefficients,
-one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below and from above, after every claim of the
+coordinate or several, whose equations have polynomials, sin, cos and exp, and of laws on a range: the largest error of a formula for the
+frequency over all amplitudes up to one, or all values of a parameter, up to infinity too, or of one for the duration of a contact over
+all speeds up to one. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of
+m, in units of 2^-P; a series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below and from above, after every claim of the
 file has been held against it, or says which inequality or claim does not hold."""
 import functools
 import heapq
@@ -25,8 +25,8 @@ LONGEST = 1600                              # no series has more harmonics: what
 SECONDS = 120                               # a file may come from anybody
 MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
 CYCLES, ALL_DRIVEN = "q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"
-LAW = "x''+f(x,p)=0"
-FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")    # of a law; a force has two of them
+LAW, CONTACT = "x''+f(x,p)=0", "x''+f(x,x')=0"
+FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")    # of a law; a force has three of them
 smallest = ONE >> 150                       # harmonics below this at the end of a series are a part of its tail
 begun = time.monotonic()
 
@@ -259,6 +259,21 @@ def widened(u, r):
     return u[0], u[1], u[2] + r
 
 
+def exponential_of(u):
+    """exp(u) = exp(c_0) exp(u - c_0)."""
+    first, y, halvings = at(u[0], 0), ([ZERO] + u[0][1:], u[1], u[2]), 6
+    while norm(y) << 6 > ONE << halvings:
+        halvings += 1
+    demand(halvings < 14, "the argument of exp is too large")
+    y, result = shrunk(y, 1 << halvings), constant(1)
+    for k in range(18, 0, -1):
+        result = plus(constant(1), shrunk(times(y, result), k))
+    result = widened(result, ONE >> 150)    # 2^-114/19! is below 2^-170
+    for _ in range(halvings):
+        result = times(result, result)
+    return times(result, ([exponential(first)], [], 0))
+
+
 def sine_and_cosine(u):
     halvings = 0
     while norm(u) << 1 > ONE << halvings:
@@ -280,11 +295,11 @@ def sine_and_cosine(u):
 def parse(text, letters, law=False):
     """sum := product (+|- product)*, product := power (*|/ power)*, power := atom (^ power), atom := number | letter | sin(sum) | (sum)
     A law has more functions, quotients, pi, and powers that are fractions."""
-    kind, functions = ("law", FUNCTIONS) if law else ("force", ("sin", "cos"))
+    kind, functions = ("law", FUNCTIONS) if law else ("force", ("sin", "cos", "exp"))
     unknown = f"a {kind} that this program does not know"
     demand(len(text) <= SIZES["force"], f"a {kind} of at most 2000 characters")
     decimal = r"\d+(?:\.\d*)?(?:e[-+]?\d+)?" if law else r"\d+(?:\.\d+)?"
-    tokens = re.findall(rf"\s*({decimal}|[A-Za-z_][A-Za-z0-9_]*|[-+*/^()]|\S)", text, re.ASCII) + [""]
+    tokens = re.findall(rf"\s*({decimal}|[A-Za-z_][A-Za-z0-9_]*'?|[-+*/^()]|\S)", text, re.ASCII) + [""]
     place, depth = 0, 0
 
     def peek():
@@ -417,8 +432,11 @@ def jets(tree, waves, names):
                 base = jet_times(base, base)
         return result
     u, du, ddu = jets(tree[1], waves, names)
-    s, c = sine_and_cosine(u)
-    f, df, ddf = (s, c, minus(s)) if kind == "sin" else (c, minus(s), minus(c))
+    if kind == "exp":
+        f = df = ddf = exponential_of(u)
+    else:
+        s, c = sine_and_cosine(u)
+        f, df, ddf = (s, c, minus(s)) if kind == "sin" else (c, minus(s), minus(c))
     second = lambda i, j: plus(times(ddf, times(du[i], du[j])), times(df, ddu[i][j]))
     return f, [times(df, part) for part in du], [[second(i, j) for j in places] for i in places]
 
@@ -466,17 +484,17 @@ def parity_by_parts(tree, turned):
         return 1 if tree[2] == 0 else None if inner is None else inner ** tree[2]
     if inner in (1, None):
         return 1
-    return (-1 if kind == "sin" else 1) if inner == -1 else 0
+    return {"sin": -1, "cos": 1, "exp": 0}[kind] if inner == -1 else 0
 
 
 def expanded(tree, atoms=False):
-    """The polynomial as a table of monomials; None where it is none, or too long. With atoms a sine and a cosine are letters."""
+    """The polynomial as a table of monomials; None where it is none, or too long. With atoms sin, cos and exp are letters."""
     kind = tree[0]
     if kind == "number":
         return {(): tree[1]} if tree[1] else {}
     if kind == "letter":
         return {((tree[1], 1),): Fraction(1)}
-    if kind in ("sin", "cos"):
+    if kind in ("sin", "cos", "exp"):
         return {((repr(tree), 1),): Fraction(1)} if atoms else None
     parts = [expanded(part, atoms) for part in tree[1]] if kind in "+*" else [expanded(tree[1], atoms)] * tree[2]
     if any(part is None for part in parts):
@@ -525,6 +543,8 @@ def slope(tree, name):
     inner = slope(tree[1], name)
     if kind == "^":
         return ("*", [("number", Fraction(tree[2])), ("^", tree[1], tree[2] - 1), inner]) if tree[2] else ("number", Fraction(0))
+    if kind == "exp":
+        return ("*", [tree, inner])
     return ("*", [("cos", tree[1]), inner] if kind == "sin" else [("number", Fraction(-1)), ("sin", tree[1]), inner])
 
 
@@ -940,8 +960,13 @@ def formula_amplitude(u, harmonic):
     return 0, size(a) + size(b)
 
 
-# Laws on a range. Along x = a cos(theta), f = sum_k F_k cos(k theta) with odd k alone, 1/omega is the mean of G^(-1/2), and
-# a G = F_1 + 8 sum_{j >= 1} j cos(2 j theta) sum_{odd k > 2 j} F_k/(k^2 - 1), which has no larger norm than f. The norms hold for complex
+# Laws on a range. The motion from rest at a turns at b, where V(b) = V(a). Along x = m + r cos(theta), between b = m - r and a = m + r,
+# f = sum_k F_k cos(k theta), and G = 2 (V(a) - V(x))/(r sin(theta))^2, so that 1/omega is the mean of G^(-1/2). V(a) - V(x) is r times
+# the integral of f sin from 0 to theta. Over the whole way that is (V(a) - V(b))/r = 2 S[f], S[f] = sum_{even k} F_k/(1 - k^2); what F_0
+# gives is taken from S[f] = 0, and then r G = L[f] with L[cos(theta)] = 1, L[1] = 0 and
+# L[cos(k theta)] = 4/(k^2 - 1) sum_{0 < l < k, k - l odd} l cos(l theta),
+# of the norm 1 where k is odd, k^2/(k^2 - 1) where it is even: no more than 4/3 times the norm of f. An odd force has m = 0 and odd k
+# alone. Wherever a real m with S[f] = 0 has a G > 0, the motion from rest at a is the one between these ends. The norms hold for complex
 # values too: a ball of the variable stands for a disc where no root of it is taken.
 
 NODES = [round(65536 * math.cos(math.pi * (i + 0.5) / 16)) for i in range(16)]      # in units of 2^-16, near the points of Chebyshev
@@ -962,7 +987,7 @@ def part_of(r, s):                          # of what is known by norms: the pro
 
 
 class Family:
-    """The motions x'' + f(x, v) = 0 from rest at x = start, or at v where start is None."""
+    """The motions x'' + f(x, v) = 0 from rest at x = start, or at v where start is None, of an f that is odd in x."""
 
     def __init__(self, force, name, start):
         self.force, self.name, self.start = force, name, start
@@ -984,11 +1009,7 @@ class Family:
     def inverse_frequency(self, v):
         if self.start is None and v == ZERO:
             return root(quotient((ONE, 0), self.stiffness()))
-        g, w, d = inverse_root(divided(rate(self.along(v, ())[0]), self.amplitude(v)))
-        # G^(-1/2) = g (1 - w)^(-1/2), of which 1 + w/2 leaves less than d^2 + d^3 + ...
-        middle = add(mul(at(g[0], 0), at(w[0], 0)), over(total(mul(a, b) for a, b in zip(g[0][1:], w[0][1:])), 2))
-        rest = up(part_of(norm(g), w[2]), 2) + up(part_of(norm(g), d) * d, ONE - d)
-        return enlarged(add(at(g[0], 0), over(middle, 2)), rest)
+        return mean_of_root(divided(rate(self.along(v, ())[0]), self.amplitude(v)))
 
     def bound_on_disc(self, middle, radius):
         """A bound of |1/omega| for complex v within the radius of the middle, by the mean value of G."""
@@ -1045,13 +1066,203 @@ class Family:
             place, width = place + width, 2 * width
 
 
-def rate(f):                                # a G
-    c, sum_beyond = [ZERO] * max(1, last(f)), ZERO
-    for k in range((last(f) - 1) // 2 * 2 + 1, 1, -2):
-        sum_beyond = add(sum_beyond, over(at(f[0], k), k * k - 1))
-        c[k - 1] = scale(sum_beyond, 4 * (k - 1))
+class Swing(Family):
+    """The same of any f. Of the variable v the turning place b is a function by V(b) = V(a), and m = (a + b)/2."""
+
+    def __init__(self, force, name, start):
+        super().__init__(force, name, start)
+        self.turn = -1.0                    # b/a, nearly, of the motion before
+
+    def stiffness(self):
+        demand(at_zero(self.force) == 0, REST)
+        k = super().stiffness()
+        demand(k[0] > k[1], "the slope of f at x = 0 is not positive")
+        return k
+
+    def turn_nearly(self, v):
+        """By Newton's steps for the place b where the integral of f from b to a is zero. No bound depends on how near it is."""
+        v = v[0] / ONE
+        a, weights = v if self.start is None else float(self.start), weights_of_fejer(48)
+        b = a * self.turn
+        try:
+            force = lambda x: nearly(self.force, {"x": x, self.name: v})
+            for _ in range(100):
+                m, r, steep = (a + b) / 2, (a - b) / 2, force(b)
+                if steep >= 0:              # beyond another place of rest
+                    b /= 2
+                    continue
+                step = r * sum(weight * force(m + r * place) for place, weight in weights) / steep
+                b += step
+                if abs(step) < 1e-14 * (abs(a) + abs(b)):
+                    self.turn = b / a
+                    return number(Fraction(round(b * 2.0 ** 70), 1 << 70))
+        except (OverflowError, ZeroDivisionError, ValueError):
+            pass
+        raise NotProved(TURN)
+
+    def series(self, v, b):
+        """m, r and f along the motion, where V(b) = V(a) or nearly."""
+        a = self.amplitude(v)
+        m, r = over(add(a, b), 2), over(add(a, b, -1), 2)
+        f = jets(self.force, {"x": ([m, r], [], 0), self.name: ([v], [], 0)}, ())[0]
+        demand(not f[1], "sines in a force along cosines")
+        return f, r
+
+    def uphill(self, v, b):                 # the integral of f from b to a
+        f, r = self.series(v, b)
+        return mul(scale(r, 2), over_the_way(f))
+
+    def at_place(self, x, v, by="x"):       # f and its slope
+        return pair_at(self.force, {"x": (x, (ONE if by == "x" else 0, 0)), self.name: (v, (ONE if by != "x" else 0, 0))})
+
+    def inverse_frequency(self, v):
+        if self.start is None and v == ZERO:
+            return root(quotient((ONE, 0), self.stiffness()))
+        # By Newton's step on a ball, which has the root in it where the step leads into it.
+        b = self.turn_nearly(v)
+        off = self.uphill(v, b)
+        spread = 2 * size(quotient(off, self.at_place(b, v)[0])) + (ONE >> 150)
+        step = quotient(off, self.at_place(enlarged(b, spread), v)[0])
+        demand(size(step) < spread, TURN)
+        f, r = self.series(v, add(b, step))
+        return mean_of_root(divided(rate(f), r))
+
+    def bound_on_disc(self, middle, radius):
+        """With b_0 and a_0 of the middle, b -> b + (V(a) - V(b))/f(b_0) maps the disc |b - b_0| <= e into itself and contracts it, for all v
+        of the disc: so b is an analytic function of v. V(a) - V(b) changes from the middle by the integrals of f from a_0 to a and from b to
+        b_0 and by what the force itself changes on the way. G is the mean of f' on the triangle of a, b and x: at x = b + t (a - b)
+        it is 2/t times the integral of u f'(b + u (a - b)) over u < t, and 2/(1 - t) times that of (1 - u) f' over u > t. Where its real
+        part is at least R > 0, |1/omega| is no more than R^(-1/2)."""
+        if self.start is None:
+            try:
+                return self.bound_about_rest(middle + radius)
+            except Settled:
+                raise
+            except NotProved:               # too far from rest
+                pass
+        v, spread = number(middle), reach(radius)
+        everywhere, a, b = enlarged(v, spread), self.amplitude(v), self.turn_nearly(v)
+        if self.start is None:
+            off_a, push = spread, part_of(spread, size(self.at_place(enlarged(a, spread), v)[0]))
+        else:
+            off_a, changed = 0, sum(size(self.at_place(x, everywhere, self.name)[1]) for x in self.cells(a, 0, b, 0))
+            push = up(part_of(spread, part_of(changed, size(add(a, b, -1)))), CELLS)
+        push += size(self.uphill(v, b))
+        steep = (-self.at_place(b, v)[0][0], 0)
+        demand(steep[0] > 0, TURN)
+        for quarters in (5, 6, 8, 12):
+            off_b = up(quarters * push * ONE, 4 * steep[0]) + (ONE >> 150)
+            bent = size(add(self.at_place(enlarged(b, off_b), everywhere)[0], steep))
+            if bent < steep[0] and push < part_of(off_b, steep[0] - bent) - 1:
+                break
+        else:
+            raise NotProved(TURN)
+        lowest = [at_x[0] - at_x[1] for at_x in (self.at_place(x, everywhere)[1] for x in self.cells(a, off_a, b, off_b))]
+        below = least_mean(lowest)
+        demand(below > 0, "G is not positive")
+        return size(root(quotient((ONE, 0), (below, 0))))
+
+    def cells(self, a, off_a, b, off_b):
+        """Balls with all b + t (a - b), t from k/n to (k + 1)/n, of a and b within these distances."""
+        way = add(a, b, -1)
+        for k in range(CELLS):
+            in_time()
+            x = add(b, over(scale(way, 2 * k + 1), 2 * CELLS))
+            off = max(up((CELLS - j) * off_b + j * off_a, CELLS) for j in (k, k + 1))
+            yield enlarged(x, up(size(way), 2 * CELLS) + off)
+
+    def bound_about_rest(self, radius):
+        """The same for |a| up to the radius R, on the disc |m| <= R/2, where |x| <= 2 R and |f''| <= B: |S| <= R^2 B/2 at m = 0, the slope of
+        S by m is within 4 R B of k = f'(0), and G within 2 R B of it."""
+        R, k = reach(radius), self.stiffness()
+        B = part_of(R, norm(jets(self.force, {"x": ([(0, 2 * R)], [], 0)}, ("x",))[2][0][0]))
+        demand(5 * B < least(k), TURN)
+        return size(root(quotient((ONE, 0), (least(k) - 2 * B, 0))))
+
+
+CELLS = 64                                  # of the way from b to a
+TURN, REST = "the place where the motion turns is not enclosed", "f is not seen to be zero at x = 0, where from begins"
+
+
+def least_mean(lowest):
+    """A bound from below, for t from 0 to 1, of 2/t times the integral of u h(u) over u < t and 2/(1 - t) times that of (1 - u) h(u) over
+    u > t, of an h that is at least this on each of equal cells."""
+    n, halves = len(lowest), []
+    for values in (lowest, lowest[::-1]):
+        # 2 n^2 times the integral, at the ends of cells, between which it rises or falls.
+        sums = [0]
+        for k, value in enumerate(values):
+            sums.append(sums[-1] + (2 * k + 1) * value)
+        # Over n^2 t, where t in the first cell is not bounded from below: there it is h t.
+        halves.append([min(0, values[0]) // n] + [min(low // (k + 1), low // k) // n for k in range(1, n) for low in [min(sums[k:k + 2])]])
+    return min(map(sum, zip(halves[0], halves[1][::-1])))
+
+
+def pair_at(tree, letters):                 # a value and its slope, with pairs for letters, whose balls stand for discs too
+    kind = tree[0]
+    if kind == "number":
+        return number(tree[1]), ZERO
+    if kind == "letter":
+        return letters[tree[1]]
+    if kind == "+":
+        return tuple(map(total, zip(*(pair_at(part, letters) for part in tree[1]))))
+    if kind == "*":
+        return functools.reduce(pair_times, (pair_at(part, letters) for part in tree[1]))
+    u = pair_at(tree[1], letters)
+    if kind == "^":
+        return functools.reduce(pair_times, [u] * tree[2], ((ONE, 0), ZERO))
+    if kind == "exp":
+        value = exponential(u[0])
+        return inner(u, value, value)
+    s, c = angle(u[0])
+    return inner(u, s, c) if kind == "sin" else inner(u, c, scale(s, -1))
+
+
+def at_zero(tree):                          # the exact value where all letters are zero, if it is seen
+    kind = tree[0]
+    if kind in ("number", "letter"):
+        return tree[1] if kind == "number" else Fraction(0)
+    parts = [at_zero(part) for part in (tree[1] if kind in "+*" else [tree[1]])]
+    demand(not any(map(long, parts)), REST)
+    if kind in "+*":
+        return Fraction(sum(parts) if kind == "+" else math.prod(parts))
+    if kind == "^":
+        return parts[0] ** tree[2]
+    demand(parts[0] == 0, REST)
+    return Fraction(0 if kind == "sin" else 1)
+
+
+def nearly(tree, values):                   # in floating point
+    kind = tree[0]
+    if kind == "number":
+        return float(tree[1])
+    if kind == "letter":
+        return values[tree[1]]
+    if kind in "+*":
+        return (sum if kind == "+" else math.prod)(nearly(part, values) for part in tree[1])
+    inner = nearly(tree[1], values)
+    return inner ** tree[2] if kind == "^" else getattr(math, kind)(inner)
+
+
+@functools.lru_cache(maxsize=None)
+def weights_of_fejer(n):                    # places on (-1, 1) with their weights, which add up to 2
+    angles = [math.pi * (i + 0.5) / n for i in range(n)]
+    weight = lambda t: 2 / n * (1 - 2 * sum(math.cos(2 * j * t) / (4 * j * j - 1) for j in range(1, n // 2 + 1)))
+    return [(math.cos(t), weight(t)) for t in angles]
+
+
+def over_the_way(f):                        # S[f]
+    even = total(over(at(f[0], k), k * k - 1) for k in range(2, last(f) + 1, 2))
+    return enlarged(add(at(f[0], 0), even, -1), f[2])
+
+
+def rate(f):                                # L[f]
+    c, sums = [ZERO] * max(1, last(f)), [ZERO, ZERO]
+    for k in range(last(f), 1, -1):
+        sums[k % 2] = add(sums[k % 2], over(at(f[0], k), k * k - 1))
+        c[k - 1] = scale(sums[k % 2], 4 * (k - 1))
     c[0] = at(f[0], 1)
-    return trimmed(c, [], f[2])
+    return trimmed(c, [], up(4 * f[2], 3))
 
 
 def divided(u, by):
@@ -1066,16 +1277,17 @@ def cosines(n):                             # of k (i + 1/2) pi/n, by i and by k
     return rows, list(zip(*rows))
 
 
-def inverse_root(G):
-    """A series g, w = 1 - G g^2 and d >= ||w||, below 1: then G^(-1/2) = g (1 - w)^(-1/2), of a g that is somewhere positive."""
+def inverse_power(G, p, q):
+    """A series g, w = 1 - G^p g^q and d >= ||w||, below 1: then G^(-p/q) = g (1 - w)^(-1/q), of a g that is somewhere positive."""
     demand(norm(G) >> P < 1 << 500, "numbers that are too large")
-    rates, n = [m / ONE for m, _ in G[0][::2]], 16
+    step = 1 if any(a != ZERO for a in G[0][1::2]) else 2
+    rates, n = [m / ONE for m, _ in G[0][::step]], 16
     while True:
         if n >= len(rates):
             rows, columns = cosines(n)
             values = [sum(map(product_of, rates, row)) for row in rows]
             demand(min(values) > 1e-60, "G is not positive")
-            values = [value ** -0.5 for value in values]
+            values = [value ** (-p / q) for value in values]
             parts = [sum(map(product_of, values, column)) * 2 / n for column in columns]
             parts[0] /= 2
             noise = max(map(abs, parts)) * 4e-16
@@ -1085,18 +1297,44 @@ def inverse_root(G):
         demand(n <= 256, "a force with too many harmonics")
     while abs(parts[-1]) < noise:
         parts.pop()
-    c = [ZERO] * (2 * len(parts) - 1)
-    c[::2] = [(int(part * 2.0 ** 80) << P - 80, 0) for part in parts]
+    c = [ZERO] * (step * len(parts) - step + 1)
+    c[::step] = [(int(part * 2.0 ** 80) << P - 80, 0) for part in parts]
     g = c, [], 0
-    w = plus(constant(1), times(G, times(g, g)), -1)
+    w = plus(constant(1), times(power_of(G, p), power_of(g, q)), -1)
     d = norm(w)
     demand(d < ONE and total(c)[0] > 0, "G^(-1/2) is not enclosed")
     return g, w, d
 
 
+def inverse_root(G):
+    return inverse_power(G, 1, 2)
+
+
+def power_of(u, n):                         # of a positive n
+    half = power_of(u, n // 2) if n > 1 else None
+    return u if n == 1 else times(half, half) if n % 2 == 0 else times(times(half, half), u)
+
+
+def bound_near(G, p, q, changes):
+    """Of |(G + C)^(-p/q)|, p < q, where C is the sum of these series times numbers up to these: no more than |G^(-p/q)|/(1 - |C/G|)."""
+    g, _, d = inverse_power(G, p, q)
+    h, _, lost = inverse_power(G, 1, 1)
+    away = up(sum(part_of(most, norm(times(h, u))) for most, u in changes) * ONE, ONE - lost)
+    demand(away < ONE, "G^(-1/2) is not enclosed")
+    return up(norm(g) * ONE * ONE, (ONE - d) * (ONE - away))
+
+
 def bound_of_root(G):                       # of |G^(-1/2)|: ||g|| (1 - d)^(-1/2)
     g, _, d = inverse_root(G)
     return size(quotient((norm(g), 0), root((ONE - d, 0))))
+
+
+def mean_of_root(G):
+    g, w, d = inverse_root(G)
+    # G^(-1/2) = g (1 - w)^(-1/2), of which 1 + w/2 leaves less than d^2 + d^3 + ...
+    middle = add(mul(at(g[0], 0), at(w[0], 0)), over(total(mul(a, b) for a, b in zip(g[0][1:], w[0][1:])), 2))
+    rest = up(part_of(norm(g), w[2]), 2) + up(part_of(norm(g), d) * d, ONE - d)
+    return enlarged(add(at(g[0], 0), over(middle, 2)), rest)
 
 
 @functools.lru_cache(maxsize=None)
@@ -1196,6 +1434,9 @@ class Interval:
         self.ball = enlarged(number(middle), reach((high - low) / 2))
         self.slope = (ONE, 0) if low < high else None   # no one asks for it at a place
 
+    def letter(self, name):
+        return self.ball, self.slope
+
     def power(self, exponent):              # of r, with its slope
         if exponent == 0:
             return (ONE, 0), ZERO
@@ -1217,7 +1458,7 @@ def steps_of(tree):
         key, kind = repr(tree), tree[0]
         if key not in places:
             if kind in ("number", "pi", "letter"):
-                step = (kind, number(tree[1]) if kind == "number" else None)
+                step = (kind, number(tree[1]) if kind == "number" else tree[-1])
             else:
                 step = (kind, [put(part) for part in tree[1]] if kind in "+*" else put(tree[1]), *tree[2:])
             places[key] = len(steps)
@@ -1240,7 +1481,7 @@ def step_on(step, known, interval, none):
     if kind in ("number", "pi"):
         return none, (PI if kind == "pi" else step[1], ZERO)
     if kind == "letter":
-        return (Fraction(-1), ((ONE, 0), ZERO)) if interval.is_far else (none, (interval.ball, interval.slope))
+        return (Fraction(-1), ((ONE, 0), ZERO)) if interval.is_far else (none, interval.letter(step[1]))
     if kind == "+":
         terms = [known[part] for part in step[1]]
         if interval.is_far:
@@ -1268,7 +1509,7 @@ def step_on(step, known, interval, none):
 
 
 def over_truth(law, interval, inverse_frequency, n, growth):
-    """law/truth, where the truth is omega^n and 1/omega is r^(growth/2) times this pair."""
+    """law/truth, where the truth is omega^n and 1/omega is r^(growth/2) times this pair; of a contact T/T_0 is in the place of 1/omega."""
     power, u = law_on(law, interval)
     u = pair_times(u, pair_power(inverse_frequency, Fraction(n)))
     power += Fraction(growth * n, 2)
@@ -1286,7 +1527,7 @@ def on_polynomial(coefficients, per_half, e, with_slope=True):   # its value, an
     return value, mul(slope, per_half) if with_slope else None
 
 
-def largest_on(piece, law, n, growth, is_far, most, spoken):
+def largest_on(piece, law, n, growth, interval, most, spoken):
     """A bound of |law/truth - 1| on a piece, in parts on which it is at most this."""
     middle, half, coefficients, remainder = piece
     per_half, found, parts = number(1 / half), 0, [(Fraction(-1), Fraction(1), 0)]
@@ -1302,10 +1543,10 @@ def largest_on(piece, law, n, growth, is_far, most, spoken):
             # The polynomial stands for the truth up to this relative error.
             demand(least(truth[0]) > 0, "a frequency that may be infinite")
             off = pair_power(((ONE, up(remainder * ONE, least(truth[0]))), None), Fraction(n))[0]
-            there = over_truth(law, Interval(place, place, is_far), on_polynomial(coefficients, per_half, e, False), n, growth)[0]
+            there = over_truth(law, interval(place, place), on_polynomial(coefficients, per_half, e, False), n, growth)[0]
             if least(add(mul(there, off), (ONE, 0), -1)) > most:
                 raise Settled(f"at {spoken(place)} the error is above its bound")
-            q, slope = over_truth(law, Interval(*ends, is_far), truth, n, growth)
+            q, slope = over_truth(law, interval(*ends), truth, n, growth)
             if slope is not None:
                 by_slope = enlarged(there, part_of(part_of(spread, reach(half)), size(slope)))
                 q = min(q, by_slope, key=lambda ball: ball[1])
@@ -1328,9 +1569,9 @@ def in_reciprocal(force, name):
     terms, atoms = expanded(force, True), {}
 
     def look(tree):
-        if tree[0] in ("sin", "cos"):
+        if tree[0] in ("sin", "cos", "exp"):
             atoms[repr(tree)] = tree
-            demand(not has_letter(tree, name), "a sine or cosine of a parameter that goes to infinity")
+            demand(not has_letter(tree, name), f"a {tree[0]} of a parameter that goes to infinity")
         elif tree[0] not in ("number", "letter"):
             for part in tree[1] if tree[0] in "+*" else [tree[1]]:
                 look(part)
@@ -1353,41 +1594,252 @@ def has_letter(tree, name):
     return any(has_letter(part, name) for part in (tree[1] if tree[0] in "+*" else [tree[1]]))
 
 
+# The duration of a contact x'' = -k x^n (1 + c x') from x = 0 with x' = v until x = 0 again. With y = log(1 + c x') it is
+# exp(y) - 1 - y + c^2 k x^(n+1)/(n + 1) = V(a), and dt = -dy/(c k x^n): the y of a swing of the force exp(y) - 1 from a = log(1 + c v) to
+# b = log(1 - e c v), e the restitution. With nu = n/(n + 1) and s = 1 - 2 nu, T is a number times c^-s r^s times the integral of
+# sin^s(theta) G^(-nu), and at c = 0, where G = 1 and r is c v, T_0 is the same number times v^s times the integral of sin^s:
+# T/T_0 = (r/(c v))^s mean_s(G^(-nu)), with the weight sin^s in the mean. The middle of the swing is log(r/sinh(r)). So with z = 2 r
+# a = log(z/(1 - exp(-z))), b = log(z/(exp(z) - 1)), c v = z p/q, e = w/p, r/(c v) = q/(2 p), and G = K r/sinh(r), where
+# q = (exp(z) - 1)/z = sum z^k/(k + 1)!, p = q' = sum (k + 1) z^k/(k + 2)!, w = (q - 1)/z = sum z^k/(k + 2)!, sinh(r)/r = q exp(-r) and
+# K = L[exp(r cos(theta))]/r. p, q, w and the coefficients of K are power series with positive coefficients: within rho of a point r >= 0
+# of the complex plane none of them is farther from what it is there than what it is at r + rho. With r from 0 on v grows, as
+# z/(1 - exp(-z)) does.
+
+LONGEST_EXPONENT = 24                       # of n = a/b the largest a + b
+HARDEST = 100                               # the largest c v
+
+
+class Contact(Family):
+    """The contacts with c x' and the power n, of the variable r."""
+
+    def __init__(self, n, c, name):
+        self.c, self.name, self.start = c, name, "touch"
+        self.top, self.bottom, self.s = n.numerator, n.numerator + n.denominator, (1 - n) / (1 + n)
+
+    def shape(self, r):
+        """K and r times its slope by r. exp(r cos(theta)) has the cosines F_k = 2 I_k(r), F_k/r = sum_j (r/2)^(2 j + k - 1)/(j! (j + k)!), and its harmonics beyond
+        some k are no more in the norm than its powers of r beyond that."""
+        square, first, beyond = over(mul(r, r), 4), (ONE, 0), ONE
+        c, slopes, k = [ZERO], [ZERO], 1
+        while True:                         # first is (r/2)^(k-1)/k!, beyond r^(k-1)/k!
+            term, sum_of_terms, slope, j = first, first, scale(first, k - 1), 1
+            while True:
+                term = over(mul(term, square), j * (j + k))
+                sum_of_terms, slope = add(sum_of_terms, term), add(slope, scale(term, 2 * j + k - 1))
+                if 4 * size(square) < (j + 1) * (j + 1 + k) * ONE and size(term) < ONE >> 200:
+                    break                   # each that follows, with its factor, is less than half of the one before
+                j += 1
+            c.append(enlarged(sum_of_terms, size(term)))
+            slopes.append(enlarged(slope, (2 * j + k - 1) * size(term)))
+            k += 1
+            first, beyond = over(mul(first, over(r, 2)), k), up(part_of(beyond, size(r)), k)
+            if 4 * size(r) < (k + 1) * ONE and beyond < ONE >> 100:
+                return rate((c, [], 2 * beyond)), rate((slopes, [], 2 * k * beyond))
+
+    def inverse_frequency(self, r):
+        """T/T_0 of r."""
+        p, _, q, _, _ = around_rest(scale(r, 2))
+        g, w, d = inverse_power(divided(self.shape(r)[0], mul(q, exponential(scale(r, -1)))), self.top, self.bottom)
+        rest = up(part_of(norm(g), d) * d, ONE - d)
+        mean_of_power = enlarged(add(self.mean(g), over(self.mean(times(g, w)), self.bottom)), rest)
+        return mul(pair_power((quotient(q, scale(p, 2)), None), self.s)[0], mean_of_power)
+
+    def mean(self, u):
+        """With the weight sin^s cos(k theta) has M_0 = 1, M_1 = 0 and M_(k+2) = M_k (k - s)/(k + 2 + s), by the derivative of
+        sin^(s+1) cos((k+1) theta)."""
+        weight, result = (ONE, 0), ZERO
+        for k in range(0, last(u) + 1, 2):
+            result = add(result, mul(weight, at(u[0], k)))
+            top, bottom = k - self.s, k + 2 + self.s
+            weight = over(scale(weight, top.numerator * bottom.denominator), bottom.numerator * top.denominator)
+        return enlarged(result, u[2])
+
+    def bound_on_disc(self, middle, radius):
+        here, there, spread = number(middle), number(middle + radius), reach(radius)
+        at_here, at_there = around_rest(scale(here, 2)), around_rest(scale(there, 2))
+        per = (mul(at_here[2], exponential(scale(here, -1)))[0], 0)     # sinh(r)/r here, or nearly: G is K over that
+        K, slope, K_there = (divided(u, per) for u in (*self.shape(here), self.shape(there)[0]))
+        slope = divided(slope, here)
+        rest = plus(plus(K_there, K, -1), times(slope, ([(spread, 0)], [], 0)), -1)
+        bound = bound_near(K, self.top, self.bottom, [(spread, slope), (norm(rest), constant(1))])
+        p, _, q, _, _ = (enlarged(a, size(add(b, a, -1))) for a, b in zip(at_here, at_there))
+        p = scale(p, 2)
+        demand(least(p) > 0 and least(q) > 0, "the speed may be zero or infinite")     # and a root of them is taken
+        width = pair_power(((size(quotient(q, p) if self.s > 0 else quotient(p, q)), 0), None), abs(self.s))[0]
+        factor = up(part_of(size(q), size(exponential(enlarged(scale(here, -1), spread)))) * ONE, least(per))
+        return size(mul(mul(width, pair_power(((factor, 0), None), Fraction(self.top, self.bottom))[0]), (bound, 0)))
+
+    def letters(self, low, high):
+        """v and e between these r: by the values at the ends, or by those in the middle and the slopes, whichever is narrower."""
+        known = [hull(*parts) for parts in zip(*(around_rest(number(2 * r)) for r in (low, high)))]
+        v, e, slopes = self.speed_and_restitution(hull(number(2 * low), number(2 * high)), *known)
+        if low == high:
+            return {self.name: (v, None), "e": (e, None)}
+        middle, half = low + high, reach((high - low) / 2)
+        at_middle = self.speed_and_restitution(number(middle), *around_rest(number(middle)))[:2]
+        slopes = [scale(slope, 2) for slope in slopes]
+        balls = [min(ball, enlarged(there, part_of(half, size(slope))), key=lambda ball: ball[1])
+                 for ball, there, slope in zip((v, e), at_middle, slopes)]
+        return {self.name: (balls[0], slopes[0]), "e": (balls[1], slopes[1])}
+
+    def speed(self, r):                     # for a sentence
+        z = number(2 * r)
+        return Fraction(self.speed_and_restitution(z, *around_rest(z))[0][0], ONE)
+
+    def speed_and_restitution(self, z, p, dp, q, w, dw):   # and their slopes by z
+        per_c = number(1 / self.c)
+        speed, e = quotient(p, q), quotient(w, p)
+        slope = add(speed, mul(z, add(quotient(dp, q), mul(speed, speed), -1)))
+        return mul(mul(z, speed), per_c), e, (mul(slope, per_c), quotient(add(dw, mul(e, dp), -1), p))
+
+    def place(self, v):
+        """Two r that have this v between them, the second of no smaller v."""
+        low, high = 0, reach(self.c * v)    # c v >= z/2
+        speed_at = lambda r: self.speed_and_restitution((2 * r, 0), *around_rest((2 * r, 0)))[0]
+        while high - low > ONE >> 150:
+            middle = (low + high) // 2
+            speed, wanted = speed_at(middle), number(v)
+            if speed[0] + speed[1] <= wanted[0]:
+                low = middle
+            elif speed[0] - speed[1] >= sum(wanted):
+                high = middle
+            else:
+                break
+        return Fraction(low, ONE), Fraction(high, ONE)
+
+
+class Touch(Interval):
+    """A part of the r of contacts, or a place, with the letters of a law there."""
+
+    def __init__(self, low, high, letters):
+        super().__init__(low, high, False)
+        self.letters = letters
+
+    def letter(self, name):
+        return self.letters[name]
+
+
+def hull(a, b):                             # of two balls of the real line
+    low, high = min(a[0] - a[1], b[0] - b[1]), max(a[0] + a[1], b[0] + b[1])
+    return (low + high) // 2, up(high - low, 2) + 1
+
+
+@functools.lru_cache(maxsize=4096)
+def around_rest(z):                         # p, p', q, w, w' of a z that is not negative, by z^k/(k + 3)!
+    term, sums, k = over((ONE, 0), 6), [ZERO] * 5, 0
+    while True:
+        for place, factor in enumerate(((k + 1) * (k + 3), (k + 1) * (k + 2), (k + 2) * (k + 3), k + 3, k + 1)):
+            sums[place] = add(sums[place], scale(term, factor))
+        if 4 * size(z) < (k + 4) * ONE and size(term) < ONE >> 230:
+            break                           # each that follows, with its factor, is less than half of the one before
+        k += 1
+        term = over(mul(term, z), k + 3)
+    return tuple(enlarged(a, 2 * (k + 3) ** 2 * size(term)) for a in sums)
+
+
+def contact_of(text):
+    """n and c of k x^n (1 + c x'), as a sum of k x^n and k c x^n x'."""
+    def terms_of(tree):                     # coefficients by the powers of x and of x'
+        kind = tree[0]
+        if kind == "number":
+            return {(Fraction(0), 0): tree[1]}
+        if kind == "letter":
+            return {(Fraction(1), 0) if tree[1] == "x" else (Fraction(0), 1): Fraction(1)}
+        if kind == "+":
+            result = {}
+            for part in tree[1]:
+                for powers, value in terms_of(part).items():
+                    result[powers] = result.get(powers, 0) + value
+        elif kind == "*":
+            result = {(Fraction(0), 0): Fraction(1)}
+            for part in tree[1]:
+                product = {}
+                for one, value in result.items():
+                    for other, factor in terms_of(part).items():
+                        powers = one[0] + other[0], one[1] + other[1]
+                        product[powers] = product.get(powers, 0) + value * factor
+                result = product
+                demand(len(result) <= 50 and not any(map(long, result.values())), unknown)
+        else:
+            demand(kind == "^", unknown)
+            base = terms_of(tree[1])
+            demand(base in ({(Fraction(1), 0): 1}, {(Fraction(0), 1): 1}) or tree[2] in (1, -1) and len(base) == 1, unknown)
+            (powers, value), = base.items()
+            demand(value != 0 and (powers[1] * tree[2]).denominator == 1, unknown)
+            result = {(powers[0] * tree[2], int(powers[1] * tree[2])): value if tree[2] > 0 else 1 / value}
+        return {powers: value for powers, value in result.items() if value}
+
+    unknown = "f is not seen to be k*x^n*(1 + c*x')"
+    try:
+        terms = terms_of(parse(text, {"x", "x'"}, True))
+    except NotProved as error:
+        raise NotProved(unknown if str(error) == unknown else f"{unknown}: {error}")
+    demand(len(terms) == 2 and sorted(power for _, power in terms) == [0, 1] and len({n for n, _ in terms}) == 1, unknown)
+    n = min(terms)[0]
+    k, c = terms[n, 0], terms[n, 1] / terms[n, 0]
+    demand(k > 0 and c > 0 and n > 0, "f is k*x^n*(1 + c*x') with a k, n or c that is not positive")
+    demand(n.numerator + n.denominator <= LONGEST_EXPONENT, f"a power n of x in f whose numerator and denominator are together above {LONGEST_EXPONENT}")
+    return n, c
+
+
 def check_law(z):
     global smallest
     smallest = ONE >> 80                    # many short series
-    keys(z, {"schema", "ode", "f", "variable", "start", "quantity", "law", "from", "to", "worst", "error"}, set(), "the file")
+    keys(z, {"schema", "ode", "f", "variable", "start", "quantity", "law", "from", "to", "worst", "error"}, {"mass"}, "the file")
+    demand(z.get("mass") is None, "a mass that depends on the position is beyond this program")
     name = of_form("[A-Za-z_][A-Za-z0-9_]*", z["variable"], "a name in variable")
-    demand(name not in FUNCTIONS + ("x", "pi"), "a variable with the name of something else")
+    is_contact = z["ode"] == CONTACT
+    demand(name not in FUNCTIONS + ("x", "pi") + (("e",) if is_contact else ()), "a variable with the name of something else")
     demand(isinstance(z["f"], str) and isinstance(z["law"], str), "a text in f and in law")
-    force, law = parse(z["f"], {"x", name}), steps_of(parse(z["law"], {name}, True))
+    law = steps_of(parse(z["law"], {name, "e"} if is_contact else {name}, True))
     start = None if z["start"] == "variable" else fraction(z["start"], "start")
     demand(start is None or start > 0, "a start that is not positive")
-    demand(start is not None or not has_letter(force, name), "a force that contains the amplitude")
-    powers = {"omega": 1, "omega^2": 2, "T/(2*pi)": -1}
-    demand(isinstance(z["quantity"], str) and z["quantity"] in powers, "another quantity")
+    powers = {"T/T_0": -1} if is_contact else {"omega": 1, "omega^2": 2, "T/(2*pi)": -1}
+    demand(isinstance(z["quantity"], str) and z["quantity"] in powers, f"another quantity than {', '.join(powers)}")
     n, low, high = powers[z["quantity"]], fraction(z["from"], "from"), None if z["to"] is None else fraction(z["to"], "to")
     worst, claimed = fraction(z["worst"], "worst"), pair(z["error"], "error")
-    demand(low >= 0 and (high is None or low < high), "an empty range, or one of negative numbers")
-    demand(high is not None or start is not None, "an amplitude that goes to infinity")
+    demand(low >= 0 and (high is None or low < high), "an empty range, or one of negative numbers, in from and to")
+    demand(high is not None or start is not None, "an amplitude or a speed that goes to infinity in to")
     demand(low <= worst and (high is None or worst <= high), "a worst place outside of the range")
-    demand(parity(force, {"x"}) in (-1, None), "the force is not odd")
-    near = Family(force, name, start)
+    near_and_far = lambda is_far: lambda *ends: Interval(*ends, is_far)
+    if is_contact:
+        demand(start is None, "a start that is not the variable")
+        power, c = contact_of(z["f"])
+        demand(high * c <= HARDEST, f"a speed in to whose product with c in f is above {HARDEST}")
+        demand(high * c >= Fraction(1, 10 ** 9), "a speed in to whose product with the c of f is below 1e-9")
+        near = Contact(power, c, name)
+        r_low, r_high = near.place(worst)
+        r = hull(number(r_low), number(r_high))
+        e = near.speed_and_restitution(scale(r, 2), *around_rest(scale(r, 2)))[1]
+        there = Touch(r_low, r_high, {name: (number(worst), None), "e": (e, None)})
+        ends = near.place(low)[0], near.place(high)[1]
+        ranges = [(near, *ends, 0, lambda *ends: Touch(*ends, near.letters(*ends)), lambda r: near.speed(r))]
+    else:
+        force = parse(z["f"], {"x", name})
+        demand(start is not None or not has_letter(force, name), "a force that contains the amplitude")
+        family_of = Family if parity(force, {"x"}) in (-1, None) else Swing
+        near, there = family_of(force, name, start), Interval(worst, worst, False)
+        ranges = [(near, low, high, 0, near_and_far(False), lambda v: v)]
+        if high is None:
+            far, growth = in_reciprocal(force, name)
+            ranges = [(near, low, Fraction(1), 0, near_and_far(False), lambda v: v)] if low < 1 else []
+            far = family_of(far, name, start), Fraction(0), 1 / max(low, Fraction(1))
+            ranges.append((*far, growth, near_and_far(True), lambda v: 1 / v if v else None))
     # From below, at one place.
-    truth = near.inverse_frequency(number(worst)), None
-    below = least(add(over_truth(law, Interval(worst, worst, False), truth, n, 0)[0], (ONE, 0), -1))
+    try:
+        truth = near.inverse_frequency(r if is_contact else number(worst)), None
+    except Settled:
+        raise
+    except NotProved as error:
+        raise NotProved(f"at {name} = {decimal_of(worst)} in worst the truth of f is not enclosed: {error}")
+    below = least(add(over_truth(law, there, truth, n, 0)[0], (ONE, 0), -1))
     demand(Fraction(below, ONE) >= claimed[0], f"at {name} = {worst} the error is not as large as claimed")
     # From above, everywhere.
-    ranges = [(near, low, high, 0, False)]
-    if high is None:
-        far, growth = in_reciprocal(force, name)
-        ranges = [(near, low, Fraction(1), 0, False)] if low < 1 else []
-        ranges.append((Family(far, name, start), Fraction(0), 1 / max(low, Fraction(1)), growth, True))
     above, most = 0, min(units(claimed[1]), 1000 * ONE)
-    for family, begin, end, growth, is_far in ranges:
-        spoken = lambda v: f"{name} = {'infinity' if is_far and v == 0 else decimal_of(1 / v if is_far else v)}"
+    for family, begin, end, growth, interval, variable_of in ranges:
+        spoken = lambda v: f"{name} = {'infinity' if variable_of(v) is None else decimal_of(variable_of(v))}"
         for piece in family.pieces(begin, end, spoken):
-            above = max(above, largest_on(piece, law, n, growth, is_far, most, spoken))
+            above = max(above, largest_on(piece, law, n, growth, interval, most, spoken))
     return {"law": f"{z['quantity']} = {z['law']}", "range": [z["from"], z["to"]], "largest_error": [decimal(below), decimal(above, 1)]}
 
 
@@ -1400,7 +1852,7 @@ def check(text):
     z = json.loads(text, object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number,
                    parse_int=lambda digits: int(digits) if len(digits) <= 20 else no_number(digits))
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1", "another schema")
-    if z.get("ode") == LAW:
+    if z.get("ode") in (LAW, CONTACT):
         return check_law(z)
     demand(z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)

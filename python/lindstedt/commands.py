@@ -377,10 +377,14 @@ def shortest(
     *,
     range: Values | None = None,
     error: float | None = None,
-    quantity: Literal["omega", "omega^2", "T"] | None = None,
+    quantity: Literal["omega", "omega^2", "T", "contact-time"] | None = None,
+    about: Values | None = None,
+    mode: int | None = None,
+    amplitude: Literal["initial", "first-harmonic"] | None = None,
     atom: Sequence[str] | None = None,
     longest: int | None = None,
     exact_at_rest: int | None = None,
+    growth: str | None = None,
     certificate: bool = False,
     timeout: float | None = None,
     at: Values | None = None,
@@ -396,12 +400,18 @@ def shortest(
             (mu=0:10), or a product on which the frequency alone depends (eps*A^2=0:inf).
         error: The largest relative error that is allowed, 0.001 say; without it the whole
             front.
-        quantity: What the law gives: omega, omega^2, or T, the period over 2 pi.
+        quantity: What the law gives: omega, omega^2, T, the period over 2 pi, or contact-time,
+            the duration of a contact x'' + k*x^n*(1 + c*x') = 0 over that without damping.
+        about: The equilibrium to swing about, x=1 say, from which the amplitude is measured.
+        mode: Which normal mode of coupled equations, 1 for the slowest.
+        amplitude: What the amplitude of a mode measures.
         atom: A quantity of which laws are made, counted as one symbol, such as cos(A/2);
             repeatable, those of the equation without it.
         longest: The greatest length of a law in symbols.
         exact_at_rest: Keep the law exact at rest: its series is that of the true frequency up
             to this power of the variable, 0 for the frequency at rest alone.
+        growth: Keep laws that grow as this power of the variable towards infinity, 1/2 say,
+            whatever the range.
         certificate: With JSON: the certificate of the law, which `check` reads, in place of the
             laws.
         timeout: Give up after so many seconds.
@@ -413,7 +423,7 @@ def shortest(
         Refused: The problem is refused, with the term and a way forward.
         UsageError: An option has a value that it cannot have.
     """
-    return ask("shortest", problem, {"range": range, "error": error, "quantity": quantity, "atom": atom, "longest": longest, "exact_at_rest": exact_at_rest, "certificate": certificate, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
+    return ask("shortest", problem, {"range": range, "error": error, "quantity": quantity, "about": about, "mode": mode, "amplitude": amplitude, "atom": atom, "longest": longest, "exact_at_rest": exact_at_rest, "growth": growth, "certificate": certificate, "timeout": timeout, "at": at}, values, progress)  # type: ignore[no-any-return]
 
 
 def friction(

@@ -50,6 +50,9 @@ CALLS = {
     "certified law": lambda: ls.shortest(
         "pendulum", range={"A": (0, 2.8)}, longest=6, error=0.01, certificate=True
     ),
+    "law of contacts": lambda: ls.shortest(
+        "x'' + k*x^(3/2)*(1 + lambda*x') = 0", quantity="contact-time", range={"e": (0.4, 1)}, longest=6
+    ),
     "friction": lambda: ls.friction(),
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),

@@ -45,6 +45,9 @@ pub struct ShortestArguments {
     /// contact x'' + k*x^n*(1 + c*x') = 0 over that without damping
     #[arg(long, value_parser = ["omega", "omega^2", "T", "contact-time"], default_value = "omega")]
     quantity: String,
+    /// The equilibrium to swing about, x=1 say, from which the amplitude is measured
+    #[arg(long, value_name = "NAME=VALUE,...")]
+    about: Option<String>,
     /// Which normal mode of coupled equations, 1 for the slowest
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     mode: Option<u32>,
@@ -137,7 +140,7 @@ fn run(arguments: &ShortestArguments) -> Result<Outcome, Failure> {
     Ok(Outcome { verdict: report.verdict(), partial: front.is_partial, ..outcome })
 }
 
-/// What varies, and the ends of its range; `None` for infinity.
+/// The quantity that varies, and the ends of its range; `None` for infinity.
 type Range = (Expr, Rational, Option<Rational>);
 
 /// The laws by length.
@@ -146,6 +149,9 @@ fn front(arguments: &ShortestArguments) -> Result<Front, Failure> {
     let range = range(&arguments.range)?;
     let is_contact = quantity(arguments) == LawQuantity::ContactTime;
     if let Some(equations) = coupled_equations(&problem, ReadingCommand::Shortest)? {
+        if arguments.about.is_some() {
+            return Err(Failure::Usage("--about: it is of one coordinate".to_owned()));
+        }
         if is_contact {
             return Err(Failure::Usage(
                 "--quantity contact-time: a contact has one coordinate".to_owned(),
@@ -230,7 +236,7 @@ fn front_of_motion(
     range: Range,
 ) -> Result<Front, Failure> {
     let typed = formula(problem, ReadingCommand::Shortest)?;
-    let oscillator = oscillator(&typed, None)?;
+    let oscillator = oscillator(&typed, arguments.about.as_deref())?;
     let (varying, from, to) = range;
     // The range takes the place of a value of the file.
     let ranged: Vec<Symbol> = varying.symbols().into_iter().collect();

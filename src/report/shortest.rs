@@ -95,14 +95,18 @@ impl<'a> ShortestReport<'a> {
         let problem = &self.front.problem;
         let range = self.range();
         match &problem.motion {
-            LawMotion::Free { oscillator, start, .. } => {
+            LawMotion::Free { oscillator, start, solution } => {
                 let amplitude = match (start, &problem.meaning) {
                     (None, _) => return format!("limit cycle, {range}"),
                     (Some(StartOfLaw::Variable), _) => problem.variable.to_string(),
                     (Some(StartOfLaw::Fixed(_)), Some(_)) => "A".to_owned(),
                     (Some(StartOfLaw::Fixed(start)), None) => start.to_string(),
                 };
-                format!("released at rest from {}(0) = {amplitude}, {range}", oscillator.coordinate)
+                let from = match solution.equilibrium.is_zero() {
+                    true => amplitude,
+                    false => format!("{} + {amplitude}", solution.equilibrium),
+                };
+                format!("released at rest from {}(0) = {from}, {range}", oscillator.coordinate)
             }
             LawMotion::Contact { .. } => format!(
                 "touched with the speed v, {} the coefficient of restitution, T_0 the duration without damping, {range}",
@@ -217,7 +221,16 @@ pub fn law_certificate<'a>(certificate: &LawCertificate, error: &LawError) -> Do
         false => format!("from rest at x(0) = {start}"),
     };
     let facts = vec![
-        ("motion", format!("x'' + f = 0, f = {}, {motion}", certificate.force)),
+        (
+            "motion",
+            match &certificate.mass {
+                Some(mass) => format!(
+                    "M*x'' + (dM/dx)*x'^2/2 + f = 0, M = {mass}, f = {}, {motion}",
+                    certificate.force
+                ),
+                None => format!("x'' + f = 0, f = {}, {motion}", certificate.force),
+            },
+        ),
         ("law", format!("{} = {}", certificate.quantity.name(), certificate.law)),
         ("range", range),
         (

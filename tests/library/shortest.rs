@@ -261,7 +261,7 @@ fn a_law_of_another_growth_has_no_bound() {
     let mut other = certificate.clone();
     other.force = "x + s*x^3 + 1/2".parse().expect("an expression");
     assert!(
-        check_law(&other).expect_err("no equilibrium").to_string().contains("equilibrium at zero")
+        check_law(&other).expect_err("no equilibrium").to_string().contains("is not zero at x = 0")
     );
 }
 
@@ -285,16 +285,57 @@ fn one_thread_finds_what_two_find() {
 
 #[test]
 fn motions_of_another_kind_are_measured_and_not_proved() {
-    // About the equilibrium at one, and with an inertia that changes along the motion.
+    // About an equilibrium that is no fraction, and with a mass that depends on the speed.
     for (equation, words) in [
-        ("x'' + x + x^3 - 1/4 = 0", "swing about another one"),
-        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "of the position and the variable alone"),
+        ("x'' + x + x^3 - 1/4 = 0", "an equilibrium that is a number"),
+        ("x'' + (1 - x'^2)^(3/2)*x = 0", "of the position and the variable alone"),
     ] {
         let found = front(equation, "A", Some("1/4"), LawQuantity::Frequency, 5);
         let last = found.laws.last().expect("a law");
         let reason = last.proof.as_ref().expect_err(equation).to_string();
         assert!(reason.contains(words), "{reason}");
     }
+}
+
+#[test]
+fn laws_of_a_mass_that_depends_on_the_position() {
+    // omega = 1/sqrt(1 + A^2) (Mathews and Lakshmanan), which the search finds.
+    let equation = "(1 + x^2)*x'' - x*x'^2 + x = 0";
+    let found = front(equation, "A", Some("9/10"), LawQuantity::Frequency, 8);
+    let places: Vec<f64> = (0..=2000).map(|i| 0.9 * f64::from(i) / 2000.0).collect();
+    for law in &found.laws {
+        let (certificate, _) = law.proof.as_ref().expect("a proof");
+        let error = |amplitude: &f64| {
+            let values = BTreeMap::from([(Symbol::new("A"), *amplitude)]);
+            let value = certificate.law.evaluate(&values).expect("a value");
+            (value * (1.0 + amplitude * amplitude).sqrt() - 1.0).abs()
+        };
+        let largest = places.iter().map(error).fold(0.0, f64::max);
+        assert!(largest <= to_f64(&certificate.claim[1]), "{}", law.formula);
+    }
+    let last = found.laws.last().expect("a law");
+    assert!(last.formula.to_string() == "1/sqrt(1 + A^2)" && last.largest_error() < 2e-9);
+    let (certificate, _) = last.proof.as_ref().expect("a proof");
+    let mut lighter = certificate.clone();
+    lighter.mass = None;
+    assert!(check_law(&lighter).is_err());
+}
+
+#[test]
+fn laws_about_an_equilibrium_that_is_not_zero() {
+    let mut well = Oscillator::parse("x'' - x + x^3 = 0").expect("an equation");
+    well.about = Some("1".parse().expect("a place"));
+    let [from, to] = ["0", "3/10"].map(|end| end.parse::<Rational>().expect("a fraction"));
+    let (varying, at) = ("A".parse().expect("a name"), "".parse().expect("no values"));
+    let problem = LawProblem::new(&well, &varying, (&from, Some(&to)), &at).expect("a problem");
+    let options = SearchOptions::new(LawQuantity::Frequency, 8);
+    let found = search(problem, &options, Supervision::default()).expect("laws");
+    let force = |x: f64| x * x * x - x;
+    let places: Vec<f64> = (1..=300).map(|i| f64::from(i) / 1000.0).collect();
+    remeasured(&found, &places, |amplitude| {
+        let period = conservative_period(&PiecewiseForce::smooth(&force), 1.0, 1.0 + amplitude);
+        std::f64::consts::TAU / period.expect("a period")
+    });
 }
 
 #[test]

@@ -455,10 +455,16 @@ fn both_programs_prove_laws_on_ranges() {
     };
     let folder = folder("laws");
     let program = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/check_certificate.py");
-    for (equation, range, longest) in
-        [("pendulum", "A=0:2.8", "8"), ("duffing", "eps*A^2=0:inf", "9")]
-    {
+    let contact = "x'' + k*x^(3/2)*(1 + lambda*x') = 0";
+    for (equation, range, longest, quantity) in [
+        ("pendulum", "A=0:2.8", "8", "omega"),
+        ("duffing", "eps*A^2=0:inf", "9", "omega"),
+        ("x'' + x + x^2/4 = 0", "A=0:1", "6", "T"),
+        (contact, "e=0.3:1", "7", "contact-time"),
+    ] {
+        let quantity = ["--quantity", quantity];
         let question = ["shortest", equation, "--range", range, "--longest", longest];
+        let question = [&question[..], &quantity].concat();
         let output = run(&[&question[..], &["--certificate", "--format", "json"]].concat());
         let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
         let file = folder.join("law.json");

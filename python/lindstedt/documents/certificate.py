@@ -550,20 +550,22 @@ CoupledCertificateDocument.CONSTANTS = {'nu': '1'}
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LawCertificateDocument(Answer):
-    """A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, and how
-    far it is off. All numbers are text: integers, fractions such as `14/5`, decimals such as
-    `0.0011`.
+    """A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, or a law
+    of the duration of contacts, and how far it is off. All numbers are text: integers,
+    fractions such as `14/5`, decimals such as `0.0011`.
 
     Attributes:
         schema: The kind of document.
         ode: The equation that f belongs to.
         f: The force, an expression in x, zero at x = 0, and in the variable where that is a
-            parameter.
+            parameter; of a contact `x^n*(1 + c*x')` with numbers.
+        mass: The mass m, an expression as f is; null where it is one.
         variable: The name of the variable.
         start: x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a
-            positive number.
-        quantity: The quantity of the law: `omega`, `omega^2` or `T/(2*pi)`.
-        law: The law, an expression in the variable.
+            positive number; of a contact x'(0), `variable`.
+        quantity: The quantity of the law: `omega`, `omega^2`, `T/(2*pi)`, or `T/T_0`, the
+            duration of a contact over that without damping.
+        law: The law, an expression in the variable; of a contact in its restitution e as well.
         from_: The lower end of the range, not negative.
         to: The upper end; null for infinity.
         worst: A value of the variable at which the error is at least the first of `error`.
@@ -571,11 +573,12 @@ class LawCertificateDocument(Answer):
     """
 
     schema: Literal["lindstedt/certificate/1"]
-    ode: Literal["x''+f(x,p)=0"]
+    ode: Literal["x''+f(x,p)=0", "m*x''+(dm/dx)*x'^2/2+f(x,p)=0", "x''+f(x,x')=0"]
     f: str
+    mass: str | None
     variable: str
     start: str
-    quantity: Literal["omega", "omega^2", "T/(2*pi)"]
+    quantity: Literal["omega", "omega^2", "T/(2*pi)", "T/T_0"]
     law: str
     from_: str
     to: str | None
@@ -587,6 +590,7 @@ LawCertificateDocument.FIELDS = (
     ("schema", "schema", None),
     ("ode", "ode", None),
     ("f", "f", None),
+    ("mass", "mass", None),
     ("variable", "variable", None),
     ("start", "start", None),
     ("quantity", "quantity", None),
@@ -596,7 +600,6 @@ LawCertificateDocument.FIELDS = (
     ("worst", "worst", None),
     ("error", "error", tuple),
 )
-LawCertificateDocument.CONSTANTS = {'ode': "x''+f(x,p)=0"}
 
 
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative

@@ -47,7 +47,7 @@ class PublishedFormula(Document):
 
     Attributes:
         formula: The formula.
-        quantity: Its quantity: `omega`, `omega^2` or `T/(2*pi)`.
+        quantity: Its quantity: `omega`, `omega^2`, `T/(2*pi)` or `T/T_0`.
         source: The publication.
         length: The number of its symbols.
         measured: The largest relative error that was measured; null where it has no value
@@ -79,16 +79,19 @@ class Shortest(Answer):
 
     Attributes:
         schema: The kind of document.
-        equation: The equation of motion, `... = 0`, with numbers for all but the variable.
+        equation: The equation of motion, `... = 0`, with numbers for all but the variable; of
+            modes all equations, separated by `;`.
         variable: The name of the variable.
         meaning: The product that the variable stands for, `eps*A^2` say; null for the amplitude
             or a parameter.
-        amplitude: The amplitude where a parameter varies; null where the amplitude does, and for
-            limit cycles.
+        amplitude: The amplitude where a parameter varies; null where the amplitude does, for
+            limit cycles and contacts.
         from_: The lower end of the range.
         to: The upper end; null for infinity.
-        quantity: The quantity of the laws: `omega`, `omega^2` or `T/(2*pi)`.
-        atoms: The names in the laws besides the variable, each with its meaning.
+        mode: The number of the normal mode; null for one coordinate.
+        quantity: The quantity of the laws: `omega`, `omega^2`, `T/(2*pi)` or `T/T_0`.
+        atoms: The names in the laws besides the variable, each with its meaning in it;
+            `restitution` for the coefficient of restitution of a contact.
         chosen: The number of the shortest law within that error, counted from zero; null where
             none is, and the last one without an error.
         laws: The laws, the shortest first, each with a smaller error than all before.
@@ -105,6 +108,7 @@ class Shortest(Answer):
     amplitude: Constant | None
     from_: Constant
     to: Constant | None
+    mode: int | None
     quantity: str
     atoms: dict[str, str]
     chosen: int | None
@@ -122,6 +126,7 @@ Shortest.FIELDS = (
     ("amplitude", "amplitude", Constant.from_json),
     ("from_", "from", Constant.from_json),
     ("to", "to", Constant.from_json),
+    ("mode", "mode", None),
     ("quantity", "quantity", None),
     ("atoms", "atoms", dict),
     ("chosen", "chosen", None),

@@ -15,8 +15,10 @@ use crate::exact::Rational;
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 
-/// The forms of the equation in `ode`, that of a contact last.
-pub const EQUATIONS_ON_A_RANGE: [&str; 2] = ["x''+f(x,p)=0", "x''+f(x,x')=0"];
+/// The forms of the equation in `ode`: of a free motion, with a mass m that depends on the position, of a
+/// contact.
+pub const EQUATIONS_ON_A_RANGE: [&str; 3] =
+    ["x''+f(x,p)=0", "m*x''+(dm/dx)*x'^2/2+f(x,p)=0", "x''+f(x,x')=0"];
 
 /// The start where the variable is the amplitude, or the speed at the touch.
 const VARIABLE: &str = "variable";
@@ -39,6 +41,9 @@ pub struct LawCertificateDocument {
     /// The force, an expression in x, zero at x = 0, and in the variable where that is a parameter; of a
     /// contact `x^n*(1 + c*x')` with numbers.
     pub f: String,
+    /// The mass m, an expression as f is; null where it is one.
+    #[serde(default)]
+    pub mass: Option<String>,
     /// The name of the variable.
     pub variable: String,
     /// x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a positive number; of a
@@ -60,11 +65,12 @@ pub struct LawCertificateDocument {
     pub error: [String; 2],
 }
 
-/// The form of the equation for a quantity.
-const fn equation(quantity: LawQuantity) -> &'static str {
-    match quantity {
-        LawQuantity::ContactTime => EQUATIONS_ON_A_RANGE[1],
-        _ => EQUATIONS_ON_A_RANGE[0],
+/// The form of the equation for a quantity, with a mass that depends on the position or without.
+const fn equation(quantity: LawQuantity, has_mass: bool) -> &'static str {
+    match (quantity, has_mass) {
+        (LawQuantity::ContactTime, _) => EQUATIONS_ON_A_RANGE[2],
+        (_, true) => EQUATIONS_ON_A_RANGE[1],
+        (_, false) => EQUATIONS_ON_A_RANGE[0],
     }
 }
 
@@ -73,8 +79,9 @@ pub fn law_certificate(certificate: &LawCertificate) -> LawCertificateDocument {
     let error = certificate.claim.each_ref();
     LawCertificateDocument {
         schema: DocumentKind::Certificate.schema().to_owned(),
-        ode: equation(certificate.quantity).to_owned(),
+        ode: equation(certificate.quantity, certificate.mass.is_some()).to_owned(),
         f: certificate.force.to_string(),
+        mass: certificate.mass.as_ref().map(ToString::to_string),
         variable: certificate.variable.name().to_owned(),
         start: match &certificate.start {
             StartOfLaw::Variable => VARIABLE.to_owned(),
@@ -115,8 +122,9 @@ impl LawCertificateDocument {
         let Some(quantity) = quantity else {
             return unexpected("quantity", "`omega`, `omega^2`, `T/(2*pi)` or `T/T_0`");
         };
-        if self.ode != equation(quantity) {
-            return unexpected("ode", equation(quantity));
+        let form = equation(quantity, self.mass.is_some());
+        if self.ode != form {
+            return unexpected("ode", form);
         }
         let [lower, upper] = &self.error;
         let claim = [number("error", lower)?, number("error", upper)?];
@@ -125,6 +133,7 @@ impl LawCertificateDocument {
         }
         Ok(LawCertificate {
             force: formula("f", &self.f)?,
+            mass: self.mass.as_deref().map(|mass| formula("mass", mass)).transpose()?,
             variable: Symbol::new(&self.variable),
             start: match self.start.as_str() {
                 VARIABLE => StartOfLaw::Variable,

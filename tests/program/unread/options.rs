@@ -41,6 +41,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "F=0.2",
     ];
     let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "5"];
+    let well_laws = [well, "--range", "A=0:1/4", "--longest", "3"];
     let backbone = [pair, "--mode", "1", "--range", "a=0:1", "--longest", "5"];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
     // Command, what stands beside the option, the option.
@@ -203,6 +204,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("shortest", laws[1..].to_vec(), vec!["--longest", "4"]),
         ("shortest", laws[1..].to_vec(), vec!["--exact-at-rest", "4"]),
         ("shortest", laws[1..].to_vec(), vec!["--growth", "0"]),
+        ("shortest", well_laws.to_vec(), vec!["--about", "x=-1"]),
         ("shortest", laws[1..].to_vec(), vec!["--mode", "1"]),
         ("shortest", backbone.to_vec(), vec!["--mode", "2"]),
         ("shortest", backbone.to_vec(), vec!["--amplitude", "initial"]),

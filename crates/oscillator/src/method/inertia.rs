@@ -159,6 +159,15 @@ impl VariableMass {
     }
 }
 
+/// The mass M of the energy `M x'^2/2 + U` and the force `U' = M h` of an equation whose inertia depends on the
+/// position; `None` for any other, and where M has no closed form.
+pub fn mass_and_force(oscillator: &Oscillator) -> Option<[Expr; 2]> {
+    let moving = VariableMass::from_oscillator(oscillator).ok()??;
+    let mass = moving.mass?;
+    let force = (&mass * &moving.force).expand().ok()?;
+    Some([mass, force])
+}
+
 /// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on
 /// the position; `None` for any other, and where `M` has no closed form.
 pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {

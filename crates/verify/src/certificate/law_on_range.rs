@@ -17,7 +17,8 @@
 //! in the middle, and intervals are halved until that is within the claim; a range to infinity ends with
 //! pieces of `r = 1/p`, in which the powers of r are kept apart.
 //!
-//! The duration of a contact is such a mean too: see `contact`.
+//! With a mass M(x) in `M x'' + (dM/dx) x'^2/2 + f = 0` the mean is that of `(M/G)^(1/2)`. The duration of a
+//! contact is such a mean too: see `contact`.
 //!
 //! In: a force, a law, a range and a claim. Out: bounds of the largest `|q - 1|`. A piece costs some
 //! seventeen series of `G^(-1/2)`, an interval the law and a polynomial of degree 15; there are the more
@@ -108,6 +109,8 @@ pub struct LawCertificate {
     /// `f` of `x'' + f = 0`, in the symbol [`x`](coordinate) and the variable; of a contact
     /// `x^n (1 + c x')`, with numbers.
     pub force: Expr,
+    /// The mass M of `M x'' + (dM/dx) x'^2/2 + f = 0` where it depends on the position.
+    pub mass: Option<Expr>,
     /// The amplitude or the parameter on which the law depends; of a contact the speed at the touch.
     pub variable: Symbol,
     /// The start of the motion.
@@ -141,7 +144,7 @@ pub struct LawError {
 pub enum LawNotProved {
     /// The motion does not swing about zero.
     #[error(
-        "a proof on a range is of motions about an equilibrium at zero, and those of `{0}` swing about another one"
+        "a proof on a range is of motions about an equilibrium that is a number, and `{0}` is not zero at x = 0"
     )]
     NotCentred(String),
     /// Letters or ends that do not belong together.
@@ -195,6 +198,7 @@ impl From<NoValue> for LawNotProved {
 ///
 /// let mut law = LawCertificate {
 ///     force: "sin(x)".parse()?,
+///     mass: None,
 ///     variable: "A".into(),
 ///     start: StartOfLaw::Variable,
 ///     quantity: LawQuantity::Period,
@@ -231,6 +235,8 @@ impl LawCertificate {
             Some(to) => self.from < *to && self.worst <= *to,
             None => true,
         };
+        let depends = |mass: &Expr| mass.contains(self.variable);
+        let is_moving = self.mass.as_ref().is_some_and(depends);
         let is_contact = self.quantity == LawQuantity::ContactTime;
         let depends_on_variable = self.force.contains(self.variable);
         let [of_force, of_law] = match is_contact {
@@ -254,6 +260,16 @@ impl LawCertificate {
             (
                 is_known(&self.force, &[coordinate(), self.variable, of_force]),
                 "a force with letters that have no value",
+            ),
+            (
+                self.mass.as_ref().is_none_or(|mass| {
+                    is_known(mass, &[coordinate(), self.variable]) && !is_contact
+                }),
+                "a mass with letters that have no value, or a contact with one",
+            ),
+            (
+                !is_moving || self.start != StartOfLaw::Variable && self.to.is_some(),
+                "a mass that depends on the amplitude, or on a parameter that goes to infinity",
             ),
             (
                 is_known(&self.law, &[self.variable, of_law]),
@@ -301,12 +317,13 @@ impl TrueFrequency {
         if !at_zero.is_zero() {
             return Err(LawNotProved::NotCentred(force.to_string()));
         }
-        let near = ForceOnRange::new(start, *variable, force.clone(), 0, false)?;
+        let mass = certificate.mass.as_ref();
+        let near = ForceOnRange::new(start, *variable, force.clone(), 0, false)?.with_mass(mass);
         let (from, one) = (&certificate.from, Rational::one());
         let (near_pieces, far, far_pieces) = match &certificate.to {
             Some(to) => (near.pieces(from, to, supervision)?, None, vec![]),
             None => {
-                let far = Self::far(certificate)?;
+                let far = Self::far(certificate)?.with_mass(mass);
                 let pieces = far.pieces(&Rational::zero(), &from.max(&one).recip(), supervision)?;
                 let near_pieces = match *from < one {
                     true => near.pieces(from, &one, supervision)?,

@@ -13,8 +13,10 @@ use crate::decimal::{neighbours, rounded_fraction};
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, ratio, to_f64};
 
-/// The most significant digits of a constant.
-const MOST_DIGITS: usize = 5;
+/// The least and the greatest number of significant digits of the longest constants, which follows from the
+/// error of the fit: digits far below that gain nothing.
+const LEAST_DIGITS: usize = 4;
+const MOST_DIGITS: usize = 12;
 
 /// The number of choices that are followed for each number of digits.
 const FOLLOWED: usize = 4;
@@ -38,13 +40,15 @@ struct Partial {
     fit: Fit,
 }
 
-/// Short numbers about a value, each with its length.
-pub(super) fn short_numbers(value: f64) -> Vec<(Rational, usize)> {
+/// Short numbers about a value, each with its length, for a fit of this error.
+pub(super) fn short_numbers(value: f64, error: f64) -> Vec<(Rational, usize)> {
+    let digits = (-error.log10()).ceil() + 2.0;
+    let most = (digits.clamp(LEAST_DIGITS as f64, MOST_DIGITS as f64)) as usize;
     let Some(exact) = from_f64(value) else { return vec![] };
     if exact.is_zero() {
         return vec![];
     }
-    let decimals = (1..=MOST_DIGITS).flat_map(|digits| neighbours(&exact, digits));
+    let decimals = (1..=most).flat_map(|digits| neighbours(&exact, digits));
     // Fractions of one digit over one or two.
     let size = value.abs();
     let mut fractions: Vec<(f64, i64, i64)> = (3..100)
@@ -94,7 +98,7 @@ fn plain(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, S
     for next in 0..count {
         let mut grown: Vec<Partial> = vec![];
         for partial in &partials {
-            for (number, digits) in short_numbers(partial.fit.constants[next]) {
+            for (number, digits) in short_numbers(partial.fit.constants[next], best.error) {
                 let digits = partial.digits + digits;
                 if digits + (count - next - 1) > most_digits {
                     continue;
@@ -132,7 +136,7 @@ fn scaled(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, 
                 true => partial.fit.constants[next] / partial.fit.constants[0],
                 false => partial.fit.constants[next],
             };
-            for (number, digits) in short_numbers(value) {
+            for (number, digits) in short_numbers(value, best.error) {
                 let digits = partial.digits + digits;
                 if digits + (count - next - 1) + 1 > most_digits {
                     continue;
@@ -149,7 +153,7 @@ fn scaled(sums: &QuotientOfSums, best: &Fit, most_digits: usize) -> Vec<(usize, 
     let mut whole = vec![];
     for partial in partials {
         let factor = partial.fit.constants[0].powf(sums.power);
-        for (factor, digits) in short_numbers(factor) {
+        for (factor, digits) in short_numbers(factor, best.error) {
             // A factor of one is not written.
             let digits = partial.digits + if factor.is_one() { 0 } else { digits };
             if digits > most_digits {

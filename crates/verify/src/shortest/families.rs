@@ -16,10 +16,11 @@ use crate::exact::Rational;
 use crate::exact::rational::{ratio, to_f64};
 use crate::parallel::par_map;
 
-/// A short function, its length and its values at the places of a fit.
+/// A short function and its values at the places of a fit.
 pub(super) struct ShortFunction {
     pub(super) formula: Formula,
-    pub(super) length: usize,
+    /// The length of its product with a constant of one digit, `7*u`, or `7/u` for `1/u`.
+    pub(super) term_length: usize,
     pub(super) values: Vec<f64>,
     /// The power of the variable as which it grows towards infinity.
     pub(super) growth: f64,
@@ -305,7 +306,7 @@ impl Choice {
     /// The length with constants of one digit: `3 + 5*u` over `1 + 7*v`.
     fn length(&self, functions: &[ShortFunction]) -> usize {
         let terms = |chosen: &[usize]| -> usize {
-            chosen.iter().map(|&i| functions[i].length + 2).sum::<usize>()
+            chosen.iter().map(|&i| functions[i].term_length).sum::<usize>()
         };
         let signs = |terms: usize| terms.saturating_sub(1);
         let own = usize::from(self.has_constant);

@@ -7,12 +7,15 @@
 //! In: the values of z and of the functions at some places. Out: the constants. Each step is a problem
 //! of least squares that is linear in the constants, weighted by the last denominator (Sanathanan and
 //! Koerner) and by the errors of the steps before (Lawson), whose weights come to those of the largest
-//! errors. A step costs a product of the number of places with the square of that of the constants.
+//! errors. A step costs a product of the number of places with the square of that of the constants. The
+//! normal equations lose half of the digits, and where errors are small a second solution for what is
+//! left over brings them back (Bjoerck's corrected seminormal equations).
 //!
 //! Sources: C. K. Sanathanan, J. Koerner: Transfer function synthesis as a ratio of two complex
 //! polynomials, IEEE Transactions on Automatic Control 8 (1963), 56-58. Y. Nakatsukasa, L. N.
 //! Trefethen: An algorithm for real and complex rational minimax approximation, SIAM Journal on
-//! Scientific Computing 42 (2020), A3157-A3179.
+//! Scientific Computing 42 (2020), A3157-A3179. A. Bjoerck: Numerical Methods for Least Squares Problems,
+//! SIAM 1996, section 6.6.5.
 
 /// The largest number of constants.
 pub(super) const MOST_CONSTANTS: usize = 6;
@@ -149,9 +152,27 @@ impl QuotientOfSums<'_> {
                     matrix[i][MOST_CONSTANTS] += weight * row[i] * right;
                 }
             }
-            let Some(solved) = solve(&mut matrix, free.len()) else { break };
-            for (&i, value) in free.iter().zip(solved) {
+            if !factor(&mut matrix, free.len()) {
+                break;
+            }
+            let right: [f64; MOST_CONSTANTS] = std::array::from_fn(|i| matrix[i][MOST_CONSTANTS]);
+            for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), right)) {
                 constants[i] = value;
+            }
+            if best.is_some_and(|best| best.error < SMALL) {
+                let mut right = [0.0; MOST_CONSTANTS];
+                for place in 0..places {
+                    let scale = 1.0 / (below[place] * self.target[place]);
+                    let weight = weights[place] * scale * scale;
+                    let own = (0..self.count()).map(|i| constants[i] * column(i, place));
+                    let left = self.target[place] - offset(place) - own.sum::<f64>();
+                    for (sum, &i) in right.iter_mut().zip(&free) {
+                        *sum += weight * column(i, place) * left;
+                    }
+                }
+                for (&i, value) in free.iter().zip(substituted(&matrix, free.len(), right)) {
+                    constants[i] += value;
+                }
             }
             let (mut largest, mut total) = (0.0_f64, 0.0);
             let mut is_defined = true;
@@ -180,12 +201,11 @@ impl QuotientOfSums<'_> {
     }
 }
 
-/// Solves a symmetric positive system whose lower half and right side are given, by Cholesky's
-/// factors; `None` if it is not positive.
-fn solve(
-    matrix: &mut [[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS],
-    size: usize,
-) -> Option<[f64; MOST_CONSTANTS]> {
+/// The error from which on the constants are found to more digits than the normal equations have.
+const SMALL: f64 = 1e-4;
+
+/// Replaces the lower half of a symmetric matrix by Cholesky's factor; false if it is not positive.
+fn factor(matrix: &mut [[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS], size: usize) -> bool {
     /// A pivot that has lost more digits than this is none.
     const LOST: f64 = 1e-15;
     for i in 0..size {
@@ -195,19 +215,28 @@ fn solve(
             let rest = matrix[i][j] - sum;
             matrix[i][j] = match i == j {
                 true if rest > LOST * diagonal => rest.sqrt(),
-                true => return None,
+                true => return false,
                 false => rest / matrix[j][j],
             };
         }
     }
+    true
+}
+
+/// The solution of a system with this factor in the lower half.
+fn substituted(
+    matrix: &[[f64; MOST_CONSTANTS + 1]; MOST_CONSTANTS],
+    size: usize,
+    right: [f64; MOST_CONSTANTS],
+) -> [f64; MOST_CONSTANTS] {
     let mut solution = [0.0; MOST_CONSTANTS];
     for i in 0..size {
         let sum: f64 = (0..i).map(|k| matrix[i][k] * solution[k]).sum();
-        solution[i] = (matrix[i][MOST_CONSTANTS] - sum) / matrix[i][i];
+        solution[i] = (right[i] - sum) / matrix[i][i];
     }
     for i in (0..size).rev() {
         let sum: f64 = (i + 1..size).map(|k| matrix[k][i] * solution[k]).sum();
         solution[i] = (solution[i] - sum) / matrix[i][i];
     }
-    Some(solution)
+    solution
 }

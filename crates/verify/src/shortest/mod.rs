@@ -9,6 +9,7 @@
 //! `constants`. Both are the same for any number of threads.
 
 mod constants;
+mod contact;
 mod families;
 mod formula;
 mod minimax;
@@ -181,6 +182,9 @@ const LONGEST_TREE: usize = 9;
 /// The error from which on a formula is none.
 const WORST: f64 = 0.5;
 
+/// The least error that is claimed, of a law that is exact: the enclosures are no finer.
+const LEAST_CLAIM: f64 = 1e-9;
+
 /// The length up to which short formulas are functions of families.
 const LONGEST_FUNCTION: usize = 5;
 
@@ -296,7 +300,7 @@ pub fn search(
         let certificate = certificate(&problem, options.quantity, &atoms, None)?;
         TrueFrequency::new(&certificate, supervision)
     };
-    // What is known of a contact is its enclosure; that of a frequency is made once there are laws.
+    // A contact is known by its enclosure alone; a frequency is enclosed once there are laws.
     let of_contact = match problem.motion {
         LawMotion::Contact { .. } => Some(enclosed().map_err(|error| match error {
             LawNotProved::Stopped => ShortestError::Stopped,
@@ -398,12 +402,13 @@ fn laws(
     let functions: Vec<ShortFunction> = trees
         .functions(LONGEST_FUNCTION)
         .into_iter()
-        .map(|(tree, length)| {
+        .map(|tree| {
             let formula = trees.formula(tree);
             let places = (0..PLACES).step_by(step);
             let values = places.map(|place| data.value(&formula, &names, place)).collect();
             let (series, growth) = (question.series(&formula), question.growth(&formula));
-            ShortFunction { formula, length, values, growth, series }
+            let term_length = formula.clone().times(&Rational::from_integer(7.into())).length();
+            ShortFunction { formula, term_length, values, growth, series }
         })
         .collect();
     let truth = SearchData::some(&data.values, OF_FIT);
@@ -490,7 +495,7 @@ fn certificate(
     atoms: &[Atom],
     candidate: Option<&Candidate>,
 ) -> Result<LawCertificate, LawNotProved> {
-    let (force, start) = problem.of_certificate()?;
+    let (force, mass, start) = problem.of_certificate()?;
     let law = match candidate {
         None => Expr::one(),
         Some(candidate) => {
@@ -500,9 +505,11 @@ fn certificate(
         }
     };
     let worst = candidate.and_then(|candidate| from_f64(candidate.worst));
-    let bound = candidate.map_or_else(Rational::one, |candidate| rounded_error(candidate.error));
+    let bound = candidate
+        .map_or_else(Rational::one, |candidate| rounded_error(candidate.error.max(LEAST_CLAIM)));
     Ok(LawCertificate {
         force,
+        mass,
         variable: problem.variable,
         start,
         quantity,

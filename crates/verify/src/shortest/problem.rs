@@ -8,17 +8,14 @@ use std::collections::BTreeMap;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
-use crate::certificate::{
-    HuntCrossleyForce, LawNotProved, StartOfLaw, TrueFrequency, coordinate, restitution,
-};
-use crate::decimal::{decimal, neighbours};
+use crate::certificate::{LawNotProved, StartOfLaw, TrueFrequency, coordinate, restitution};
+use crate::decimal::decimal;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::expr::{Expr, ExprError, Function};
 
-use crate::method::{Options, Refusal, solve};
+use crate::method::{Options, Refusal, inertia, solve};
 use crate::modes::{FreeSystem, NonlinearMode, NormalModes};
-use crate::numeric::ode::root::find_root;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::parallel::par_map;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -100,7 +97,7 @@ pub enum ShortestError {
         "`{varying}` does not determine the contact: its time over that without damping depends on {product} alone, or on the restitution e"
     )]
     NotOfContact {
-        /// What varies.
+        /// The quantity that varies.
         varying: Expr,
         /// The product of damping and speed.
         product: Expr,
@@ -119,7 +116,7 @@ pub enum ShortestError {
         /// The reason.
         reason: String,
     },
-    /// What varies of a mode is not its amplitude.
+    /// A mode with another variable than its amplitude.
     #[error("of a mode the amplitude `{0}` varies, not `{1}`")]
     NotAmplitude(Symbol, Expr),
     /// The name that varies is neither the amplitude nor a parameter.
@@ -210,6 +207,10 @@ impl ShortestError {
             Self::NotOfContact { product, .. } => {
                 Some(format!("write --range \"{product}=0:5\", or --range e=0.2:1"))
             }
+            Self::Contact(_) => Some(
+                "begin the range at a larger restitution, or end it at a smaller speed: contacts that stop nearly all of the speed have no enclosure"
+                    .to_owned(),
+            ),
             Self::NotAmplitude(amplitude, _) => {
                 Some(format!("write --range {amplitude}=0:1, and numbers by --at"))
             }
@@ -309,72 +310,6 @@ impl LawProblem {
         Ok(Self { motion, equation, variable, meaning, from: from.clone(), to: to.cloned() })
     }
 
-    /// The problem of a contact `x'' + k x^n (1 + c x') = 0`, touched with the speed v: its duration over that
-    /// without damping depends on c v alone. What varies is that product, one of its letters, or the
-    /// restitution e.
-    ///
-    /// # Errors
-    /// [`ShortestError`].
-    pub fn of_contact(
-        oscillator: &Oscillator,
-        varying: &Expr,
-        (from, to): (&Rational, Option<&Rational>),
-        at: &Values,
-    ) -> Result<Self, ShortestError> {
-        let to = ends(from, to)?.ok_or(ShortestError::EndOfContact)?;
-        let contact = HuntCrossleyForce::of(&oscillator.force, oscillator.coordinate)?;
-        let contact = contact.ok_or_else(|| ShortestError::NoContact(oscillator.force.clone()))?;
-        let product = &contact.damping * &Expr::from(Symbol::new(SPEED));
-        let letters = product.symbols();
-        if let Some((name, _)) = at.iter().find(|(name, _)| !letters.contains(name)) {
-            return Err(ShortestError::Unknown(name));
-        }
-        let equation = format!("{} = 0", oscillator.residual);
-        let taken: Vec<Symbol> = letters.iter().copied().chain([oscillator.coordinate]).collect();
-        let fresh_letter = fresh("s", &taken);
-        let force = |damping: Rational| -> Result<Expr, ShortestError> {
-            let [depth, speed] = [coordinate(), coordinate().derivative()].map(Expr::from);
-            let depth = Expr::power(&depth, &Expr::number(contact.exponent.clone()))?;
-            Ok(depth * (Expr::one() + Expr::number(damping) * speed))
-        };
-        if varying.as_symbol() == Some(restitution()) && !letters.contains(&restitution()) {
-            let one = Rational::one();
-            if to > one || !from.is_positive() {
-                return Err(ShortestError::EndOfContact);
-            }
-            let [most, least] = [from, &to].map(|e| damping_of(to_f64(e)));
-            let [below, above] = [least, most].map(|s| from_f64(s).unwrap_or_else(Rational::zero));
-            let (from, to) = (from.clone(), to);
-            return Ok(Self {
-                motion: LawMotion::Contact { force: force(one)?, restitution: Some([from, to]) },
-                equation,
-                variable: fresh_letter,
-                meaning: Some(product),
-                from: neighbours(&below, DIGITS)[0].clone(),
-                to: Some(neighbours(&above, DIGITS)[1].clone()),
-            });
-        }
-        let (values, _) = at.split(&taken);
-        let given = product.substitute_all(&values)?;
-        let factor = Expr::divide(&given, varying)?.expand()?;
-        let Some(damping) = factor.as_number().filter(|c| c.is_positive()).cloned() else {
-            let own = varying.symbols();
-            let mut missing = given.symbols();
-            missing.retain(|name| !own.contains(name));
-            let names: Vec<Symbol> = missing.into_iter().collect();
-            return Err(match own.iter().all(|name| letters.contains(name)) && !names.is_empty() {
-                true => ShortestError::Missing(names),
-                false => ShortestError::NotOfContact { varying: varying.clone(), product },
-            });
-        };
-        let (variable, meaning) = match varying.as_symbol() {
-            Some(name) => (name, None),
-            None => (fresh_letter, Some(varying.clone())),
-        };
-        let motion = LawMotion::Contact { force: force(damping)?, restitution: None };
-        Ok(Self { motion, equation, variable, meaning, from: from.clone(), to: Some(to) })
-    }
-
     /// The problem of the backbone of a normal mode: its frequency against its amplitude. The system has
     /// numbers for all parameters.
     ///
@@ -420,21 +355,24 @@ impl LawProblem {
         })
     }
 
-    /// The force of a certificate of the law in the coordinate [`x`](coordinate), and the start of the motion.
+    /// The force and the mass of a certificate of the law in the coordinate [`x`](coordinate), measured from
+    /// the equilibrium, and the start of the motion.
     ///
     /// # Errors
     /// Motions of which no law is proved.
-    pub(super) fn of_certificate(&self) -> Result<(Expr, StartOfLaw), LawNotProved> {
+    pub(super) fn of_certificate(&self) -> Result<(Expr, Option<Expr>, StartOfLaw), LawNotProved> {
         match &self.motion {
             LawMotion::Free { start: None, .. } => Err(LawNotProved::LimitCycle),
             LawMotion::Free { oscillator, start: Some(start), solution } => {
-                if !solution.equilibrium.is_zero() {
-                    return Err(LawNotProved::NotCentred(oscillator.force.to_string()));
-                }
-                let x = Expr::from(coordinate());
-                Ok((oscillator.force.substitute(oscillator.coordinate, &x)?, start.clone()))
+                let place = Expr::from(coordinate()) + &solution.equilibrium;
+                let centred = |of: &Expr| of.substitute(oscillator.coordinate, &place);
+                let (mass, force) = match inertia::mass_and_force(oscillator) {
+                    Some([mass, force]) => (Some(centred(&mass)?), force),
+                    None => (None, oscillator.force.clone()),
+                };
+                Ok((centred(&force)?, mass, start.clone()))
             }
-            LawMotion::Contact { force, .. } => Ok((force.clone(), StartOfLaw::Variable)),
+            LawMotion::Contact { force, .. } => Ok((force.clone(), None, StartOfLaw::Variable)),
             LawMotion::Mode { .. } => Err(LawNotProved::Mode),
         }
     }
@@ -483,7 +421,7 @@ impl LawProblem {
     }
 
     /// The true frequency at so many places, which are closer to each other at the ends of the range.
-    /// Those of a contact come from its enclosure.
+    /// The values of a contact come from its enclosure.
     pub(super) fn true_frequencies(
         &self,
         count: usize,
@@ -592,33 +530,16 @@ impl LawProblem {
     }
 }
 
-/// The letter of the speed at the touch.
-const SPEED: &str = "v";
-
-/// Significant digits of the ends of a range that follow from those of a restitution.
-const DIGITS: usize = 6;
-
 /// The upper end of a range, `None` for infinity, if the range is one.
-fn ends(from: &Rational, to: Option<&Rational>) -> Result<Option<Rational>, ShortestError> {
+pub(super) fn ends(
+    from: &Rational,
+    to: Option<&Rational>,
+) -> Result<Option<Rational>, ShortestError> {
     if from.is_negative() || to.is_some_and(|to| to <= from) {
         let to = to.map_or("inf".to_owned(), Rational::to_string);
         return Err(ShortestError::Range { from: from.to_string(), to });
     }
     Ok(to.cloned())
-}
-
-/// The product of damping and speed whose contact has this restitution:
-/// `G(s) = G(-e s)`, `G(z) = z - log(1 + z)`.
-fn damping_of(restitution: f64) -> f64 {
-    if restitution >= 1.0 {
-        return 0.0;
-    }
-    let lost = |z: f64| z - z.ln_1p();
-    let missing = |s: f64| lost(s) - lost(-restitution * s);
-    // For little loss s is 3 (1 - e)/2.
-    let least = 1e-2 * (1.0 - restitution);
-    let most = restitution.recip() * (1.0 - f64::EPSILON);
-    find_root(missing, least, most).unwrap_or(most)
 }
 
 /// The equation of `x = A y` in which a product with a parameter stands for that parameter, and its name.

@@ -207,8 +207,8 @@ impl<'a> Trees<'a> {
     }
 
     /// The formulas, one for each function up to a factor and a constant that may be added, that are no
-    /// longer than this: their numbers and lengths, the shortest first.
-    pub(super) fn functions(&self, longest: usize) -> Vec<(usize, usize)> {
+    /// longer than this: their numbers, the shortest first.
+    pub(super) fn functions(&self, longest: usize) -> Vec<usize> {
         let mut known = HashSet::new();
         let end = self.ends.get(longest).copied().unwrap_or(self.trees.len());
         let own = self.trees[..end].iter().enumerate().filter(|(_, tree)| {
@@ -219,7 +219,7 @@ impl<'a> Trees<'a> {
             !tree.is_number
                 && known.insert(fingerprint(&tree.values, |v| (v - first) / (last - first)))
         });
-        own.map(|(i, tree)| (i, tree.length)).collect()
+        own.map(|(i, _)| i).collect()
     }
 
     /// The formulas nearest to the truth by length, up to one that is longer than those that are kept.

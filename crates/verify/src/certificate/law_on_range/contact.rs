@@ -198,11 +198,14 @@ impl ContactMean {
         let one = Bound::exactly(1.0);
         let scaled = Bound::of_fraction(&(&self.damping * speed));
         let left = scaled.below_complement();
+        // Of either sign of s: r/q has no zero, so that its power is analytic.
+        let largest = one.over((scaled / 2).over(left).below_complement());
+        let largest = largest.over((w / 2).below_complement());
+        if largest >= Bound::UNKNOWN {
+            return None;
+        }
         let ratio = match self.weight.is_negative() {
-            true => {
-                let least = (scaled / 2).over(left).below_complement();
-                one.over(least).over((w / 2).below_complement())
-            }
+            true => largest,
             false => one.over(left) * (one + w / 2),
         };
         let end = Bound::of_fraction(&self.largest_start(speed)) * (one + w);

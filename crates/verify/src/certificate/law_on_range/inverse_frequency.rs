@@ -5,14 +5,15 @@
 //! a disc of complex values about it allows. A piece costs some seventeen series of `G^(-1/2)`, of a
 //! force that is not odd with the other turning point of each motion besides.
 //!
-//! Equations and sources: those of `law_on_range`.
+//! With a mass M that depends on the position `G^(-1/2)` is `(M/G)^(1/2)`. Equations and sources: those of
+//! `law_on_range`.
 
 use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
 use super::super::coordinate;
-use super::super::force::{along_all, is_odd};
+use super::super::force::{along, along_all, is_odd};
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::contact::{self, ContactMean};
 use super::jet::{Jet, widened};
@@ -49,6 +50,8 @@ pub(super) struct ForceOnRange {
     pub(super) power: u32,
     /// Whether the variable is r.
     pub(super) is_far: bool,
+    /// The mass, where that depends on the position.
+    mass: Option<Expr>,
     /// The contact whose time the motion gives; `None` for the frequency.
     contact: Option<ContactMean>,
 }
@@ -106,8 +109,10 @@ pub(super) struct Extent {
 /// G on a disc of complex values of the variable.
 struct RateOnDisc {
     rate: FourierSeries,
-    /// The motions of the disc, and their other turning points; `None` for an odd force.
-    motions: Option<(Extent, Ball)>,
+    /// The motions of the disc.
+    extent: Extent,
+    /// Their other turning points.
+    end: Ball,
 }
 
 impl ForceOnRange {
@@ -127,7 +132,7 @@ impl ForceOnRange {
             + force.differentiate(variable)?.differentiate(variable)?;
         let is_odd = is_odd(&force, &[coordinate()])?;
         let start = start.clone();
-        let contact = None;
+        let (mass, contact) = (None, None);
         Ok(Self {
             start,
             variable,
@@ -139,8 +144,14 @@ impl ForceOnRange {
             bend,
             power,
             is_far,
+            mass,
             contact,
         })
+    }
+
+    /// The force of `M x'' + (dM/dx) x'^2/2 + f = 0`.
+    pub(super) fn with_mass(self, mass: Option<&Expr>) -> Self {
+        Self { mass: mass.cloned(), ..self }
     }
 
     /// The swing whose mean is the time of a contact.
@@ -311,18 +322,35 @@ impl ForceOnRange {
         let rate = mean_rate(&self.along(&self.force, place, [&extent, &nothing])?);
         let rate = rate.over(&extent.radius);
         let root = self.root(&rate.ok_or_else(|| LawNotProved::NoValue("1/A".to_owned()))?)?;
+        let root = self.with_root_of_mass(root, place, &extent)?;
         let Some(contact) = &self.contact else { return Ok(vec![mean(&root)]) };
         let end = WORKING.difference(&extent.middle, &extent.radius);
         let values = contact.values(&root, (&extent, &end), place);
         Ok(values.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
     }
 
-    /// That in the limit of small amplitudes.
+    /// The quantities in the limit of small amplitudes.
     pub(super) fn at_rest(&self) -> Result<Vec<Ball>, LawNotProved> {
         match &self.contact {
             Some(_) => Ok(vec![WORKING.integer(1); 2]),
-            None => Ok(vec![mean(&self.root(&self.stiffness(&Ball::zero())?)?)]),
+            None => {
+                let (nowhere, still) = (Ball::zero(), Extent::of_odd(Ball::zero()));
+                let root = self.root(&self.stiffness(&nowhere)?)?;
+                Ok(vec![mean(&self.with_root_of_mass(root, &nowhere, &still)?)])
+            }
         }
+    }
+
+    /// A series times the root of the mass along a motion.
+    fn with_root_of_mass(
+        &self,
+        series: FourierSeries,
+        variable: &Ball,
+        extent: &Extent,
+    ) -> Result<FourierSeries, LawNotProved> {
+        let Some(mass) = &self.mass else { return Ok(series) };
+        let nothing = Extent::of_odd(Ball::zero());
+        Ok(series.product(&root_of_mass(&self.along(mass, variable, [extent, &nothing])?)?))
     }
 
     /// `G^(-1/2)`, or the power that is that of the contact.
@@ -344,17 +372,20 @@ impl ForceOnRange {
     ) -> Result<Vec<Bound>, LawNotProved> {
         let (place, spread) = (WORKING.fraction(middle), Bound::of_fraction(radius));
         let all = widened(&place, spread);
-        let of_odd = |rate: FourierSeries| RateOnDisc { rate, motions: None };
+        let [start, _] = self.start(&all)?;
+        let of_odd = |rate: FourierSeries| RateOnDisc {
+            rate,
+            extent: Extent::of_odd(start.clone()),
+            end: WORKING.scaled(&start, -1),
+        };
         let on_disc = match (self.is_odd, &self.start) {
             (false, _) => self.rate_on_disc(&place, &all, spread)?,
             (true, StartOfLaw::Fixed(_)) => of_odd(self.rate_by_parameter(&place, &all, spread)?),
             (true, StartOfLaw::Variable) => of_odd(self.rate_by_amplitude(&place, &all, spread)?),
         };
-        let root = self.root(&on_disc.rate)?;
-        let (Some(contact), Some((extent, end))) = (&self.contact, &on_disc.motions) else {
-            return Ok(vec![root.norm()]);
-        };
-        let bounds = contact.bounds(&root, (extent, end), &all);
+        let root = self.with_root_of_mass(self.root(&on_disc.rate)?, &all, &on_disc.extent)?;
+        let Some(contact) = &self.contact else { return Ok(vec![root.norm()]) };
+        let bounds = contact.bounds(&root, (&on_disc.extent, &on_disc.end), &all);
         Ok(bounds.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
     }
 
@@ -449,7 +480,7 @@ impl ForceOnRange {
         let by_variable = over(&slope, &on_all.radius)?
             .difference(&over(&force_on_all, &square)?.product(&turned));
         let rate = over(&force, &extent.radius)?.widened(spread * by_variable.norm());
-        Ok(RateOnDisc { rate, motions: Some((on_all, end_on_all)) })
+        Ok(RateOnDisc { rate, extent: on_all, end: end_on_all })
     }
 
     /// Bounds of the sizes of the quantities for all complex amplitudes up to a size R: `f(x) = f'(0) x + g(x)` with
@@ -487,6 +518,12 @@ impl ForceOnRange {
             }
         };
         let root = self.root(&stiffness.widened(distance))?;
+        // Both turning points are within 2 R of rest, and the coefficients of the motion within 3 R in all.
+        let motion = FourierSeries::constant(Ball::zero()).widened(spread * Bound::exactly(3.0));
+        let root = match self.mass.as_ref().map(|mass| along(mass, &motion)).transpose()? {
+            Some(mass) => root.product(&root_of_mass(&mass)?),
+            None => root,
+        };
         let Some(contact) = &self.contact else { return Ok(vec![root.norm()]) };
         let bounds = contact.bounds_about_rest(&root, w, size);
         Ok(bounds.ok_or_else(|| LawNotProved::NoValue("T/T_0".to_owned()))?.to_vec())
@@ -517,6 +554,13 @@ fn work_between(force: &FourierSeries) -> Ball {
         sum = WORKING.difference(&sum, &WORKING.divided(&force.cosine(k), divisor));
     }
     widened(&sum, force.tail)
+}
+
+/// `M^(1/2)`.
+fn root_of_mass(mass: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
+    let inverse = mass.inverse_root(2);
+    let inverse = inverse.ok_or_else(|| LawNotProved::NoValue("M^(1/2)".to_owned()))?;
+    Ok(mass.product(&inverse))
 }
 
 /// Fractions near the points of Chebyshev between -1 and 1.

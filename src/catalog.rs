@@ -213,13 +213,6 @@ pub const CATALOG: &[CatalogEntry] = &[
         published: omega_squared("1 - A^2 + A^4", 4),
     },
     CatalogEntry {
-        name: "bubble",
-        title: "gas bubble in a liquid",
-        equation: "R*R'' + 3/2*R'^2 + 1 - R^(-21/5) = 0",
-        source: "Lord Rayleigh, Phil. Mag. 34 (1917) 94-98; M. S. Plesset, J. Appl. Mech. 16 (1949) 277-282; a gas of exponent 7/5",
-        published: None,
-    },
-    CatalogEntry {
         name: "morse",
         title: "molecular bond of Morse",
         equation: "x'' + exp(-x) - exp(-2*x) = 0",

@@ -164,6 +164,11 @@ fn laws_of_the_time_of_a_contact() {
     let found = contact_front(hertz, "e", ["1/5", "1"], 8);
     let places = contacts(1.5, (0..=2000).map(|i| 4.919 * f64::from(i) / 2000.0));
     remeasured_at(&found, &places);
+    // The worst place of each is in the range, to the last digit of its ends.
+    for law in &found.laws {
+        let (certificate, _) = law.proof.as_ref().expect("a proof");
+        assert!(certificate.to.as_ref().is_some_and(|to| certificate.worst <= *to));
+    }
     // T/T_0 = 0.88 + 0.12/e or better, and the range of s reaches the restitution that is asked for.
     assert!(found.laws.last().is_some_and(|law| law.largest_error() < 0.005));
     let end = to_f64(found.problem.to.as_ref().expect("an end"));

@@ -504,7 +504,13 @@ fn certificate(
             law.substitute_all(&meanings(atoms))?
         }
     };
+    // The nearest double of an end may lie outside of the range.
     let worst = candidate.and_then(|candidate| from_f64(candidate.worst));
+    let worst = worst.unwrap_or_else(|| problem.from.clone()).max(problem.from.clone());
+    let worst = match &problem.to {
+        Some(to) => worst.min(to.clone()),
+        None => worst,
+    };
     let bound = candidate
         .map_or_else(Rational::one, |candidate| rounded_error(candidate.error.max(LEAST_CLAIM)));
     Ok(LawCertificate {
@@ -516,7 +522,7 @@ fn certificate(
         law,
         from: problem.from.clone(),
         to: problem.to.clone(),
-        worst: worst.unwrap_or_else(|| problem.from.clone()),
+        worst,
         claim: [Rational::zero(), bound],
     })
 }

@@ -35,6 +35,7 @@ fn proofs(criterion: &mut Criterion) {
         let fraction = |text: &str| text.parse().expect("a fraction");
         let certificate = LawCertificate {
             force: "sin(x)".parse().expect("an expression"),
+            mass: None,
             variable: "A".into(),
             start: StartOfLaw::Variable,
             quantity: LawQuantity::Frequency,

@@ -50,8 +50,9 @@ impl LawProblem {
         if let Some((name, _)) = at.iter().find(|(name, _)| !letters.contains(name)) {
             return Err(ShortestError::Unknown(name));
         }
-        let equation = format!("{} = 0", oscillator.residual);
         let taken: Vec<Symbol> = letters.iter().copied().chain([oscillator.coordinate]).collect();
+        let (values, _) = at.split(&taken);
+        let equation = format!("{} = 0", oscillator.residual.substitute_all(&values)?);
         let fresh_letter = fresh("s", &taken);
         let force = |damping: Rational| -> Result<Expr, ShortestError> {
             let [depth, speed] = [coordinate(), coordinate().derivative()].map(Expr::from);
@@ -75,7 +76,6 @@ impl LawProblem {
                 to: Some(neighbours(&above, DIGITS)[1].clone()),
             });
         }
-        let (values, _) = at.split(&taken);
         let given = product.substitute_all(&values)?;
         let factor = Expr::divide(&given, varying)?.expand()?;
         let Some(damping) = factor.as_number().filter(|c| c.is_positive()).cloned() else {

@@ -400,11 +400,11 @@ def shortest(
             (mu=0:10), or a product on which the frequency alone depends (eps*A^2=0:inf).
         error: The largest relative error that is allowed, 0.001 say; without it the whole
             front.
-        quantity: What the law gives: omega, omega^2, T, the period over 2 pi, or contact-time,
+        quantity: The law's quantity: omega, omega^2, T, the period over 2 pi, or contact-time,
             the duration of a contact x'' + k*x^n*(1 + c*x') = 0 over that without damping.
         about: The equilibrium to swing about, x=1 say, from which the amplitude is measured.
-        mode: Which normal mode of coupled equations, 1 for the slowest.
-        amplitude: What the amplitude of a mode measures.
+        mode: The normal mode of coupled equations, 1 for the slowest.
+        amplitude: The measure of a mode's amplitude.
         atom: A quantity of which laws are made, counted as one symbol, such as cos(A/2);
             repeatable, those of the equation without it.
         longest: The greatest length of a law in symbols.

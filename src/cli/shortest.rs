@@ -41,17 +41,17 @@ pub struct ShortestArguments {
     /// The largest relative error that is allowed, 0.001 say; without it the whole front
     #[arg(long, value_name = "R", value_parser = super::positive, allow_hyphen_values = true)]
     error: Option<f64>,
-    /// What the law gives: omega, omega^2, T, the period over 2 pi, or contact-time, the duration of a
+    /// The law's quantity: omega, omega^2, T, the period over 2 pi, or contact-time, the duration of a
     /// contact x'' + k*x^n*(1 + c*x') = 0 over that without damping
     #[arg(long, value_parser = ["omega", "omega^2", "T", "contact-time"], default_value = "omega")]
     quantity: String,
     /// The equilibrium to swing about, x=1 say, from which the amplitude is measured
     #[arg(long, value_name = "NAME=VALUE,...")]
     about: Option<String>,
-    /// Which normal mode of coupled equations, 1 for the slowest
+    /// The normal mode of coupled equations, 1 for the slowest
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     mode: Option<u32>,
-    /// What the amplitude of a mode measures
+    /// The measure of a mode's amplitude
     #[arg(long, value_parser = convention())]
     amplitude: Option<AmplitudeConvention>,
     /// The value of another parameter, exact (1.5, 3/2); of the amplitude where a parameter varies

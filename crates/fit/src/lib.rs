@@ -1,0 +1,17 @@
+//! Laws of vibration from measured records: which spring and which loss, with true standard errors.
+//!
+//! In: a record of a free decay, a backbone table or times of impacts. Out: frequency and damping against
+//! amplitude without any law, a table of laws with their parameters, errors and exclusions.
+//!
+//! Five names to know: [`laws::Law`]
+
+#![warn(missing_docs)]
+
+#[doc(no_inline)]
+pub use lindstedt_dynamics::{expr, numeric, symbol, system};
+#[doc(no_inline)]
+pub use lindstedt_oscillator::oscillator;
+
+pub mod laws;
+
+pub mod motion;

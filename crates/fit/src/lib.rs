@@ -14,4 +14,20 @@ pub use lindstedt_oscillator::oscillator;
 
 pub mod laws;
 
+mod powers;
+
+mod polynomial;
+
+pub mod turning_points;
+
+mod least_squares;
+
+pub mod backbone;
+
+mod closed_forms;
+
 pub mod motion;
+
+pub mod sample_fit;
+
+pub mod whiteness;

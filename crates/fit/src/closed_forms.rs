@@ -1,0 +1,332 @@
+//! Laws fitted to turning points by the map of a half swing: the start of the fit to the samples.
+//!
+//! ```text
+//! V(x_(n+1)) = V(x_n) - W,   t_(n+1) = t_n + T/2             V: potential of the spring, W: work of the loss in the half swing
+//! T/2 = int dx/v,  W = int loss(v) dx,   v^2 = 2 (E - V(x)),   E linear in x from V(x_n) to V(x_(n+1))
+//! ```
+//!
+//! For dry friction this is `A + A'` in closed form, for the pendulum T is the complete elliptic integral, for viscous damping W the
+//! elliptic action. The integrals are computed in `x = m + r sin(phi)`, where they are smooth, by a Gauss
+//! rule. The map is exact for dry friction, and to second order in any other loss.
+
+use nalgebra::{DMatrix, DVector};
+use spec_math::cephes64::gamma;
+
+use crate::backbone::{BackbonePoint, backbone};
+use crate::laws::{Law, Loss, Spring};
+use crate::least_squares::{Linearised, minimise};
+use crate::numeric::ode::quadrature::nodes_and_weights;
+use crate::polynomial::regression;
+use crate::turning_points::Swings;
+
+/// A law fitted to the turning points.
+#[derive(Clone, Debug)]
+pub struct MapFit {
+    /// The parameters of the law.
+    pub parameters: Vec<f64>,
+    /// The initial turning point: its coordinate without the offset, and its time.
+    pub start: [f64; 2],
+    /// Offset at the middle of the record, and drift per unit of time.
+    pub centre: [f64; 2],
+    /// The sum of the squares of the residuals over their errors.
+    pub chi_square: f64,
+}
+
+/// The numbers of a law of the list in the roles of its equation.
+#[derive(Clone, Copy, Debug)]
+struct Numbers {
+    spring: Spring,
+    /// w^2 or k, then beta, b or n.
+    stiffness: [f64; 2],
+    /// The coefficients of v, sgn v, |v| v and |v|^p sgn v, and p.
+    loss: [f64; 5],
+}
+
+impl Numbers {
+    fn new(spring: Spring, loss: Loss, parameters: &[f64]) -> Self {
+        let has_frequency = spring != Spring::Power;
+        let first = parameters[0];
+        let square = if has_frequency { first * first } else { first };
+        let (second, rest) = match spring {
+            Spring::Linear | Spring::Pendulum => (0.0, &parameters[1..]),
+            Spring::Duffing | Spring::Quadratic | Spring::Power => (parameters[1], &parameters[2..]),
+        };
+        let [viscous, dry] = if has_frequency { [2.0 * first, square] } else { [1.0, 1.0] };
+        let loss = match loss {
+            Loss::None => [0.0; 5],
+            Loss::Viscous => [viscous * rest[0], 0.0, 0.0, 0.0, 1.0],
+            Loss::Coulomb => [0.0, dry * rest[0], 0.0, 0.0, 1.0],
+            Loss::Quadratic => [0.0, 0.0, rest[0], 0.0, 1.0],
+            Loss::Power => [0.0, 0.0, 0.0, rest[0], rest[1]],
+            Loss::ViscousAndCoulomb => [viscous * rest[0], dry * rest[1], 0.0, 0.0, 1.0],
+        };
+        Self { spring, stiffness: [square, second], loss }
+    }
+
+    fn potential(&self, x: f64) -> f64 {
+        let [k, second] = self.stiffness;
+        let square = x * x;
+        match self.spring {
+            Spring::Linear => 0.5 * k * square,
+            Spring::Duffing => 0.5 * k * square + 0.25 * second * square * square,
+            Spring::Quadratic => 0.5 * k * square + second * square * x / 3.0,
+            Spring::Pendulum => 2.0 * k * (0.5 * x).sin().powi(2),
+            Spring::Power => k * x.abs().powf(second + 1.0) / (second + 1.0),
+        }
+    }
+
+    /// The turning point on the side of this sign with this energy.
+    fn turning_point(&self, energy: f64, sign: f64) -> Option<f64> {
+        let [k, second] = self.stiffness;
+        let size = match self.spring {
+            Spring::Linear => (2.0 * energy / k).sqrt(),
+            Spring::Duffing => {
+                // The smaller root of beta z^2/4 + k z/2 = E in z = x^2, without cancellation.
+                let root = (0.25 * k * k + second * energy).sqrt();
+                (2.0 * energy / (0.5 * k + root)).sqrt()
+            }
+            Spring::Pendulum => 2.0 * (0.5 * energy / k).sqrt().asin(),
+            Spring::Power => ((second + 1.0) * energy / k).powf(1.0 / (second + 1.0)),
+            Spring::Quadratic => {
+                const ITERATIONS: usize = 30;
+                let mut x = sign * (2.0 * energy / k).sqrt();
+                for _ in 0..ITERATIONS {
+                    let force = k * x + second * x * x;
+                    let step = (self.potential(x) - energy) / force;
+                    x -= step;
+                    if step.abs() <= 1e-13 * x.abs() {
+                        break;
+                    }
+                }
+                if x * sign <= 0.0 || (k + 2.0 * second * x) * k <= 0.0 {
+                    return None;
+                }
+                x.abs()
+            }
+        };
+        (size.is_finite() && size > 0.0).then_some(sign * size)
+    }
+
+    fn loss(&self, speed: f64) -> f64 {
+        let [viscous, dry, quadratic, power, exponent] = self.loss;
+        let last = if power == 0.0 { 0.0 } else { power * speed.powf(exponent) };
+        viscous * speed + dry + quadratic * speed * speed + last
+    }
+
+    /// The duration of a half swing between these turning points, given as coordinate and energy, and the work of the loss in
+    /// it. In between the energy is linear in the coordinate, as it is with dry friction.
+    fn half_swing(&self, [low, high]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
+        let (middle, radius) = (0.5 * (low[0] + high[0]), 0.5 * (high[0] - low[0]));
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let (mut time, mut work) = (0.0, 0.0);
+        for (angle, weight) in nodes_and_weights(-quarter, quarter) {
+            let (sine, cosine) = angle.sin_cos();
+            let energy = 0.5 * (low[1] + high[1] + sine * (high[1] - low[1]));
+            let speed = (2.0 * (energy - self.potential(middle + radius * sine))).max(0.0).sqrt();
+            time += weight * radius * cosine / speed;
+            work += weight * self.loss(speed) * radius * cosine;
+        }
+        let both = [time, work];
+        both.iter().all(|value| value.is_finite()).then_some(both)
+    }
+
+    /// The turning point after this one and the time between both; `None` if the motion ends.
+    fn next(&self, x: f64) -> Option<[f64; 2]> {
+        const ROUNDS: usize = 6;
+        let energy = self.potential(x);
+        let (mut work, mut time) = (0.0, 0.0);
+        for _ in 0..ROUNDS {
+            let other = self.turning_point(energy - work, -x.signum())?;
+            let [here, there] = [[x, energy], [other, energy - work]];
+            [time, work] = self.half_swing(if x > 0.0 { [there, here] } else { [here, there] })?;
+        }
+        Some([self.turning_point(energy - work, -x.signum())?, time])
+    }
+}
+
+/// Fits a law of the list to turning points. Returns `None` for an equation of one's own and where no motion of the law is
+/// near.
+pub fn fit_map(law: &Law, swings: &Swings) -> Option<MapFit> {
+    const ITERATIONS: u64 = 30;
+    let (spring, loss) = law.parts?;
+    let rows = backbone(swings, 12);
+    let parameters = guess(spring, loss, &rows, swings)?;
+    let first = swings.points[0];
+    let [level, drift, _] = swings.centre;
+    let own = parameters.len();
+    let mut start = parameters;
+    let amplitude = swings.amplitudes()[0];
+    let sign = if first.is_maximum { 1.0 } else { -1.0 };
+    let coordinate = first.value - level - drift * (first.time - swings.middle);
+    let coordinate = if coordinate * sign > 0.0 { coordinate } else { sign * amplitude };
+    start.extend([coordinate, first.time, level, drift]);
+    let residuals = |values: &[f64]| -> Option<DVector<f64>> {
+        let numbers = Numbers::new(spring, loss, &values[..own]);
+        let [mut x, mut time, level, drift] = *values[own..].first_chunk::<4>()?;
+        let mut residuals = Vec::with_capacity(2 * swings.points.len());
+        let mut count = 0;
+        for point in &swings.points {
+            while count < point.half_swings {
+                let Some([next, duration]) = numbers.next(x) else {
+                    // The law comes to rest: it stays where it is.
+                    (x, time) = (0.0, time + swings.half_period);
+                    count += 1;
+                    continue;
+                };
+                (x, time) = (next, time + duration);
+                count += 1;
+            }
+            let centre = level + drift * (point.time - swings.middle);
+            residuals.push((x + centre - point.value) / point.value_error);
+            residuals.push((time - point.time) / point.time_error);
+        }
+        let residuals = DVector::from_vec(residuals);
+        residuals.iter().all(|value| value.is_finite()).then_some(residuals)
+    };
+    let scales: Vec<f64> = start.iter().enumerate().map(|(index, value)| {
+        let small = match index.checked_sub(own) {
+            Some(0 | 2) => amplitude,
+            Some(1) => swings.half_period,
+            Some(_) => amplitude / swings.half_period,
+            None => 1e-2,
+        };
+        if value.abs() > 1e-3 * small { value.abs().min(small.max(value.abs() * 1e-3)) } else { small }
+    }).collect();
+    let linearised = |values: &[f64]| -> Option<Linearised> {
+        const STEP: f64 = 1e-6;
+        let at = residuals(values)?;
+        let mut jacobian = DMatrix::zeros(at.len(), values.len());
+        for index in 0..values.len() {
+            let mut moved = values.to_vec();
+            let step = STEP * scales[index];
+            moved[index] += step;
+            jacobian.set_column(index, &((residuals(&moved)? - &at) / step));
+        }
+        Some((at, jacobian))
+    };
+    let minimum = minimise(&start, ITERATIONS, linearised)?;
+    let chi_square = minimum.square();
+    let [x, time, level, drift] = *minimum.parameters[own..].first_chunk::<4>()?;
+    Some(MapFit {
+        parameters: minimum.parameters[..own].to_vec(),
+        start: [x, time],
+        centre: [level, drift],
+        chi_square,
+    })
+}
+
+/// The first guess of the parameters from the measured backbone: by regression of frequency and of decrement on
+/// amplitude.
+fn guess(
+    spring: Spring,
+    loss: Loss,
+    rows: &[BackbonePoint],
+    swings: &Swings,
+) -> Option<Vec<f64>> {
+    let weights: Vec<f64> =
+        rows.iter().map(|row| (row.frequency / row.frequency_error).powi(2)).collect();
+    let column = |value: &dyn Fn(&BackbonePoint) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
+    let one = vec![1.0; rows.len()];
+    let squares = column(&|row| row.frequency.powi(2));
+    let relative: Vec<f64> =
+        rows.iter().zip(&weights).map(|(row, weight)| weight / row.frequency.powi(4)).collect();
+    let line = |columns: &[Vec<f64>], values: &[f64], weights: &[f64]| {
+        regression(columns, values, weights).map(|(found, _)| found)
+    };
+    let mean = line(std::slice::from_ref(&one), &squares, &relative)?[0];
+    let sloped = line(&[one.clone(), column(&|row| row.amplitude.powi(2))], &squares, &relative);
+    let sloped = sloped.filter(|found| found[0] > 0.0).unwrap_or_else(|| vec![mean, 0.0]);
+    let (mut parameters, frequency) = match spring {
+        Spring::Linear => (vec![mean.sqrt()], mean.sqrt()),
+        Spring::Duffing => (vec![sloped[0].sqrt(), 4.0 / 3.0 * sloped[1]], sloped[0].sqrt()),
+        Spring::Quadratic => {
+            // The middle of two turning points is -b A^2/(3 w^2).
+            let shift = -3.0 * sloped[0] * swings.centre[2];
+            let size = (1.2 * sloped[0] * (-sloped[1]).max(0.0)).sqrt();
+            let bent = if size > 0.0 { size.copysign(shift) } else { shift };
+            (vec![sloped[0].sqrt(), bent], sloped[0].sqrt())
+        }
+        Spring::Pendulum => {
+            let small = column(&|row| (row.frequency * (1.0 + row.amplitude.powi(2) / 16.0)).powi(2));
+            let square = line(std::slice::from_ref(&one), &small, &relative)?[0];
+            (vec![square.sqrt()], square.sqrt())
+        }
+        Spring::Power => {
+            let logarithms = column(&|row| row.frequency.ln());
+            let amplitudes = column(&|row| row.amplitude.ln());
+            let found = line(&[one.clone(), amplitudes], &logarithms, &weights)?;
+            let exponent = (2.0 * found[1] + 1.0).clamp(0.1, 9.0);
+            // omega = 2 pi/T with T = 4 sqrt((n + 1)/(2 k)) A^((1 - n)/2) sqrt(pi) Gamma(1/(n + 1))/((n + 1) Gamma(1/(n + 1) + 1/2)).
+            let m = 1.0 / (exponent + 1.0);
+            let integral = std::f64::consts::PI.sqrt() * m * gamma(m) / gamma(m + 0.5);
+            let unit = std::f64::consts::FRAC_PI_2 / integral / (0.5 * (exponent + 1.0)).sqrt();
+            (vec![(found[0].exp() / unit).powi(2), exponent], mean.sqrt())
+        }
+    };
+    // The decrement of a half swing: pi zeta A for viscous damping, 2 alpha for dry friction, (4/3) q A^2 for quadratic.
+    let decrements = column(&|row| std::f64::consts::PI * row.damping * row.amplitude);
+    let weights: Vec<f64> = rows
+        .iter()
+        .map(|row| (std::f64::consts::PI * row.damping_error * row.amplitude).powi(-2))
+        .collect();
+    let amplitudes = column(&|row| row.amplitude);
+    let alone = |values: Vec<f64>| line(&[values], &decrements, &weights).map(|found| found[0]);
+    let has_frequency = spring != Spring::Power;
+    let viscous = if has_frequency { 1.0 } else { 2.0 * frequency };
+    let dry = if has_frequency { 1.0 } else { frequency * frequency };
+    match loss {
+        Loss::None => {}
+        Loss::Viscous => parameters.push(viscous * alone(amplitudes)? / std::f64::consts::PI),
+        Loss::Coulomb => parameters.push(dry * 0.5 * alone(one)?),
+        Loss::Quadratic => {
+            parameters.push(0.75 * alone(column(&|row| row.amplitude.powi(2)))?);
+        }
+        Loss::ViscousAndCoulomb => {
+            let found = line(&[amplitudes, one], &decrements, &weights)?;
+            parameters.push(viscous * found[0] / std::f64::consts::PI);
+            parameters.push(dry * 0.5 * found[1]);
+        }
+        Loss::Power => {
+            let positive = decrements.iter().map(|value| value.max(1e-12 * amplitudes[0]).ln());
+            let positive: Vec<f64> = positive.collect();
+            let relative: Vec<f64> = weights
+                .iter()
+                .zip(&decrements)
+                .map(|(weight, value)| weight * value.powi(2))
+                .collect();
+            let logarithms = column(&|row| row.amplitude.ln());
+            let found = line(&[one, logarithms], &positive, &relative)?;
+            let exponent = found[1].clamp(0.1, 4.0);
+            // Delta = r A^p w^(p - 2) I,  I = int_0^pi sin^(p + 1) = sqrt(pi) Gamma(p/2 + 1)/Gamma(p/2 + 3/2); through the middle row.
+            let middle = &rows[rows.len() / 2];
+            let integral = std::f64::consts::PI.sqrt() * gamma(0.5 * exponent + 1.0)
+                / gamma(0.5 * exponent + 1.5);
+            let decrement = (found[0] + found[1] * middle.amplitude.ln()).exp();
+            let unit = middle.amplitude.powf(exponent) * frequency.powf(exponent - 2.0) * integral;
+            parameters.extend([decrement / unit, exponent]);
+        }
+    }
+    parameters.iter().all(|value| value.is_finite()).then_some(parameters)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_swings_are_those_of_the_closed_forms() {
+        let pendulum = Numbers::new(Spring::Pendulum, Loss::Viscous, &[2.0, 0.01]);
+        let energy = pendulum.potential(1.5);
+        let [time, _] = pendulum.half_swing([[-1.5, energy], [1.5, energy]]).unwrap();
+        let exact = ellip::ellipk(0.75_f64.sin().powi(2)).unwrap();
+        assert!((time - exact).abs() < 1e-12, "{time} {exact}");
+        // Dry friction takes 2 alpha from the amplitude of a linear spring.
+        let dry = Numbers::new(Spring::Linear, Loss::Coulomb, &[3.0, 0.05]);
+        let [next, _] = dry.next(1.0).unwrap();
+        assert!((next + 0.9).abs() < 1e-12, "{next}");
+        // Both turning points of x + x^2/5 have the same energy.
+        let quadratic = Numbers::new(Spring::Quadratic, Loss::None, &[1.0, 0.2]);
+        let low = quadratic.turning_point(quadratic.potential(1.0), -1.0).unwrap();
+        assert!((quadratic.potential(low) - quadratic.potential(1.0)).abs() < 1e-14);
+    }
+}

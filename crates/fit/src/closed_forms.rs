@@ -132,13 +132,18 @@ impl Numbers {
 
     /// The turning point after this one and the time between both; `None` if the motion ends.
     fn next(&self, x: f64) -> Option<[f64; 2]> {
-        const ROUNDS: usize = 6;
+        const ROUNDS: usize = 30;
+        const CHANGE: f64 = 1e-12;
         let energy = self.potential(x);
         let (mut work, mut time) = (0.0, 0.0);
         for _ in 0..ROUNDS {
             let other = self.turning_point(energy - work, -x.signum())?;
             let [here, there] = [[x, energy], [other, energy - work]];
+            let before = work;
             [time, work] = self.half_swing(if x > 0.0 { [there, here] } else { [here, there] })?;
+            if (work - before).abs() <= CHANGE * energy {
+                break;
+            }
         }
         Some([self.turning_point(energy - work, -x.signum())?, time])
     }

@@ -31,3 +31,9 @@ pub mod motion;
 pub mod sample_fit;
 
 pub mod whiteness;
+
+pub mod record;
+
+mod equation_error;
+
+pub mod answer;

@@ -158,6 +158,10 @@ impl MotionSolver {
         arguments.resize(coefficients + symbols.len(), 0.0);
         // For each direction: the largest speed of the last half swing over the acceleration at its beginning.
         let mut speed_scales = [half_period / std::f64::consts::PI; 2];
+        // The direction of a start at rest needs the powers of the spring.
+        let scale = speed_scales[0];
+        let largest = start[0].hypot(start[1] * scale).max(f64::MIN_POSITIVE);
+        self.set_powers(&mut arguments, coefficients, [largest, largest / scale]);
         let mut run = Run { scratch: vec![], values: vec![0.0; count + 2] };
         let mut is_upward = start[1] > 0.0;
         let mut solvers: Option<Vec<Solver>> = None;
@@ -203,13 +207,7 @@ impl MotionSolver {
                     let by_speed = ROOM * (v * u + square * gradient[0] * change) / fastest;
                     numbers.insert(self.sizes[1][index], by_speed);
                 }
-                let mut place = coefficients;
-                for power in &self.powers {
-                    let size = if power.base == Base::Velocity { ROOM * fastest } else { largest };
-                    let own = power.numbers(parameters, size);
-                    arguments[place..place + own.len()].copy_from_slice(&own);
-                    place += own.len();
-                }
+                self.set_powers(&mut arguments, coefficients, [largest, ROOM * fastest]);
                 numbers.extend(symbols.iter().copied().zip(arguments[coefficients..].iter().copied()));
                 let own = self.sides.iter().map(|side| side.solver.with_numbers(&numbers));
                 solvers = Some(own.collect::<Option<_>>()?);
@@ -266,6 +264,17 @@ impl MotionSolver {
         }
         motion.columns = columns;
         Some(motion)
+    }
+
+    /// Sets the coefficients of powers for these largest values of the coordinate and of the velocity.
+    fn set_powers(&self, arguments: &mut [f64], from: usize, [largest, fastest]: [f64; 2]) {
+        let mut place = from;
+        for power in &self.powers {
+            let size = if power.base == Base::Velocity { fastest } else { largest };
+            let own = power.numbers(&arguments[3..from], size);
+            arguments[place..place + own.len()].copy_from_slice(&own);
+            place += own.len();
+        }
     }
 
     fn side(&self, is_upward: bool) -> usize {

@@ -76,7 +76,17 @@ pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &
     }
     let Minimum { parameters, residuals, jacobian, converged } =
         minimise(&values, ITERATIONS, |values| evaluate(values, total))?;
-    Some(SampleFit { law: law.clone(), values: parameters, residuals, jacobian, converged })
+    let mut fit = SampleFit { law: law.clone(), values: parameters, residuals, jacobian, converged };
+    // The equations of the list are the same for -w and -zeta.
+    if let (Some(_), Some(w)) = (law.parts, law.parameter("w"))
+        && fit.values[w] < 0.0
+    {
+        for index in [Some(w), law.parameter("zeta")].into_iter().flatten() {
+            fit.values[index] *= -1.0;
+            fit.jacobian.column_mut(index).neg_mut();
+        }
+    }
+    Some(fit)
 }
 
 /// The motion of a law with these parameters, start, offset and drift at any increasing times.

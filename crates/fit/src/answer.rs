@@ -1,0 +1,450 @@
+//! The answer: a table of laws with their parameters and errors, and what the record excludes.
+//!
+//! ```text
+//! sigma^2 = RSS/(N - k) of the best law, or as given        chi^2 = RSS/sigma^2
+//! AIC = N ln(RSS/N) + 2 k,   BIC = N' ln(RSS/N) + k ln N'    N' = N/tau, tau = 1 + 2 sum r_k of the residuals
+//! ```
+//!
+//! Laws are ordered by BIC: a parameter more must improve the fit beyond what noise explains in 499 of 500 records, so that the
+//! simplest law that fits comes first. (G. Schwarz, *Ann. Statist.* 6 (1978) 461; H. Akaike, *IEEE Trans. Autom. Control* 19 (1974) 716.)
+//! Autocorrelated residuals enlarge the errors by the covariance of Newey and West.
+
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+use crate::backbone::{BackbonePoint, backbone};
+use crate::closed_forms::{MapFit, fit_map};
+use crate::laws::{Law, LawError, Loss, Spring};
+use crate::least_squares::Covariance;
+use crate::motion::MotionSolver;
+use crate::polynomial::median;
+use crate::record::Record;
+use crate::sample_fit::{SampleFit, Samples, fit_samples, motion};
+use crate::turning_points::{Swings, SwingsError};
+use crate::whiteness::{Whiteness, robust_covariance};
+
+/// What to fit, and how.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FitOptions {
+    /// The standard deviation of the noise, if it is known; otherwise it is found from the residuals.
+    pub noise: Option<f64>,
+    /// Whether all samples count, even those that lie far from any law.
+    pub keep_outliers: bool,
+}
+
+/// A value with its standard error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The name.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+    /// The standard error.
+    pub error: f64,
+}
+
+/// A law fitted to a record.
+#[derive(Clone, Debug)]
+pub struct LawFit {
+    /// The law.
+    pub law: Law,
+    /// The parameters, then `x0`, `v0`, `offset` at the middle of the record and `drift` per unit of time.
+    pub estimates: Vec<Estimate>,
+    /// The correlations of the estimates.
+    pub correlations: DMatrix<f64>,
+    /// The sum of the squares of the residuals.
+    pub residual_square: f64,
+    /// Chi-square per degree of freedom.
+    pub chi_square: f64,
+    /// The criterion of Akaike.
+    pub aic: f64,
+    /// The criterion of Schwarz, by which the laws are ordered.
+    pub bic: f64,
+    /// The increase of chi-square over that of the best law, in units of the noise.
+    pub excess: f64,
+    /// By how many times the misfit exceeds what noise explains: the excess for each parameter that the best law has more.
+    pub exclusion: f64,
+    /// Whether the residuals are white.
+    pub whiteness: Whiteness,
+    /// Directions of the parameters that the record does not determine, in words.
+    pub flat: Vec<String>,
+    /// Whether the fit converged.
+    pub converged: bool,
+    /// The residuals at the times of the samples that were used.
+    pub residuals: Vec<f64>,
+    covariance: DMatrix<f64>,
+}
+
+impl LawFit {
+    /// The estimate of this name.
+    pub fn estimate(&self, name: &str) -> Option<&Estimate> {
+        self.estimates.iter().find(|estimate| estimate.name == name)
+    }
+
+    /// The values of all estimates.
+    pub fn values(&self) -> Vec<f64> {
+        self.estimates.iter().map(|estimate| estimate.value).collect()
+    }
+}
+
+/// What a record says.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The laws, the best first.
+    pub laws: Vec<LawFit>,
+    /// Frequency and damping against amplitude, without any law.
+    pub backbone: Vec<BackbonePoint>,
+    /// The turning points.
+    pub swings: Swings,
+    /// The standard deviation of the noise, as given or found from the residuals of the best law.
+    pub noise: f64,
+    /// Over how many samples the residuals of the best law are correlated: 1 if they are white.
+    pub correlation_length: f64,
+    /// The samples that were left out since they lie far from the best law, by their index.
+    pub outliers: Vec<usize>,
+    /// The samples that were fitted.
+    pub samples: Samples,
+}
+
+/// The reason why there is no answer.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// The record has too few swings or samples.
+    #[error(transparent)]
+    Swings(#[from] SwingsError),
+    /// An equation cannot be fitted.
+    #[error(transparent)]
+    Law(#[from] LawError),
+    /// The amplitude grows.
+    #[error("the amplitude grows from {from:.4} to {to:.4}: this is no free decay")]
+    Grows {
+        /// The amplitude at the beginning.
+        from: f64,
+        /// The amplitude at the end.
+        to: f64,
+    },
+    /// No law has a motion near the record.
+    #[error("no law has a motion near the record")]
+    NoMotion,
+    /// A start is needed for an equation of one's own.
+    #[error("`{0}` needs a start: its parameters could not be found from the accelerations")]
+    NoStart(String),
+}
+
+impl FitError {
+    /// What to do.
+    pub fn help(&self) -> String {
+        match self {
+            Self::Swings(error) => error.help().to_owned(),
+            Self::Law(error) => error.help().to_owned(),
+            Self::Grows { .. } => "leave out what comes before the release, or write an equation with the drive, such as \
+                 `x'' + c*x' + k*x = F*cos(Omega*t)`"
+                .to_owned(),
+            Self::NoMotion => "try an equation of your own".to_owned(),
+            Self::NoStart(_) => "give a first value for each parameter".to_owned(),
+        }
+    }
+}
+
+/// Fits the laws of the list to a free decay.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
+    let (swings, samples) = prepare(record)?;
+    refuse_growth(&swings)?;
+    let laws = Law::list(record.is_angle);
+    let mut maps: Vec<(Law, MapFit)> = laws
+        .into_iter()
+        .filter_map(|law| fit_map(&law, &swings).map(|map| (law, map)))
+        .collect();
+    let number = (2 * swings.points.len()) as f64;
+    let score = |(law, map): &(Law, MapFit)| map.chi_square + number.ln() * law.parameters.len() as f64;
+    maps.sort_by(|one, other| score(one).total_cmp(&score(other)));
+    let mut best = maps.first().and_then(|(law, _)| law.parts).ok_or(FitError::NoMotion)?;
+    let mut fits: Vec<SampleFit> = vec![];
+    let mut tried: Vec<(Spring, Loss)> = vec![];
+    // The best law by its turning points, and all that share the spring or the loss with it; again if another one wins.
+    loop {
+        for (law, map) in &maps {
+            let Some(parts) = law.parts else { continue };
+            if tried.contains(&parts) || (parts.0 != best.0 && parts.1 != best.1) {
+                continue;
+            }
+            tried.push(parts);
+            let solver = MotionSolver::new(law)?;
+            let start = start_of(&solver, &samples, &swings, map);
+            fits.extend(start.and_then(|start| fit_samples(law, &solver, &samples, &start)));
+        }
+        let winner = order(&mut fits, 1.0).and_then(|fit| fit.law.parts);
+        match winner {
+            Some(parts) if parts != best => best = parts,
+            _ => break,
+        }
+    }
+    finish(fits, swings, samples, options)
+}
+
+/// Fits laws of one's own, each from a start of its parameters.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit_laws(
+    record: &Record,
+    laws: &[(Law, Option<Vec<f64>>)],
+    options: &FitOptions,
+) -> Result<Answer, FitError> {
+    let (swings, samples) = prepare(record)?;
+    let mut fits = vec![];
+    for (law, start) in laws {
+        let solver = MotionSolver::new(law)?;
+        let map = fit_map(law, &swings);
+        let start = match (start, map) {
+            (Some(parameters), _) => {
+                let local = crate::equation_error::initial_state(&samples, &swings);
+                Some([parameters.as_slice(), &local].concat())
+            }
+            (None, Some(map)) => start_of(&solver, &samples, &swings, &map),
+            (None, None) => crate::equation_error::start(law, &samples, &swings),
+        };
+        let start = start.ok_or_else(|| FitError::NoStart(law.equation.clone()))?;
+        fits.extend(fit_samples(law, &solver, &samples, &start));
+    }
+    finish(fits, swings, samples, options)
+}
+
+fn prepare(record: &Record) -> Result<(Swings, Samples), FitError> {
+    let swings = Swings::find(&record.times, &record.values)?;
+    let samples = Samples {
+        times: record.times.clone(),
+        values: record.values.clone(),
+        quantity: record.quantity,
+        half_period: swings.half_period,
+        middle: swings.middle,
+    };
+    Ok((swings, samples))
+}
+
+fn refuse_growth(swings: &Swings) -> Result<(), FitError> {
+    const GROWTH: f64 = 1.2;
+    let amplitudes = swings.amplitudes();
+    let third = (amplitudes.len() / 3).max(1);
+    let from = median(amplitudes[..third].to_vec());
+    let to = median(amplitudes[amplitudes.len() - third..].to_vec());
+    if to > GROWTH * from { Err(FitError::Grows { from, to }) } else { Ok(()) }
+}
+
+/// Parameters, initial coordinate and velocity at the first sample, offset and drift, from a fit to the turning points.
+fn start_of(
+    solver: &MotionSolver,
+    samples: &Samples,
+    swings: &Swings,
+    map: &MapFit,
+) -> Option<Vec<f64>> {
+    let [x, time] = map.start;
+    let first = *samples.times.first()?;
+    let mut start = map.parameters.clone();
+    // The motion from the first turning point backwards is that of the law without its loss, to first order in it: as
+    // long forwards from the next turning point as the record begins before the first one.
+    let lead = time - first;
+    let [x, v] = match lead.abs() < 1e-9 * swings.half_period {
+        true => [x, 0.0],
+        false => {
+            let motion = |quantity| {
+                let times = [0.0, lead.abs()];
+                let sampled = solver.sample(&map.parameters, [x, 0.0], &times, swings.half_period, quantity)?;
+                sampled.columns[0].get(1).copied()
+            };
+            let sign = if lead > 0.0 { -1.0 } else { 1.0 };
+            let [x, v] = [
+                motion(crate::motion::Quantity::Displacement)?,
+                motion(crate::motion::Quantity::Velocity)?,
+            ];
+            [x, sign * v]
+        }
+    };
+    start.extend([x, v, map.centre[0], map.centre[1]]);
+    Some(start)
+}
+
+/// Orders fits by the criterion of Schwarz for residuals that are correlated over this number of samples, and returns the best one.
+fn order(fits: &mut [SampleFit], correlation_length: f64) -> Option<&SampleFit> {
+    fits.sort_by(|one, other| {
+        bic(one, correlation_length).total_cmp(&bic(other, correlation_length))
+    });
+    fits.first()
+}
+
+fn bic(fit: &SampleFit, correlation_length: f64) -> f64 {
+    let number = fit.residuals.len() as f64;
+    let independent = number / correlation_length;
+    independent * (fit.square() / number).ln() + fit.values.len() as f64 * independent.ln()
+}
+
+fn finish(
+    mut fits: Vec<SampleFit>,
+    swings: Swings,
+    mut samples: Samples,
+    options: &FitOptions,
+) -> Result<Answer, FitError> {
+    let best = order(&mut fits, 1.0).ok_or(FitError::NoMotion)?;
+    let mut outliers = vec![];
+    if !options.keep_outliers {
+        outliers = far_samples(best);
+    }
+    if !outliers.is_empty() {
+        let is_kept = |index: &usize| outliers.binary_search(index).is_err();
+        let kept: Vec<usize> = (0..samples.times.len()).filter(is_kept).collect();
+        samples.times = kept.iter().map(|index| samples.times[*index]).collect();
+        samples.values = kept.iter().map(|index| samples.values[*index]).collect();
+        fits = fits
+            .iter()
+            .filter_map(|fit| {
+                // The first sample may be gone: the start is that at the first one that is left.
+                let solver = MotionSolver::new(&fit.law).ok()?;
+                fit_samples(&fit.law, &solver, &samples, &fit.values)
+            })
+            .collect();
+    }
+    let correlation_length = order(&mut fits, 1.0).map(correlation_length).ok_or(FitError::NoMotion)?;
+    let best = order(&mut fits, correlation_length).ok_or(FitError::NoMotion)?;
+    let freedom = |fit: &SampleFit| (fit.residuals.len() as f64 - fit.values.len() as f64).max(1.0);
+    let noise = options.noise.unwrap_or((best.square() / freedom(best)).sqrt());
+    let (least, most) = (best.square(), best.values.len());
+    let laws = fits
+        .iter()
+        .map(|fit| {
+            let excess = (fit.square() - least) / (noise * noise * correlation_length);
+            let more = most.saturating_sub(fit.values.len()).max(1);
+            law_fit(fit, noise, [excess, excess / more as f64], correlation_length)
+        })
+        .collect();
+    let backbone = backbone(&swings, 12);
+    Ok(Answer { laws, backbone, swings, noise, correlation_length, outliers, samples })
+}
+
+/// The samples whose residual is larger than noise ever makes it, unless they are too many to be outliers.
+fn far_samples(fit: &SampleFit) -> Vec<usize> {
+    const SHARE: f64 = 0.05;
+    let count = fit.residuals.len() as f64;
+    let deviation = median(fit.residuals.iter().map(|residual| residual.abs()).collect()) / 0.6745;
+    // One of twenty records has a residual of pure noise beyond this.
+    let limit = deviation * (2.0 * (20.0 * count).ln()).sqrt();
+    let far = fit.residuals.iter().enumerate().filter(|(_, residual)| residual.abs() > limit);
+    let far: Vec<usize> = far.map(|(index, _)| index).collect();
+    if far.len() as f64 <= SHARE * count { far } else { vec![] }
+}
+
+/// The sum of the autocorrelations of residuals up to the first that is within noise; 1 for white residuals.
+fn correlation_length(fit: &SampleFit) -> f64 {
+    let whiteness = Whiteness::new(&fit.residuals);
+    if whiteness.is_white() {
+        return 1.0;
+    }
+    let threshold = 2.0 / (fit.residuals.len() as f64).sqrt();
+    let first = whiteness.autocorrelation.iter().take_while(|own| **own > threshold);
+    1.0 + 2.0 * first.sum::<f64>()
+}
+
+fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f64) -> LawFit {
+    let count = fit.residuals.len() as f64;
+    let width = fit.values.len();
+    let inverse = Covariance::new(&fit.jacobian);
+    let square = fit.square();
+    let freedom = (count - width as f64).max(1.0);
+    let whiteness = Whiteness::new(&fit.residuals);
+    // A law that does not fit has the scatter that it has.
+    let variance = (square / freedom).max(noise * noise);
+    let mut covariance = &inverse.matrix * variance;
+    if !whiteness.is_white() {
+        let reach = ((4.0 * length).ceil() as usize).max((count.powf(1.0 / 3.0)) as usize);
+        let robust = robust_covariance(&fit.jacobian, &fit.residuals, &inverse.matrix, reach);
+        // The estimate is used where it enlarges errors: it is itself uncertain.
+        let larger = |index: usize| (robust[(index, index)] / covariance[(index, index)]).max(1.0).sqrt();
+        let factors: Vec<f64> = (0..width).map(larger).map(|own| if own.is_finite() { own } else { 1.0 }).collect();
+        covariance = DMatrix::from_fn(width, width, |i, j| covariance[(i, j)] * factors[i] * factors[j]);
+    }
+    let names = fit.law.parameters.iter().map(|name| name.to_string());
+    let names: Vec<String> =
+        names.chain(["x0", "v0", "offset", "drift"].map(str::to_owned)).collect();
+    let estimates = names.iter().zip(&fit.values).enumerate().map(|(index, (name, value))| {
+        let error = covariance[(index, index)].max(0.0).sqrt();
+        Estimate { name: name.clone(), value: *value, error }
+    });
+    let estimates: Vec<Estimate> = estimates.collect();
+    let correlations = DMatrix::from_fn(width, width, |i, j| {
+        covariance[(i, j)] / (estimates[i].error * estimates[j].error).max(f64::MIN_POSITIVE)
+    });
+    let flat = inverse.flat.iter().map(|direction| in_words(direction, &names)).collect();
+    LawFit {
+        law: fit.law.clone(),
+        correlations,
+        residual_square: square,
+        chi_square: square / (noise * noise) / freedom,
+        aic: count * (square / count).ln() + 2.0 * width as f64,
+        bic: bic(fit, length),
+        excess,
+        exclusion,
+        whiteness,
+        flat,
+        converged: fit.converged,
+        residuals: fit.residuals.iter().copied().collect(),
+        covariance,
+        estimates,
+    }
+}
+
+/// A direction of the parameters along which the fit does not change, in words.
+fn in_words(direction: &[f64], names: &[String]) -> String {
+    const SMALL: f64 = 1e-3;
+    let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+    let parts = direction.iter().zip(names).filter(|(part, _)| part.abs() > SMALL * largest);
+    let parts: Vec<String> =
+        parts.map(|(part, name)| format!("{name} by {:.3}", part / largest)).collect();
+    format!("the fit does not change if one changes {}", parts.join(", "))
+}
+
+impl Answer {
+    /// The best law.
+    pub fn best(&self) -> Option<&LawFit> {
+        self.laws.first()
+    }
+
+    /// The values that a law predicts at increasing times from the first sample on, with their standard errors: those
+    /// of the fitted curve, without the noise of a sample.
+    pub fn predict(&self, law: &LawFit, times: &[f64]) -> Option<Vec<[f64; 2]>> {
+        let solver = MotionSolver::new(&law.law).ok()?;
+        let first = *self.samples.times.first()?;
+        // The motion begins at the first sample.
+        let all: Vec<f64> = std::iter::once(first).chain(times.iter().copied()).collect();
+        let values = law.values();
+        let motion = motion(&solver, &self.samples, &values, &all)?;
+        let [offset, drift] = *values.last_chunk::<2>()?;
+        let width = values.len();
+        let row = |index: usize| {
+            let lag = all[index] - self.samples.middle;
+            let slope = |column: usize| match width - column {
+                2 => 1.0,
+                1 => lag,
+                _ => motion.columns[column + 1][index],
+            };
+            let slopes = nalgebra::DVector::from_fn(width, |column, _| slope(column));
+            let variance = slopes.dot(&(&law.covariance * &slopes));
+            [motion.columns[0][index] + offset + drift * lag, variance.max(0.0).sqrt()]
+        };
+        Some((1..all.len()).map(row).collect())
+    }
+
+    /// What the record excludes, one sentence for each law but the best.
+    pub fn exclusions(&self) -> Vec<String> {
+        const ALIKE: f64 = 9.0;
+        let others = self.laws.iter().skip(1);
+        others
+            .map(|law| match law.excess < ALIKE {
+                true => format!("{}: not excluded by this record", law.law.name),
+                false => format!("{}: {:.0} times worse than noise explains", law.law.name, law.exclusion),
+            })
+            .collect()
+    }
+}

@@ -52,7 +52,8 @@ impl SampleFit {
 /// Fits a law from a start: parameters, initial coordinate and velocity at the first sample, offset, drift.
 /// Returns `None` if the law has no motion there.
 pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &[f64]) -> Option<SampleFit> {
-    const ITERATIONS: u64 = 40;
+    const ITERATIONS: u64 = 30;
+    const ITERATIONS_OF_PARTS: u64 = 12;
     /// The share of the variance of the record above which a start is out of step.
     const OUT_OF_STEP: f64 = 0.1;
     const FEWEST: usize = 40;
@@ -69,7 +70,7 @@ pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &
             if count < FEWEST {
                 continue;
             }
-            if let Some(found) = minimise(&values, ITERATIONS, |values| evaluate(values, count)) {
+            if let Some(found) = minimise(&values, ITERATIONS_OF_PARTS, |values| evaluate(values, count)) {
                 values = found.parameters;
             }
         }

@@ -87,11 +87,28 @@ impl LawFit {
     }
 }
 
+/// How much worse than the best law by its turning points a law must be to count as excluded: a factor of chi-square, and a number
+/// beside it.
+const FAR: [f64; 2] = [5.0, 100.0];
+
+/// A law that the turning points exclude.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExcludedLaw {
+    /// The law.
+    pub law: Law,
+    /// Its parameters by their names, as fitted to the turning points.
+    pub values: Vec<(String, f64)>,
+    /// By how many times its chi-square exceeds that of the best law.
+    pub ratio: f64,
+}
+
 /// What a record says.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// The laws, the best first.
+    /// The laws that were fitted to the samples, the best first.
     pub laws: Vec<LawFit>,
+    /// The laws that the turning points exclude, the nearest first.
+    pub excluded: Vec<ExcludedLaw>,
     /// Frequency and damping against amplitude, without any law.
     pub backbone: Vec<BackbonePoint>,
     /// The turning points.
@@ -162,7 +179,21 @@ pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
     let number = (2 * swings.points.len()) as f64;
     let score = |(law, map): &(Law, MapFit)| map.chi_square + number.ln() * law.parameters.len() as f64;
     maps.sort_by(|one, other| score(one).total_cmp(&score(other)));
-    let mut best = maps.first().and_then(|(law, _)| law.parts).ok_or(FitError::NoMotion)?;
+    let (best, map) = maps.first().ok_or(FitError::NoMotion)?;
+    let mut best = best.parts.ok_or(FitError::NoMotion)?;
+    let least = map.chi_square;
+    // What is far worse than the best law already by its turning points is not fitted to the samples.
+    let is_far = |map: &MapFit| map.chi_square > FAR[0] * least + FAR[1];
+    let excluded = maps.iter().filter(|(_, map)| is_far(map)).map(|(law, map)| {
+        let names = law.parameters.iter().map(|name| name.to_string());
+        ExcludedLaw {
+            law: law.clone(),
+            values: names.zip(map.parameters.iter().copied()).collect(),
+            ratio: map.chi_square / least,
+        }
+    });
+    let excluded: Vec<ExcludedLaw> = excluded.collect();
+    maps.retain(|(_, map)| !is_far(map));
     let mut fits: Vec<SampleFit> = vec![];
     let mut tried: Vec<(Spring, Loss)> = vec![];
     // The best law by its turning points, and all that share the spring or the loss with it; again if another one wins.
@@ -183,7 +214,7 @@ pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
             _ => break,
         }
     }
-    finish(fits, swings, samples, options)
+    Ok(Answer { excluded, ..finish(fits, swings, samples, options)? })
 }
 
 /// Fits laws of one's own, each from a start of its parameters.
@@ -321,7 +352,7 @@ fn finish(
         })
         .collect();
     let backbone = backbone(&swings, 12);
-    Ok(Answer { laws, backbone, swings, noise, correlation_length, outliers, samples })
+    Ok(Answer { laws, excluded: vec![], backbone, swings, noise, correlation_length, outliers, samples })
 }
 
 /// The samples whose residual is larger than noise ever makes it, unless they are too many to be outliers.
@@ -436,15 +467,16 @@ impl Answer {
         Some((1..all.len()).map(row).collect())
     }
 
-    /// What the record excludes, one sentence for each law but the best.
+    /// What the record excludes, one line for each law but the best.
     pub fn exclusions(&self) -> Vec<String> {
         const ALIKE: f64 = 9.0;
-        let others = self.laws.iter().skip(1);
-        others
-            .map(|law| match law.excess < ALIKE {
-                true => format!("{}: not excluded by this record", law.law.name),
-                false => format!("{}: {:.0} times worse than noise explains", law.law.name, law.exclusion),
-            })
-            .collect()
+        let near = self.laws.iter().skip(1).map(|law| match law.excess < ALIKE {
+            true => format!("{}: not excluded by this record", law.law.name),
+            false => format!("{}: its misfit is {:.0} times what noise explains", law.law.name, law.exclusion),
+        });
+        let far = self.excluded.iter().map(|law| {
+            format!("{}: {:.0} times worse at the turning points", law.law.name, law.ratio)
+        });
+        near.chain(far).collect()
     }
 }

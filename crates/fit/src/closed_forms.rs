@@ -19,7 +19,7 @@ use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::polynomial::regression;
 use crate::turning_points::Swings;
 
-/// A law fitted to the turning points.
+/// A law fitted to turning points.
 #[derive(Clone, Debug)]
 pub struct MapFit {
     /// The parameters of the law.
@@ -34,7 +34,7 @@ pub struct MapFit {
 
 /// The numbers of a law of the list in the roles of its equation.
 #[derive(Clone, Copy, Debug)]
-struct Numbers {
+pub(crate) struct Numbers {
     spring: Spring,
     /// w^2 or k, then beta, b or n.
     stiffness: [f64; 2],
@@ -43,7 +43,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn new(spring: Spring, loss: Loss, parameters: &[f64]) -> Self {
+    pub(crate) fn new(spring: Spring, loss: Loss, parameters: &[f64]) -> Self {
         let has_frequency = spring != Spring::Power;
         let first = parameters[0];
         let square = if has_frequency { first * first } else { first };
@@ -149,13 +149,45 @@ impl Numbers {
     }
 }
 
+impl Numbers {
+    /// The angular frequency and the damping ratio of a motion whose turning points are twice the amplitude apart.
+    ///
+    /// `zeta = W/(pi A dE/dA)`, with the work W of the loss in a half swing.
+    pub(crate) fn frequency_and_damping(&self, amplitude: f64) -> Option<[f64; 2]> {
+        const STEP: f64 = 1e-4;
+        let energy_at = |amplitude: f64| self.energy(amplitude);
+        let energy = energy_at(amplitude)?;
+        let turning = |sign| Some([self.turning_point(energy, sign)?, energy]);
+        let [time, work] = self.half_swing([turning(-1.0)?, turning(1.0)?])?;
+        let [above, below] = [1.0 + STEP, 1.0 - STEP].map(|share| energy_at(share * amplitude));
+        let slope = (above? - below?) / (2.0 * STEP * amplitude);
+        let pi = std::f64::consts::PI;
+        Some([pi / time, work / (pi * amplitude * slope)])
+    }
+
+    /// The energy of a motion of this amplitude.
+    fn energy(&self, amplitude: f64) -> Option<f64> {
+        const ROUNDS: usize = 20;
+        let mut energy = self.potential(amplitude);
+        if self.spring != Spring::Quadratic {
+            return Some(energy);
+        }
+        // Both turning points grow about as the square root of the energy.
+        for _ in 0..ROUNDS {
+            let own = 0.5 * (self.turning_point(energy, 1.0)? - self.turning_point(energy, -1.0)?);
+            energy *= (amplitude / own).powi(2);
+        }
+        Some(energy)
+    }
+}
+
 /// Fits a law of the list to turning points. Returns `None` for an equation of one's own and where no motion of the law is
 /// near.
 pub fn fit_map(law: &Law, swings: &Swings) -> Option<MapFit> {
     const ITERATIONS: u64 = 30;
     let (spring, loss) = law.parts?;
     let rows = backbone(swings, 12);
-    let parameters = guess(spring, loss, &rows, swings)?;
+    let parameters = guess(spring, loss, &rows, swings.centre[2])?;
     let first = swings.points[0];
     let [level, drift, _] = swings.centre;
     let own = parameters.len();
@@ -221,12 +253,12 @@ pub fn fit_map(law: &Law, swings: &Swings) -> Option<MapFit> {
 }
 
 /// The first guess of the parameters from the measured backbone: by regression of frequency and of decrement on
-/// amplitude.
-fn guess(
+/// amplitude. `shift` is the multiple of the square of the amplitude by which the middle of the turning points moves.
+pub(crate) fn guess(
     spring: Spring,
     loss: Loss,
     rows: &[BackbonePoint],
-    swings: &Swings,
+    shift: f64,
 ) -> Option<Vec<f64>> {
     let weights: Vec<f64> =
         rows.iter().map(|row| (row.frequency / row.frequency_error).powi(2)).collect();
@@ -246,7 +278,7 @@ fn guess(
         Spring::Duffing => (vec![sloped[0].sqrt(), 4.0 / 3.0 * sloped[1]], sloped[0].sqrt()),
         Spring::Quadratic => {
             // The middle of two turning points is -b A^2/(3 w^2).
-            let shift = -3.0 * sloped[0] * swings.centre[2];
+            let shift = -3.0 * sloped[0] * shift;
             let size = (1.2 * sloped[0] * (-sloped[1]).max(0.0)).sqrt();
             let bent = if size > 0.0 { size.copysign(shift) } else { shift };
             (vec![sloped[0].sqrt(), bent], sloped[0].sqrt())

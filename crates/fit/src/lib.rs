@@ -34,6 +34,12 @@ pub mod whiteness;
 
 pub mod record;
 
+pub mod quality;
+
 mod equation_error;
 
 pub mod answer;
+
+pub mod impacts;
+
+pub mod tables;

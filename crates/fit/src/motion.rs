@@ -19,8 +19,8 @@ use crate::powers::{Base, PowerTerm, by_parameter, by_variable, replace_powers, 
 use crate::symbol::{Symbol, fresh, fresh_stem};
 use crate::system::{Event, PathEnd, Solver, System, SystemOptions};
 
-/// The relative error of a step: far below the noise of any record.
-const TOLERANCE: f64 = 1e-10;
+/// The relative error of a step, far below the noise of any record; with rounded powers, whose series are long, the second number.
+const TOLERANCES: [f64; 2] = [1e-10, 1e-8];
 
 /// The largest number of half swings of a motion.
 const MOST_HALF_SWINGS: usize = 100_000;
@@ -325,7 +325,8 @@ impl Side {
             if is_upward { event.falling() } else { event.rising() }
         };
         let events: Vec<Event> = stops.map(event).into_iter().collect();
-        let options = SystemOptions { tolerance: TOLERANCE, ..SystemOptions::default() };
+        let tolerance = TOLERANCES[usize::from(!powers.is_empty())];
+        let options = SystemOptions { tolerance, ..SystemOptions::default() };
         let mut values = vec![renamed, by_x, by_v];
         values.extend(by_parameters);
         let arguments = [&[coordinate, speed, time], names.as_slice()].concat();

@@ -8,6 +8,7 @@ mod synthetic;
 use std::collections::BTreeMap;
 
 use lindstedt_fit::answer::{FitOptions, fit};
+use lindstedt_fit::laws::{Loss, Spring};
 use synthetic::synthetic;
 
 /// What a run over many records found.
@@ -105,4 +106,32 @@ fn one() {
         eprintln!("{:50} bic {:.1} chi {:.4} conv {} {:?} flat {:?}", law.law.name, law.bic, law.chi_square, law.converged, law.estimates.iter().map(|e| format!("{} {:.6}({:.1e})", e.name, e.value, e.error)).collect::<Vec<_>>(), law.flat);
     }
     eprintln!("{:?} {:?} {}", answer.noise, answer.swings.noise, answer.correlation_length);
+}
+
+/// The example of a pendulum with viscous damping and dry friction, 60 s at 200 Hz with 0.3 degrees of noise.
+fn pendulum(seed: u64) -> lindstedt_fit::record::Record {
+    use rand::SeedableRng;
+    let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    let times: Vec<f64> = (0..12_000).map(|index| f64::from(index) / 200.0).collect();
+    let truth = [("w", std::f64::consts::TAU), ("zeta", 0.004), ("alpha", 0.003)];
+    let (spring, loss) = (Spring::Pendulum, Loss::ViscousAndCoulomb);
+    let motion = synthetic::motion(spring, loss, &truth, [1.4, 0.0], &times);
+    let noise = 0.3_f64.to_radians();
+    let values = motion.iter().map(|x| x + noise * synthetic::normal(&mut generator));
+    lindstedt_fit::record::Record { values: values.collect(), times, is_angle: true, ..Default::default() }
+}
+
+#[test]
+fn a_pendulum_with_viscous_damping_and_dry_friction_is_told_apart() {
+    let begin = std::time::Instant::now();
+    let answer = fit(&pendulum(1), &FitOptions::default()).unwrap();
+    eprintln!("{:?}", begin.elapsed());
+    let best = &answer.laws[0];
+    for line in answer.exclusions() { eprintln!("{line}"); }
+    for estimate in &best.estimates { eprintln!("{estimate:?}"); }
+    assert_eq!(best.law.parts, Some((Spring::Pendulum, Loss::ViscousAndCoulomb)));
+    for (name, value, error) in [("zeta", 0.004, 1e-5), ("alpha", 0.003, 1e-4)] {
+        let own = best.estimate(name).unwrap();
+        assert!((own.value - value).abs() < 3.0 * own.error && own.error < error, "{own:?}");
+    }
 }

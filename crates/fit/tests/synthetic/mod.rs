@@ -64,7 +64,10 @@ pub fn motion(
         IntegrationOptions { absolute_tolerance: 1e-12 * size, ..IntegrationOptions::with_tolerance(1e-12) };
     let last = times[times.len() - 1];
     let mut state = State { t: times[0], x: start[0], v: start[1] };
-    let mut sign = state.v.signum();
+    let mut sign = match state.v == 0.0 {
+        true => -state.x.signum(),
+        false => state.v.signum(),
+    };
     let mut values = vec![];
     while values.len() < times.len() {
         let own = |x: f64, v: f64, sign: f64| acceleration(spring, loss, truth, x, v, sign);

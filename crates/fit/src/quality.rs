@@ -1,0 +1,172 @@
+//! The quality of a record: sampling, gaps, quantisation, saturation, the part that is a free decay.
+
+use crate::polynomial::median;
+use crate::record::Record;
+use crate::turning_points::{SwingsError, Swings, local_noise};
+
+/// What a record is like, before any law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// The usual time between samples.
+    pub step: f64,
+    /// The standard deviation of the noise between neighbouring samples.
+    pub noise: f64,
+    /// The step between values if they are quantised; `None` if it lies below a fiftieth of the noise.
+    pub quantum: Option<f64>,
+    /// Gaps: the index of the last sample before each, and the times around it.
+    pub gaps: Vec<(usize, [f64; 2])>,
+    /// The samples that lie on a flat top or bottom: their indices.
+    pub saturated: Vec<usize>,
+    /// The first sample of the free decay.
+    pub start: usize,
+}
+
+/// Examines a record.
+///
+/// # Errors
+/// [`SwingsError`] if it does not swing.
+pub fn quality(record: &Record) -> Result<Quality, SwingsError> {
+    const GAP: f64 = 3.5;
+    let Record { times, values, .. } = record;
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let step = median(steps.clone());
+    let noise = local_noise(times, values);
+    let is_gap = |(_, own): &(usize, &f64)| **own > GAP * step;
+    let gaps = steps.iter().enumerate().filter(is_gap);
+    let gaps = gaps.map(|(index, _)| (index, [times[index], times[index + 1]])).collect();
+    let quantum = quantum(values);
+    let swings = Swings::find(times, values)?;
+    let saturated = saturated(record, &swings, quantum.unwrap_or(0.0));
+    let start = start(record, &swings, noise);
+    Ok(Quality {
+        step,
+        noise,
+        quantum: quantum.filter(|own| *own > 0.02 * noise),
+        gaps,
+        saturated,
+        start,
+    })
+}
+
+/// The smallest distance between different values, if all values are whole multiples of it from the first one.
+fn quantum(values: &[f64]) -> Option<f64> {
+    const EXACT: f64 = 1e-3;
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let size = sorted.last()? - sorted.first()?;
+    let distances = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+    let least = distances.filter(|own| *own > 1e-9 * size).reduce(f64::min)?;
+    let is_multiple = |value: &f64| {
+        let number = (value - sorted[0]) / least;
+        (number - number.round()).abs() < EXACT * number.abs().max(1.0).sqrt().max(1.0)
+    };
+    // Values of many digits are multiples of their rounding, which is no quantum to speak of.
+    let distinct = values.len() as f64 * 4.0;
+    (size / least < distinct && sorted.iter().all(is_multiple)).then_some(least)
+}
+
+/// The samples on flat tops: runs at the largest or smallest value that last longer than a rounded wave stays there.
+fn saturated(record: &Record, swings: &Swings, quantum: f64) -> Vec<usize> {
+    const FEWEST: usize = 4;
+    let Record { times, values, .. } = record;
+    let rate = std::f64::consts::PI / swings.half_period;
+    let amplitude = swings.amplitudes().into_iter().fold(0.0, f64::max);
+    // A wave stays within half a quantum of its top for 2 sqrt(q/A)/w.
+    let usual = 2.0 * (quantum / amplitude).sqrt() / rate;
+    let mut found = vec![];
+    for limit in [f64::max as fn(f64, f64) -> f64, f64::min] {
+        let Some(extreme) = values.iter().copied().reduce(limit) else { continue };
+        let mut from = 0;
+        while from < values.len() {
+            let run = values[from..].iter().take_while(|value| **value == extreme).count();
+            if run >= FEWEST && times[from + run - 1] - times[from] > 2.0 * usual {
+                found.extend(from..from + run);
+            }
+            from += run.max(1);
+        }
+    }
+    found.sort_unstable();
+    found
+}
+
+/// The first sample of the free decay: after a hold before the release, and at the largest turning point if those before it are smaller.
+fn start(record: &Record, swings: &Swings, noise: f64) -> usize {
+    const HELD: f64 = 6.0;
+    const SMALLER: f64 = 0.9;
+    let Record { times, values, .. } = record;
+    let amplitudes = swings.amplitudes();
+    let largest = amplitudes.iter().copied().fold(0.0, f64::max);
+    let peak = amplitudes.iter().position(|own| *own >= 0.97 * largest).unwrap_or(0);
+    let mut start = 0;
+    if amplitudes[..peak].iter().any(|own| *own < SMALLER * largest) {
+        start = times.partition_point(|time| *time < swings.points[peak].time);
+    }
+    // A body that is held shows its noise alone.
+    let level = values.first().copied().unwrap_or(0.0);
+    let moved = values.iter().position(|value| (value - level).abs() > HELD * noise + 1e-3 * largest);
+    let moved = moved.unwrap_or(0);
+    if times[moved] - times[0] > 0.5 * swings.half_period {
+        start = start.max(moved);
+    }
+    start
+}
+
+impl Quality {
+    /// The record without what is no free decay and without saturated samples.
+    pub fn cleaned(&self, record: &Record) -> Record {
+        let is_kept = |index: &usize| *index >= self.start && self.saturated.binary_search(index).is_err();
+        let kept: Vec<usize> = (0..record.times.len()).filter(is_kept).collect();
+        Record {
+            times: kept.iter().map(|index| record.times[*index]).collect(),
+            values: kept.iter().map(|index| record.values[*index]).collect(),
+            ..*record
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A decay with a deterministic ripple in place of noise.
+    fn decay(count: usize) -> Record {
+        let times: Vec<f64> = (0..count).map(|index| 0.02 * index as f64).collect();
+        let value = |t: &f64| (-0.02 * t).exp() * (2.0 * t).cos() + 1e-3 * (1000.0 * t * t).sin();
+        Record { values: times.iter().map(value).collect(), times, ..Record::default() }
+    }
+
+    #[test]
+    fn a_clean_record_is_left_as_it_is() {
+        let record = decay(3000);
+        let found = quality(&record).unwrap();
+        assert!(found.gaps.is_empty() && found.saturated.is_empty(), "{found:?}");
+        assert_eq!((found.start, found.quantum), (0, None));
+        assert_eq!(found.cleaned(&record), record);
+    }
+
+    #[test]
+    fn flat_tops_gaps_and_steps_are_named() {
+        let mut record = decay(3000);
+        record.values.iter_mut().for_each(|value| *value = value.min(0.7));
+        let found = quality(&record).unwrap();
+        assert!(found.saturated.len() > 50, "{}", found.saturated.len());
+        assert!(found.saturated.iter().all(|index| record.values[*index] == 0.7));
+        let mut record = decay(3000);
+        record.times.drain(1000..1100);
+        record.values.drain(1000..1100);
+        record.values.iter_mut().for_each(|value| *value = (*value * 200.0).round() / 200.0);
+        let found = quality(&record).unwrap();
+        assert_eq!(found.gaps.iter().map(|gap| gap.0).collect::<Vec<_>>(), [999]);
+        assert!((found.quantum.unwrap() - 0.005).abs() < 1e-9 && found.saturated.is_empty());
+    }
+
+    #[test]
+    fn a_hold_before_the_release_is_cut() {
+        let mut record = decay(3000);
+        let held: Vec<f64> = (0..400).map(|index| 1.0 + 1e-3 * (index as f64 * 7.7).sin()).collect();
+        record.values.splice(0..0, held);
+        record.times = (0..record.values.len()).map(|index| 0.02 * index as f64).collect();
+        let found = quality(&record).unwrap();
+        assert!((400..430).contains(&found.start), "{}", found.start);
+    }
+}

@@ -184,14 +184,34 @@ impl Numbers {
 /// Fits a law of the list to turning points. Returns `None` for an equation of one's own and where no motion of the law is
 /// near.
 pub fn fit_map(law: &Law, swings: &Swings) -> Option<MapFit> {
-    const ITERATIONS: u64 = 30;
     let (spring, loss) = law.parts?;
     let rows = backbone(swings, 12);
     let parameters = guess(spring, loss, &rows, swings.centre[2])?;
+    let mut starts = vec![parameters.clone()];
+    if spring == Spring::Quadratic {
+        // Where the amplitude hardly changes, the middle of the swings tells nothing.
+        let size = parameters[0].powi(2) / swings.amplitudes()[0];
+        for share in [0.02, -0.02, 0.2, -0.2] {
+            let mut other = parameters.clone();
+            other[1] = share * size;
+            starts.push(other);
+        }
+    }
+    let fits = starts.iter().filter_map(|start| fit_map_from((spring, loss), swings, start));
+    fits.min_by(|one, other| one.chi_square.total_cmp(&other.chi_square))
+}
+
+/// Fits a law from these parameters.
+fn fit_map_from(
+    (spring, loss): (Spring, Loss),
+    swings: &Swings,
+    parameters: &[f64],
+) -> Option<MapFit> {
+    const ITERATIONS: u64 = 30;
     let first = swings.points[0];
     let [level, drift, _] = swings.centre;
     let own = parameters.len();
-    let mut start = parameters;
+    let mut start = parameters.to_vec();
     let amplitude = swings.amplitudes()[0];
     let sign = if first.is_maximum { 1.0 } else { -1.0 };
     let coordinate = first.value - level - drift * (first.time - swings.middle);

@@ -20,8 +20,6 @@ pub struct Minimum {
     pub residuals: DVector<f64>,
     /// Their derivatives by the parameters.
     pub jacobian: DMatrix<f64>,
-    /// Whether the method stopped before its limit of iterations.
-    pub converged: bool,
 }
 
 impl Minimum {
@@ -81,8 +79,8 @@ pub fn minimise(
     iterations: u64,
     evaluate: impl Fn(&[f64]) -> Option<Linearised>,
 ) -> Option<Minimum> {
-    /// The decrease of chi-square that no longer matters: a hundredth of a standard error.
-    const DECREASE: f64 = 1e-4;
+    /// The decrease of chi-square that no longer matters.
+    const DECREASE: f64 = 1e-5;
     /// By how much residuals exceed those of the start where the law has no motion.
     const REFUSED: f64 = 1e3;
     let (residuals, jacobian) = evaluate(start)?;
@@ -94,7 +92,6 @@ pub fn minimise(
     let problem = Problem { evaluate, refused, last };
     let method = LevenbergMarquardt::new()
         .with_absolute_gradient_tolerance(None)
-        .with_gradient_orthogonality_tolerance(reduction.sqrt())
         .with_relative_model_reduction_tolerance(reduction)
         .with_initial_step_bound(1.0);
     let ended = Executor::new(&problem, method, PointState::new(first))
@@ -102,9 +99,20 @@ pub fn minimise(
         .run()
         .ok()?;
     let point = ended.param().clone();
-    let converged = ended.iter() < iterations;
     let (residuals, jacobian) = problem.at(&point);
-    Some(Minimum { parameters: point.iter().copied().collect(), residuals, jacobian, converged })
+    Some(Minimum { parameters: point.iter().copied().collect(), residuals, jacobian })
+}
+
+impl Minimum {
+    /// By how much an undamped step would still reduce chi-square, in units of the variance of the residuals: the square of its
+    /// length in standard errors.
+    pub fn distance(&self) -> f64 {
+        let (count, width) = self.jacobian.shape();
+        let gradient = self.jacobian.transpose() * &self.residuals;
+        let inverse = Covariance::new(&self.jacobian).matrix;
+        let variance = self.square() / (count.saturating_sub(width)).max(1) as f64;
+        gradient.dot(&(inverse * &gradient)) / variance.max(f64::MIN_POSITIVE)
+    }
 }
 
 /// The inverse of `J^T J`, from the singular values of the scaled columns of J, and the directions that they leave undetermined.
@@ -163,7 +171,7 @@ mod tests {
             Some((values, DMatrix::from_fn(times.len(), 2, slopes)))
         };
         let minimum = minimise(&[1.0, 0.2], 50, residuals).unwrap();
-        assert!(minimum.converged);
+        assert!(minimum.distance() < 1e-6);
         assert!((minimum.parameters[0] - 2.0).abs() < 1e-6);
         assert!((minimum.parameters[1] - 0.7).abs() < 1e-6);
         assert!(Covariance::new(&minimum.jacobian).flat.is_empty());

@@ -38,6 +38,9 @@ fn run(seeds: impl Iterator<Item = u64>, is_talkative: bool) -> Tally {
         };
         let duration = begin.elapsed();
         let parts = Some((made.spring, made.loss));
+        if is_talkative && duration.as_secs_f64() > 3.0 {
+            eprintln!("  {duration:?} {} laws {:?}", made.words, answer.laws.iter().map(|l| (l.law.name.clone(), l.converged)).collect::<Vec<_>>());
+        }
         let is_first = answer.laws[0].law.parts == parts;
         tally.right_first += usize::from(is_first);
         let Some(own) = answer.laws.iter().find(|law| law.law.parts == parts) else {

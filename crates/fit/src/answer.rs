@@ -9,15 +9,20 @@
 //! simplest law that fits comes first. (G. Schwarz, *Ann. Statist.* 6 (1978) 461; H. Akaike, *IEEE Trans. Autom. Control* 19 (1974) 716.)
 //! Autocorrelated residuals enlarge the errors by the covariance of Newey and West.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
 use thiserror::Error;
 
 use crate::backbone::{BackbonePoint, backbone};
-use crate::closed_forms::{MapFit, fit_map};
+use crate::closed_forms::{MapFit, fit_maps};
+use crate::equation_error::{initial_state, start as equation_error_start};
+use crate::integration::oscillating_integral;
 use crate::laws::{Law, LawError, Loss, Spring};
 use crate::least_squares::Covariance;
-use crate::motion::MotionSolver;
+use crate::motion::{MotionSolver, Quantity};
 use crate::polynomial::median;
+use crate::quality::{Quality, quality};
 use crate::record::Record;
 use crate::sample_fit::{SampleFit, Samples, fit_samples, motion};
 use crate::turning_points::{Swings, SwingsError};
@@ -109,6 +114,8 @@ pub struct Answer {
     pub laws: Vec<LawFit>,
     /// The laws that the turning points exclude, the nearest first.
     pub excluded: Vec<ExcludedLaw>,
+    /// The quality of the record.
+    pub quality: Quality,
     /// Frequency and damping against amplitude, without any law.
     pub backbone: Vec<BackbonePoint>,
     /// The turning points.
@@ -141,6 +148,14 @@ pub enum FitError {
         /// The amplitude at the end.
         to: f64,
     },
+    /// Many samples lie on flat tops.
+    #[error("{saturated} of {total} samples lie on flat tops: the sensor was saturated")]
+    Saturated {
+        /// The number of saturated samples.
+        saturated: usize,
+        /// The number of samples.
+        total: usize,
+    },
     /// No law has a motion near the record.
     #[error("no law has a motion near the record")]
     NoMotion,
@@ -158,6 +173,7 @@ impl FitError {
             Self::Grows { .. } => "leave out what comes before the release, or write an equation with the drive, such as \
                  `x'' + c*x' + k*x = F*cos(Omega*t)`"
                 .to_owned(),
+            Self::Saturated { .. } => "measure with a larger range, or leave out the part with large amplitudes".to_owned(),
             Self::NoMotion => "try an equation of your own".to_owned(),
             Self::NoStart(_) => "give a first value for each parameter".to_owned(),
         }
@@ -169,15 +185,20 @@ impl FitError {
 /// # Errors
 /// [`FitError`].
 pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
-    let (swings, samples) = prepare(record)?;
+    let (swings, samples, quality) = prepare(record)?;
     refuse_growth(&swings)?;
     let laws = Law::list(record.is_angle);
-    let mut maps: Vec<(Law, MapFit)> = laws
-        .into_iter()
-        .filter_map(|law| fit_map(&law, &swings).map(|map| (law, map)))
-        .collect();
+    let mut others: BTreeMap<(Spring, Loss), Vec<MapFit>> = BTreeMap::new();
+    let mut maps: Vec<(Law, MapFit)> = vec![];
+    for law in laws {
+        let mut found = fit_maps(&law, &swings).into_iter();
+        let (Some(parts), Some(best)) = (law.parts, found.next()) else { continue };
+        others.insert(parts, found.collect());
+        maps.push((law, best));
+    }
     let number = (2 * swings.points.len()) as f64;
-    let score = |(law, map): &(Law, MapFit)| map.chi_square + number.ln() * law.parameters.len() as f64;
+    let score =
+        |(law, map): &(Law, MapFit)| map.chi_square + number.ln() * law.parameters.len() as f64;
     maps.sort_by(|one, other| score(one).total_cmp(&score(other)));
     let (best, map) = maps.first().ok_or(FitError::NoMotion)?;
     let mut best = best.parts.ok_or(FitError::NoMotion)?;
@@ -205,8 +226,12 @@ pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
             }
             tried.push(parts);
             let solver = MotionSolver::new(law)?;
-            let start = start_of(&solver, &samples, &swings, map);
-            fits.extend(start.and_then(|start| fit_samples(law, &solver, &samples, &start)));
+            let starts = std::iter::once(map).chain(others.get(&parts).into_iter().flatten());
+            let own = starts.filter_map(|map| {
+                let start = start_of(&solver, &samples, &swings, map)?;
+                fit_samples(law, &solver, &samples, &start)
+            });
+            fits.extend(own.min_by(|one, other| one.square().total_cmp(&other.square())));
         }
         let winner = order(&mut fits, 1.0).and_then(|fit| fit.law.parts);
         match winner {
@@ -214,7 +239,7 @@ pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
             _ => break,
         }
     }
-    Ok(Answer { excluded, ..finish(fits, swings, samples, options)? })
+    Ok(Answer { excluded, ..finish(fits, swings, samples, quality, options)? })
 }
 
 /// Fits laws of one's own, each from a start of its parameters.
@@ -226,35 +251,54 @@ pub fn fit_laws(
     laws: &[(Law, Option<Vec<f64>>)],
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
-    let (swings, samples) = prepare(record)?;
+    let (swings, samples, quality) = prepare(record)?;
     let mut fits = vec![];
     for (law, start) in laws {
         let solver = MotionSolver::new(law)?;
-        let map = fit_map(law, &swings);
+        let map = fit_maps(law, &swings).into_iter().next();
         let start = match (start, map) {
             (Some(parameters), _) => {
-                let local = crate::equation_error::initial_state(&samples, &swings);
+                let local = initial_state(&samples, &swings);
                 Some([parameters.as_slice(), &local].concat())
             }
             (None, Some(map)) => start_of(&solver, &samples, &swings, &map),
-            (None, None) => crate::equation_error::start(law, &samples, &swings),
+            (None, None) => equation_error_start(law, &samples, &swings),
         };
         let start = start.ok_or_else(|| FitError::NoStart(law.equation.clone()))?;
         fits.extend(fit_samples(law, &solver, &samples, &start));
     }
-    finish(fits, swings, samples, options)
+    finish(fits, swings, samples, quality, options)
 }
 
-fn prepare(record: &Record) -> Result<(Swings, Samples), FitError> {
-    let swings = Swings::find(&record.times, &record.values)?;
-    let samples = Samples {
-        times: record.times.clone(),
-        values: record.values.clone(),
-        quantity: record.quantity,
-        half_period: swings.half_period,
-        middle: swings.middle,
+/// The swings of the displacement, the samples of the free decay, and the quality of the record.
+fn prepare(record: &Record) -> Result<(Swings, Samples, Quality), FitError> {
+    /// The share of saturated samples above which a record is refused.
+    const MOST: f64 = 0.3;
+    let quality = quality(record)?;
+    let (saturated, total) = (quality.saturated.len(), record.times.len());
+    if saturated as f64 > MOST * total as f64 {
+        return Err(FitError::Saturated { saturated, total });
+    }
+    let Record { times, values, quantity, .. } = quality.cleaned(record);
+    let observed = Swings::find(&times, &values)?;
+    let period = 2.0 * observed.half_period;
+    let integral = |values: &[f64]| oscillating_integral(&times, values, period);
+    let swings = match quantity {
+        Quantity::Displacement => observed.clone(),
+        Quantity::Velocity => Swings::find(&times, &integral(&values))?,
+        Quantity::Acceleration => Swings::find(&times, &integral(&integral(&values)))?,
     };
-    Ok((swings, samples))
+    let [level, drift, _] = observed.centre;
+    let half_period = swings.half_period;
+    let samples = Samples {
+        times,
+        values,
+        quantity,
+        half_period,
+        middle: swings.middle,
+        centre: [level, drift],
+    };
+    Ok((swings, samples, quality))
 }
 
 fn refuse_growth(swings: &Swings) -> Result<(), FitError> {
@@ -284,18 +328,26 @@ fn start_of(
         false => {
             let motion = |quantity| {
                 let times = [0.0, lead.abs()];
-                let sampled = solver.sample(&map.parameters, [x, 0.0], &times, swings.half_period, quantity)?;
+                let sampled = solver.sample(
+                    &map.parameters,
+                    [x, 0.0],
+                    &times,
+                    swings.half_period,
+                    quantity,
+                )?;
                 sampled.columns[0].get(1).copied()
             };
             let sign = if lead > 0.0 { -1.0 } else { 1.0 };
-            let [x, v] = [
-                motion(crate::motion::Quantity::Displacement)?,
-                motion(crate::motion::Quantity::Velocity)?,
-            ];
+            let [x, v] = [motion(Quantity::Displacement)?, motion(Quantity::Velocity)?];
             [x, sign * v]
         }
     };
-    start.extend([x, v, map.centre[0], map.centre[1]]);
+    let centre = match samples.quantity {
+        Quantity::Displacement => map.centre,
+        Quantity::Velocity | Quantity::Acceleration => samples.centre,
+    };
+    start.extend([x, v]);
+    start.extend(centre);
     Some(start)
 }
 
@@ -317,6 +369,7 @@ fn finish(
     mut fits: Vec<SampleFit>,
     swings: Swings,
     mut samples: Samples,
+    quality: Quality,
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
     let best = order(&mut fits, 1.0).ok_or(FitError::NoMotion)?;
@@ -338,7 +391,8 @@ fn finish(
             })
             .collect();
     }
-    let correlation_length = order(&mut fits, 1.0).map(correlation_length).ok_or(FitError::NoMotion)?;
+    let correlation_length =
+        order(&mut fits, 1.0).map(correlation_length).ok_or(FitError::NoMotion)?;
     let best = order(&mut fits, correlation_length).ok_or(FitError::NoMotion)?;
     let freedom = |fit: &SampleFit| (fit.residuals.len() as f64 - fit.values.len() as f64).max(1.0);
     let noise = options.noise.unwrap_or((best.square() / freedom(best)).sqrt());
@@ -352,7 +406,17 @@ fn finish(
         })
         .collect();
     let backbone = backbone(&swings, 12);
-    Ok(Answer { laws, excluded: vec![], backbone, swings, noise, correlation_length, outliers, samples })
+    Ok(Answer {
+        laws,
+        excluded: vec![],
+        quality,
+        backbone,
+        swings,
+        noise,
+        correlation_length,
+        outliers,
+        samples,
+    })
 }
 
 /// The samples whose residual is larger than noise ever makes it, unless they are too many to be outliers.
@@ -392,9 +456,12 @@ fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f
         let reach = ((4.0 * length).ceil() as usize).max((count.powf(1.0 / 3.0)) as usize);
         let robust = robust_covariance(&fit.jacobian, &fit.residuals, &inverse.matrix, reach);
         // The estimate is used where it enlarges errors: it is itself uncertain.
-        let larger = |index: usize| (robust[(index, index)] / covariance[(index, index)]).max(1.0).sqrt();
-        let factors: Vec<f64> = (0..width).map(larger).map(|own| if own.is_finite() { own } else { 1.0 }).collect();
-        covariance = DMatrix::from_fn(width, width, |i, j| covariance[(i, j)] * factors[i] * factors[j]);
+        let larger =
+            |index: usize| (robust[(index, index)] / covariance[(index, index)]).max(1.0).sqrt();
+        let factors: Vec<f64> =
+            (0..width).map(larger).map(|own| if own.is_finite() { own } else { 1.0 }).collect();
+        covariance =
+            DMatrix::from_fn(width, width, |i, j| covariance[(i, j)] * factors[i] * factors[j]);
     }
     let names = fit.law.parameters.iter().map(|name| name.to_string());
     let names: Vec<String> =
@@ -472,7 +539,10 @@ impl Answer {
         const ALIKE: f64 = 9.0;
         let near = self.laws.iter().skip(1).map(|law| match law.excess < ALIKE {
             true => format!("{}: not excluded by this record", law.law.name),
-            false => format!("{}: its misfit is {:.0} times what noise explains", law.law.name, law.exclusion),
+            false => format!(
+                "{}: its misfit is {:.0} times what noise explains",
+                law.law.name, law.exclusion
+            ),
         });
         let far = self.excluded.iter().map(|law| {
             format!("{}: {:.0} times worse at the turning points", law.law.name, law.ratio)

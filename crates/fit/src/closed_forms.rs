@@ -49,7 +49,9 @@ impl Numbers {
         let square = if has_frequency { first * first } else { first };
         let (second, rest) = match spring {
             Spring::Linear | Spring::Pendulum => (0.0, &parameters[1..]),
-            Spring::Duffing | Spring::Quadratic | Spring::Power => (parameters[1], &parameters[2..]),
+            Spring::Duffing | Spring::Quadratic | Spring::Power => {
+                (parameters[1], &parameters[2..])
+            }
         };
         let [viscous, dry] = if has_frequency { [2.0 * first, square] } else { [1.0, 1.0] };
         let loss = match loss {
@@ -174,31 +176,57 @@ impl Numbers {
         }
         // Both turning points grow about as the square root of the energy.
         for _ in 0..ROUNDS {
-            let own = 0.5 * (self.turning_point(energy, 1.0)? - self.turning_point(energy, -1.0)?);
+            let own =
+                0.5 * (self.turning_point(energy, 1.0)? - self.turning_point(energy, -1.0)?);
             energy *= (amplitude / own).powi(2);
         }
         Some(energy)
     }
 }
 
-/// Fits a law of the list to turning points. Returns `None` for an equation of one's own and where no motion of the law is
-/// near.
-pub fn fit_map(law: &Law, swings: &Swings) -> Option<MapFit> {
-    let (spring, loss) = law.parts?;
+/// Fits a law of the list to turning points: the best fit, then others that the turning points do not tell from it. There is none for
+/// an equation of one's own and where no motion of the law is near.
+pub fn fit_maps(law: &Law, swings: &Swings) -> Vec<MapFit> {
+    let Some((spring, loss)) = law.parts else { return vec![] };
     let rows = backbone(swings, 12);
-    let parameters = guess(spring, loss, &rows, swings.centre[2])?;
-    let mut starts = vec![parameters.clone()];
-    if spring == Spring::Quadratic {
-        // Where the amplitude hardly changes, the middle of the swings tells nothing.
-        let size = parameters[0].powi(2) / swings.amplitudes()[0];
-        for share in [0.02, -0.02, 0.2, -0.2] {
-            let mut other = parameters.clone();
-            other[1] = share * size;
-            starts.push(other);
+    let Some(first) = guess(spring, loss, &rows, swings.centre[2]) else { return vec![] };
+    let mut fits: Vec<MapFit> = further_starts(spring, &first, swings)
+        .iter()
+        .filter_map(|start| fit_map_from((spring, loss), swings, start))
+        .collect();
+    fits.sort_by(|one, other| one.chi_square.total_cmp(&other.chi_square));
+    let least = fits.first().map_or(0.0, |fit| fit.chi_square);
+    fits.retain(|fit| fit.chi_square <= 1.5 * least + 10.0);
+    fits.dedup_by(|one, other| {
+        let pairs = one.parameters.iter().zip(&other.parameters);
+        pairs.into_iter().all(|(one, other)| (one - other).abs() <= 0.02 * other.abs())
+    });
+    fits
+}
+
+/// The first guess and others: where the amplitude hardly changes, frequencies do not tell a quadratic spring or a power from a line.
+fn further_starts(spring: Spring, first: &[f64], swings: &Swings) -> Vec<Vec<f64>> {
+    let mut starts = vec![first.to_vec()];
+    let amplitude = swings.amplitudes()[0];
+    let mut add = |stiffness: f64, second: f64| {
+        let mut other = first.to_vec();
+        (other[0], other[1]) = (stiffness, second);
+        starts.push(other);
+    };
+    match spring {
+        Spring::Quadratic => {
+            let size = first[0].powi(2) / amplitude;
+            [0.02, -0.02, 0.2, -0.2].iter().for_each(|share| add(first[0], share * size));
         }
+        Spring::Power => {
+            let square = (std::f64::consts::PI / swings.half_period).powi(2);
+            for exponent in [0.6, 1.01, 2.0] {
+                add(square * amplitude.powf(1.0 - exponent), exponent);
+            }
+        }
+        Spring::Linear | Spring::Duffing | Spring::Pendulum => {}
     }
-    let fits = starts.iter().filter_map(|start| fit_map_from((spring, loss), swings, start));
-    fits.min_by(|one, other| one.chi_square.total_cmp(&other.chi_square))
+    starts
 }
 
 /// Fits a law from these parameters.
@@ -240,15 +268,23 @@ fn fit_map_from(
         let residuals = DVector::from_vec(residuals);
         residuals.iter().all(|value| value.is_finite()).then_some(residuals)
     };
-    let scales: Vec<f64> = start.iter().enumerate().map(|(index, value)| {
-        let small = match index.checked_sub(own) {
-            Some(0 | 2) => amplitude,
-            Some(1) => swings.half_period,
-            Some(_) => amplitude / swings.half_period,
-            None => 1e-2,
-        };
-        if value.abs() > 1e-3 * small { value.abs().min(small.max(value.abs() * 1e-3)) } else { small }
-    }).collect();
+    let scales: Vec<f64> = start
+        .iter()
+        .enumerate()
+        .map(|(index, value)| {
+            let small = match index.checked_sub(own) {
+                Some(0 | 2) => amplitude,
+                Some(1) => swings.half_period,
+                Some(_) => amplitude / swings.half_period,
+                None => 1e-2,
+            };
+            if value.abs() > 1e-3 * small {
+                value.abs().min(small.max(value.abs() * 1e-3))
+            } else {
+                small
+            }
+        })
+        .collect();
     let linearised = |values: &[f64]| -> Option<Linearised> {
         const STEP: f64 = 1e-6;
         let at = residuals(values)?;
@@ -282,7 +318,8 @@ pub(crate) fn guess(
 ) -> Option<Vec<f64>> {
     let weights: Vec<f64> =
         rows.iter().map(|row| (row.frequency / row.frequency_error).powi(2)).collect();
-    let column = |value: &dyn Fn(&BackbonePoint) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
+    let column =
+        |value: &dyn Fn(&BackbonePoint) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
     let one = vec![1.0; rows.len()];
     let squares = column(&|row| row.frequency.powi(2));
     let relative: Vec<f64> =
@@ -304,7 +341,8 @@ pub(crate) fn guess(
             (vec![sloped[0].sqrt(), bent], sloped[0].sqrt())
         }
         Spring::Pendulum => {
-            let small = column(&|row| (row.frequency * (1.0 + row.amplitude.powi(2) / 16.0)).powi(2));
+            let small =
+                column(&|row| (row.frequency * (1.0 + row.amplitude.powi(2) / 16.0)).powi(2));
             let square = line(std::slice::from_ref(&one), &small, &relative)?[0];
             (vec![square.sqrt()], square.sqrt())
         }

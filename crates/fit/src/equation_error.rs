@@ -34,7 +34,7 @@ fn local_state(samples: &Samples, swings: &Swings, time: f64) -> Option<State> {
 
 /// Initial coordinate and velocity at the first sample, offset and drift.
 pub fn initial_state(samples: &Samples, swings: &Swings) -> [f64; 4] {
-    let [level, drift, _] = swings.centre;
+    let [level, drift] = samples.centre;
     let first = samples.times.first().copied().unwrap_or(0.0);
     let near = 0.35 * swings.half_period;
     let state = local_state(samples, swings, first + near);
@@ -94,4 +94,3 @@ pub fn start(law: &Law, samples: &Samples, swings: &Swings) -> Option<Vec<f64>> 
     let best = found.min_by(|one, other| one.square().total_cmp(&other.square()))?;
     Some([best.parameters.as_slice(), &initial_state(samples, swings)].concat())
 }
-

@@ -104,8 +104,12 @@ impl ImpactsError {
         match self {
             Self::TooFew(_) => "drop the body from higher, so that it bounces more often",
             Self::Order(_) => "sort the times, and list each impact once",
-            Self::Longer(_) => "an impact may be missing before it, or the body was pushed: use the times on one side of it",
-            Self::NotPositive => "give gravity in the units of the times, such as 9.81 for metres and seconds",
+            Self::Longer(_) => {
+                "an impact may be missing before it, or the body was pushed: use the times on one side of it"
+            }
+            Self::NotPositive => {
+                "give gravity in the units of the times, such as 9.81 for metres and seconds"
+            }
             Self::NoFit => "look for missing or doubled impacts among the times",
         }
     }
@@ -201,13 +205,12 @@ pub fn fit_impacts(
             RestitutionLaw::HuntCrossley => "lambda",
         };
         let names = [parameter, "v0", "t0"];
-        let estimates = names.iter().zip(&fit.parameters).enumerate().map(|(index, (name, value))| {
-            Estimate {
+        let estimates =
+            names.iter().zip(&fit.parameters).enumerate().map(|(index, (name, value))| Estimate {
                 name: (*name).to_owned(),
                 value: *value,
                 error: covariance[(index, index)].sqrt(),
-            }
-        });
+            });
         ImpactFit {
             law: *law,
             estimates: estimates.collect(),
@@ -244,7 +247,9 @@ mod tests {
 
     #[test]
     fn restitution_and_damping_are_found_within_two_percent() {
-        for (law, parameter) in [(RestitutionLaw::Constant, 0.85), (RestitutionLaw::HuntCrossley, 0.12)] {
+        for (law, parameter) in
+            [(RestitutionLaw::Constant, 0.85), (RestitutionLaw::HuntCrossley, 0.12)]
+        {
             for seed in 0..20 {
                 let answer = fit_impacts(&bounces(law, parameter, 1e-3, seed), 9.81, None).unwrap();
                 let best = &answer.laws[0];

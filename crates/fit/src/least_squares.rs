@@ -94,10 +94,8 @@ pub fn minimise(
         .with_absolute_gradient_tolerance(None)
         .with_relative_model_reduction_tolerance(reduction)
         .with_initial_step_bound(1.0);
-    let ended = Executor::new(&problem, method, PointState::new(first))
-        .max_iter(iterations)
-        .run()
-        .ok()?;
+    let ended =
+        Executor::new(&problem, method, PointState::new(first)).max_iter(iterations).run().ok()?;
     let point = ended.param().clone();
     let (residuals, jacobian) = problem.at(&point);
     Some(Minimum { parameters: point.iter().copied().collect(), residuals, jacobian })

@@ -3,7 +3,27 @@
 //! In: a record of a free decay, a backbone table or times of impacts. Out: frequency and damping against
 //! amplitude without any law, a table of laws with their parameters, errors and exclusions.
 //!
-//! Five names to know: [`laws::Law`]
+//! Five names to know: [`record::read`], a record from text; [`answer::fit`], the laws of a free decay; [`laws::Law`], a law of
+//! the list or an equation of one's own; [`backbone::backbone`], frequency and damping without a law; [`motion::MotionSolver`], a
+//! motion with its derivatives by the parameters.
+//!
+//! ```
+//! use lindstedt_fit::answer::{FitOptions, fit};
+//! use lindstedt_fit::laws::{Loss, Spring};
+//! use lindstedt_fit::record::Record;
+//!
+//! // x'' + 0.04 x' + 4 x = 0 with an offset, and a ripple in place of noise.
+//! let times: Vec<f64> = (0..800).map(|index| 0.05 * f64::from(index)).collect();
+//! let ripple = |t: f64| 3e-3 * (1e4 * t * t).sin();
+//! let values = times.iter().map(|t| 0.1 + (-0.02 * t).exp() * (2.0 * t).cos() + ripple(*t));
+//! let record = Record { values: values.collect(), times: times.clone(), ..Record::default() };
+//! let answer = fit(&record, &FitOptions::default())?;
+//! let best = answer.best().ok_or("a law")?;
+//! assert_eq!(best.law.parts, Some((Spring::Linear, Loss::Viscous)));
+//! let zeta = best.estimate("zeta").ok_or("a parameter")?;
+//! assert!((zeta.value - 0.01).abs() < 3.0 * zeta.error);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 
@@ -31,6 +51,8 @@ pub mod motion;
 pub mod sample_fit;
 
 pub mod whiteness;
+
+mod integration;
 
 pub mod record;
 

@@ -100,9 +100,9 @@ impl MotionSolver {
         if is_cut {
             sides.push((downward, Some(false)));
         }
-        let sides = sides.iter().map(|(acceleration, stops)| {
-            Side::new(law, acceleration, (&taken, &powers), *stops)
-        });
+        let sides = sides
+            .iter()
+            .map(|(acceleration, stops)| Side::new(law, acceleration, (&taken, &powers), *stops));
         Ok(Self {
             names: law.parameters.clone(),
             sides: sides.collect::<Result<_, ExprError>>().map_err(jump)?,
@@ -142,7 +142,8 @@ impl MotionSolver {
         let mut arguments = vec![0.0, 0.0, 0.0];
         arguments.extend(parameters);
         let coefficients = arguments.len();
-        let symbols: Vec<Symbol> = self.powers.iter().flat_map(PowerTerm::symbols).copied().collect();
+        let symbols: Vec<Symbol> =
+            self.powers.iter().flat_map(PowerTerm::symbols).copied().collect();
         arguments.resize(coefficients + symbols.len(), 0.0);
         // The direction of a start at rest needs the powers of the spring.
         let scale = half_period / std::f64::consts::PI;
@@ -155,8 +156,8 @@ impl MotionSolver {
             self.set_point(&mut arguments, &state, time);
             if swing > 0 || start[1] == 0.0 {
                 let before = run.acceleration(&self.sides[self.side(is_upward)], &arguments);
-                let [up, down] =
-                    [true, false].map(|up| run.acceleration(&self.sides[self.side(up)], &arguments));
+                let [up, down] = [true, false]
+                    .map(|up| run.acceleration(&self.sides[self.side(up)], &arguments));
                 let after = match (up > 0.0, down < 0.0) {
                     (true, false) => up,
                     (false, true) => down,
@@ -183,7 +184,8 @@ impl MotionSolver {
                 let largest = x.hypot(v * scale);
                 let fastest = v.hypot(acceleration * scale);
                 self.set_powers(&mut arguments, coefficients, [largest, fastest]);
-                numbers.extend(symbols.iter().copied().zip(arguments[coefficients..].iter().copied()));
+                numbers
+                    .extend(symbols.iter().copied().zip(arguments[coefficients..].iter().copied()));
                 let own = self.sides.iter().map(|side| side.solver.with_numbers(&numbers));
                 solvers = Some(own.collect::<Option<_>>()?);
             }
@@ -194,7 +196,11 @@ impl MotionSolver {
             next += kept.len();
             if quantity == Quantity::Acceleration {
                 for (place, time) in (from..).zip(&kept) {
-                    self.set_point_of(&mut arguments, [columns[0][place], columns[count][place]], *time);
+                    self.set_point_of(
+                        &mut arguments,
+                        [columns[0][place], columns[count][place]],
+                        *time,
+                    );
                     let gradient = run.gradient(&self.sides[side], &arguments);
                     accelerations[0].push(gradient[0]);
                     for change in 1..count {
@@ -315,8 +321,12 @@ impl Side {
             parts.extend(by_parameters.get(index).cloned());
             rights.push(Expr::sum(parts));
         }
-        let names: Vec<Symbol> =
-            law.parameters.iter().copied().chain(powers.iter().flat_map(PowerTerm::symbols).copied()).collect();
+        let names: Vec<Symbol> = law
+            .parameters
+            .iter()
+            .copied()
+            .chain(powers.iter().flat_map(PowerTerm::symbols).copied())
+            .collect();
         let numbers = names.iter().map(|name| (*name, GENERIC)).collect();
         let system = System::new(&states, time, &rights, &numbers)
             .map_err(|_| ExprError::TooManyTerms(0))?;
@@ -340,11 +350,13 @@ impl Side {
 fn on_side(acceleration: &Expr, velocity: Symbol, sign: i64) -> Result<Expr, ExprError> {
     let sign = Expr::from(sign);
     acceleration.fold(|expr, children: &[Expr]| match expr.node() {
-        Node::Function(function, _) if children[0].as_symbol() == Some(velocity) => match function {
-            Function::Absolute => Ok(&sign * &children[0]),
-            Function::Sign => Ok(sign.clone()),
-            _ => expr.with_children(children),
-        },
+        Node::Function(function, _) if children[0].as_symbol() == Some(velocity) => {
+            match function {
+                Function::Absolute => Ok(&sign * &children[0]),
+                Function::Sign => Ok(sign.clone()),
+                _ => expr.with_children(children),
+            }
+        }
         Node::Number(_) | Node::Symbol(_) => Ok(expr.clone()),
         _ => expr.with_children(children),
     })
@@ -392,7 +404,8 @@ mod tests {
                     above[index] += step;
                     below[index] -= step;
                     let [above, below] = [run(&above), run(&below)];
-                    let size = reference[index + 1].iter().fold(0.0_f64, |size, z| size.max(z.abs()));
+                    let size =
+                        reference[index + 1].iter().fold(0.0_f64, |size, z| size.max(z.abs()));
                     let errors = (0..times.len()).map(|place| {
                         let slope = (above[0][place] - below[0][place]) / (2.0 * step);
                         (slope - reference[index + 1][place]).abs()
@@ -416,11 +429,18 @@ mod tests {
             let prepared = begin.elapsed();
             let mut all = values(&law);
             all.iter_mut().zip(&law.parameters).for_each(|(value, name)| {
-                if ["zeta", "alpha", "c", "d", "q", "r"].contains(&name.name()) { *value *= 0.2 }
+                if ["zeta", "alpha", "c", "d", "q", "r"].contains(&name.name()) {
+                    *value *= 0.2
+                }
             });
             let begin = std::time::Instant::now();
             let motion = solver.sample(&all, [0.9, 0.1], &times, 2.4, Quantity::Displacement);
-            eprintln!("{:50} {prepared:?} {:?} {:?}", law.name, begin.elapsed(), motion.map(|m| m.rest));
+            eprintln!(
+                "{:50} {prepared:?} {:?} {:?}",
+                law.name,
+                begin.elapsed(),
+                motion.map(|m| m.rest)
+            );
         }
     }
 }

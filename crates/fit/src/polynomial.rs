@@ -59,7 +59,8 @@ impl LocalPolynomial {
         const ITERATIONS: usize = 20;
         let mut time = self.centre;
         for _ in 0..ITERATIONS {
-            let (value, slope) = (self.derivative(time, order).0, self.derivative(time, order + 1).0);
+            let (value, slope) =
+                (self.derivative(time, order).0, self.derivative(time, order + 1).0);
             if slope == 0.0 {
                 return None;
             }
@@ -92,8 +93,9 @@ pub fn regression(
     weights: &[f64],
 ) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let root = |row: usize| weights[row].sqrt();
-    let design =
-        DMatrix::from_fn(values.len(), columns.len(), |row, column| columns[column][row] * root(row));
+    let design = DMatrix::from_fn(values.len(), columns.len(), |row, column| {
+        columns[column][row] * root(row)
+    });
     let right = DVector::from_fn(values.len(), |row, _| values[row] * root(row));
     let covariance = (design.transpose() * &design).try_inverse()?;
     let coefficients = &covariance * (design.transpose() * right);

@@ -84,9 +84,10 @@ impl PowerTerm {
         let y = Expr::from(variable);
         let square = y.integer_power(2)? + Expr::from(s);
         let sum = |coefficients: &[Symbol]| -> Result<Expr, ExprError> {
-            let terms = coefficients.iter().zip(0..).map(|(own, j): (&Symbol, i64)| {
-                Ok(Expr::from(*own) * square.integer_power(-j)?)
-            });
+            let terms = coefficients
+                .iter()
+                .zip(0..)
+                .map(|(own, j): (&Symbol, i64)| Ok(Expr::from(*own) * square.integer_power(-j)?));
             Ok(Expr::sum(terms.collect::<Result<Vec<_>, ExprError>>()?))
         };
         let logarithm = Expr::function(Function::Log, vec![square.clone()])?;
@@ -229,7 +230,11 @@ pub fn replace_powers(
 ///
 /// # Errors
 /// [`ExprError`] if there is none.
-pub fn by_parameter(expr: &Expr, terms: &[PowerTerm], parameter: Symbol) -> Result<Expr, ExprError> {
+pub fn by_parameter(
+    expr: &Expr,
+    terms: &[PowerTerm],
+    parameter: Symbol,
+) -> Result<Expr, ExprError> {
     let mut sum = vec![expr.differentiate(parameter)?];
     for term in terms {
         // m = e/2 or (e - 1)/2.
@@ -260,7 +265,9 @@ pub fn by_variable(
 /// # Errors
 /// [`ExprError`] if it cannot be written.
 pub fn written_out(expr: &Expr, terms: &[PowerTerm]) -> Result<Expr, ExprError> {
-    let own = |term: &PowerTerm| std::iter::zip(term.places, term.expressions.clone()).collect::<Vec<_>>();
+    let own = |term: &PowerTerm| {
+        std::iter::zip(term.places, term.expressions.clone()).collect::<Vec<_>>()
+    };
     expr.substitute_all(&terms.iter().flat_map(own).collect())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::polynomial::median;
 use crate::record::Record;
-use crate::turning_points::{SwingsError, Swings, local_noise};
+use crate::turning_points::{Swings, SwingsError, local_noise};
 
 /// What a record is like, before any law.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,8 @@ fn start(record: &Record, swings: &Swings, noise: f64) -> usize {
     }
     // A body that is held shows its noise alone.
     let level = values.first().copied().unwrap_or(0.0);
-    let moved = values.iter().position(|value| (value - level).abs() > HELD * noise + 1e-3 * largest);
+    let moved =
+        values.iter().position(|value| (value - level).abs() > HELD * noise + 1e-3 * largest);
     let moved = moved.unwrap_or(0);
     if times[moved] - times[0] > 0.5 * swings.half_period {
         start = start.max(moved);
@@ -114,7 +115,8 @@ fn start(record: &Record, swings: &Swings, noise: f64) -> usize {
 impl Quality {
     /// The record without what is no free decay and without saturated samples.
     pub fn cleaned(&self, record: &Record) -> Record {
-        let is_kept = |index: &usize| *index >= self.start && self.saturated.binary_search(index).is_err();
+        let is_kept =
+            |index: &usize| *index >= self.start && self.saturated.binary_search(index).is_err();
         let kept: Vec<usize> = (0..record.times.len()).filter(is_kept).collect();
         Record {
             times: kept.iter().map(|index| record.times[*index]).collect(),
@@ -163,7 +165,8 @@ mod tests {
     #[test]
     fn a_hold_before_the_release_is_cut() {
         let mut record = decay(3000);
-        let held: Vec<f64> = (0..400).map(|index| 1.0 + 1e-3 * (index as f64 * 7.7).sin()).collect();
+        let held: Vec<f64> =
+            (0..400).map(|index| 1.0 + 1e-3 * (index as f64 * 7.7).sin()).collect();
         record.values.splice(0..0, held);
         record.times = (0..record.values.len()).map(|index| 0.02 * index as f64).collect();
         let found = quality(&record).unwrap();

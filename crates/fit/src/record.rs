@@ -162,7 +162,9 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<ReadRecord>, ReadEr
     };
     let values = match options.values.is_empty() {
         true => vec![(0..names.len()).find(|column| *column != time).unwrap_or(1)],
-        false => options.values.iter().map(|wanted| table.column(wanted)).collect::<Result<_, _>>()?,
+        false => {
+            options.values.iter().map(|wanted| table.column(wanted)).collect::<Result<_, _>>()?
+        }
     };
     values.into_iter().map(|value| table.record(time, value, options)).collect()
 }
@@ -182,7 +184,8 @@ impl<'a> Table<'a> {
         let (_, first) = *lines.last().ok_or(ReadError::Empty)?;
         let separator = [';', '\t', ','].into_iter().find(|separator| first.contains(*separator));
         // With semicolons or tabs between the cells a comma is a decimal point.
-        let has_decimal_comma = separator.is_some_and(|separator| separator != ',') && first.contains(',');
+        let has_decimal_comma =
+            separator.is_some_and(|separator| separator != ',') && first.contains(',');
         let cells = |line: &'a str| -> Vec<&'a str> {
             match separator {
                 Some(separator) => line.split(separator).map(str::trim).collect(),
@@ -217,7 +220,12 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn record(&self, time: usize, value: usize, options: &ReadOptions) -> Result<ReadRecord, ReadError> {
+    fn record(
+        &self,
+        time: usize,
+        value: usize,
+        options: &ReadOptions,
+    ) -> Result<ReadRecord, ReadError> {
         let name = self.names[value].clone();
         let time_factor = unit(&self.names[time]).filter(|(_, is_angle)| !is_angle);
         let time_factor = time_factor.map_or(1.0, |(factor, _)| factor);
@@ -225,7 +233,8 @@ impl<'a> Table<'a> {
         let is_angle = options.is_angle || value_unit.is_some();
         let value_factor = value_unit.map_or(1.0, |(factor, _)| factor);
         let record = Record { quantity: options.quantity, is_angle, ..Record::default() };
-        let mut read = ReadRecord { record, name, lines: vec![], missing: vec![], repeated: vec![] };
+        let mut read =
+            ReadRecord { record, name, lines: vec![], missing: vec![], repeated: vec![] };
         let mut equal = 1.0;
         for (line, cells) in &self.rows {
             let cell = |column: usize| {
@@ -306,7 +315,8 @@ mod tests {
     #[test]
     fn formats_of_tables_are_recognised() {
         let usual = ReadOptions::default();
-        for text in ["0,1\n1,2\n", "0\t1\n1\t2", "# made by hand\n0 1\n\n1  2\n", "0;1,0\n1;2,0\n"] {
+        for text in ["0,1\n1,2\n", "0\t1\n1\t2", "# made by hand\n0 1\n\n1  2\n", "0;1,0\n1;2,0\n"]
+        {
             let found = read(text, &usual).unwrap();
             assert_eq!(found[0].record.values, [1.0, 2.0], "{text}");
         }
@@ -325,9 +335,15 @@ mod tests {
         assert_eq!(error("1\n2\n", &usual), ReadError::OneColumn { line: 1 });
         let found = error("t,x\n0,1\n1,a\n", &usual);
         assert_eq!(found.to_string(), "line 3: `a` in the column `x` is not a number");
-        assert_eq!(error("0,1\n2,1\n1,1\n", &usual).to_string(), "line 3: the time runs back from 2 to 1");
+        assert_eq!(
+            error("0,1\n2,1\n1,1\n", &usual).to_string(),
+            "line 3: the time runs back from 2 to 1"
+        );
         assert!(matches!(error("0,1\n1\n2,3", &usual), ReadError::Short { line: 2, .. }));
         let wanted = ReadOptions { values: vec!["z".into()], ..usual };
-        assert_eq!(error("t,x\n0,1\n", &wanted).to_string(), "there is no column `z`; the columns are t, x");
+        assert_eq!(
+            error("t,x\n0,1\n", &wanted).to_string(),
+            "there is no column `z`; the columns are t, x"
+        );
     }
 }

@@ -25,6 +25,8 @@ pub struct Samples {
     pub half_period: f64,
     /// The time to which the offset refers.
     pub middle: f64,
+    /// Offset at the middle and drift of the observed values, as the swings show them.
+    pub centre: [f64; 2],
 }
 
 /// A law whose parameters fit a record best.
@@ -51,7 +53,12 @@ impl SampleFit {
 
 /// Fits a law from a start: parameters, initial coordinate and velocity at the first sample, offset, drift.
 /// Returns `None` if the law has no motion there.
-pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &[f64]) -> Option<SampleFit> {
+pub fn fit_samples(
+    law: &Law,
+    solver: &MotionSolver,
+    samples: &Samples,
+    start: &[f64],
+) -> Option<SampleFit> {
     const ITERATIONS: u64 = 12;
     const ITERATIONS_OF_PARTS: u64 = 8;
     /// The share of the variance of the record above which a start is out of step.
@@ -65,7 +72,8 @@ pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &
     let mean = samples.values.iter().sum::<f64>() / total as f64;
     let variance: f64 = samples.values.iter().map(|value| (value - mean).powi(2)).sum();
     let first = evaluate(start, total);
-    let in_step = first.is_some_and(|(residuals, _)| residuals.norm_squared() < OUT_OF_STEP * variance);
+    let in_step =
+        first.is_some_and(|(residuals, _)| residuals.norm_squared() < OUT_OF_STEP * variance);
     let mut values = start.to_vec();
     if !in_step {
         for share in [16, 8, 4, 2] {
@@ -73,7 +81,9 @@ pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &
             if count < FEWEST {
                 continue;
             }
-            if let Some(found) = minimise(&values, ITERATIONS_OF_PARTS, |values| evaluate(values, count)) {
+            if let Some(found) =
+                minimise(&values, ITERATIONS_OF_PARTS, |values| evaluate(values, count))
+            {
                 values = found.parameters;
             }
         }
@@ -94,7 +104,8 @@ pub fn fit_samples(law: &Law, solver: &MotionSolver, samples: &Samples, start: &
     }
     let converged = minimum.distance() < NEAR;
     let Minimum { parameters, residuals, jacobian, .. } = minimum;
-    let mut fit = SampleFit { law: law.clone(), values: parameters, residuals, jacobian, converged };
+    let mut fit =
+        SampleFit { law: law.clone(), values: parameters, residuals, jacobian, converged };
     // The equations of the list are the same for -w and -zeta.
     if let (Some(_), Some(w)) = (law.parts, law.parameter("w"))
         && fit.values[w] < 0.0

@@ -60,7 +60,9 @@ pub enum TableError {
     #[error("row {0}, counted from 1: amplitude and frequency must be positive numbers")]
     NotPositive(usize),
     /// The amplitudes are all alike.
-    #[error("the amplitudes range from {from} to {to} only: frequency cannot be told against amplitude")]
+    #[error(
+        "the amplitudes range from {from} to {to} only: frequency cannot be told against amplitude"
+    )]
     Narrow {
         /// The smallest amplitude.
         from: f64,
@@ -77,7 +79,9 @@ impl TableError {
     pub fn help(&self) -> &'static str {
         match self {
             Self::TooFew(_) => "add rows at further amplitudes",
-            Self::NotPositive(_) => "give amplitudes and frequencies as positive numbers, frequencies in rad/s or in Hz throughout",
+            Self::NotPositive(_) => {
+                "give amplitudes and frequencies as positive numbers, frequencies in rad/s or in Hz throughout"
+            }
             Self::Narrow { .. } => "measure over a wider range of amplitudes",
             Self::NoFit => "look for rows that do not belong to one branch",
         }
@@ -162,7 +166,8 @@ fn fit_parts(rows: &[TableRow], spring: Spring, loss: Loss) -> Option<TableFit> 
             let step = STEP * first[column].abs().max(1e-6);
             above[column] += step;
             below[column] -= step;
-            jacobian.set_column(column, &((residuals(&above)? - residuals(&below)?) / (2.0 * step)));
+            jacobian
+                .set_column(column, &((residuals(&above)? - residuals(&below)?) / (2.0 * step)));
         }
         Some((at, jacobian))
     };
@@ -186,13 +191,12 @@ fn fit_parts(rows: &[TableRow], spring: Spring, loss: Loss) -> Option<TableFit> 
         jacobian[(row, column)] * weights[row % step].sqrt()
     });
     let covariance = &inverse * (scaled.transpose() * &scaled) * &inverse;
-    let estimates = law.parameters.iter().zip(&parameters).enumerate().map(|(index, (name, value))| {
-        Estimate {
+    let estimates =
+        law.parameters.iter().zip(&parameters).enumerate().map(|(index, (name, value))| Estimate {
             name: name.to_string(),
             value: *value,
             error: covariance[(index, index)].max(0.0).sqrt(),
-        }
-    });
+        });
     let worst = frequencies.iter().fold(0.0_f64, |worst, own| worst.max(own.abs()));
     let bic = number * (square / number).ln() + width * number.ln();
     Some(TableFit { estimates: estimates.collect(), worst_frequency: worst, bic, law })

@@ -164,9 +164,8 @@ impl Swings {
             Some((fit, *is_maximum))
         });
         let fits: Vec<_> = fits.collect();
-        let deviations = fits.iter().map(|((fit, _), _)| {
-            (fit.residual_square / fit.freedom as f64).sqrt()
-        });
+        let deviations =
+            fits.iter().map(|((fit, _), _)| (fit.residual_square / fit.freedom as f64).sqrt());
         let deviation = median(deviations.collect());
         let mut points: Vec<TurningPoint> = vec![];
         for ((fit, (time, error)), is_maximum) in &fits {

@@ -38,8 +38,7 @@ impl Whiteness {
         let parts = autocorrelation.iter().zip(1..);
         let statistic: f64 =
             parts.map(|(r, lag)| number * (number + 2.0) * r * r / (number - f64::from(lag))).sum();
-        let probability =
-            if lags == 0 { 1.0 } else { igamc(0.5 * lags as f64, 0.5 * statistic) };
+        let probability = if lags == 0 { 1.0 } else { igamc(0.5 * lags as f64, 0.5 * statistic) };
         Self { autocorrelation, probability }
     }
 

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use lindstedt_fit::laws::{Loss, Spring};
 use lindstedt_fit::motion::Quantity;
-use lindstedt_fit::record::Record;
 use lindstedt_fit::numeric::ode::{Event, IntegrationOptions, State, integrate};
+use lindstedt_fit::record::Record;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -30,8 +30,16 @@ pub fn normal(generator: &mut ChaCha8Rng) -> f64 {
 }
 
 /// The acceleration of a law for one sign of the velocity.
-pub fn acceleration(spring: Spring, loss: Loss, truth: &[(&str, f64)], x: f64, v: f64, sign: f64) -> f64 {
-    let number = |name: &str| truth.iter().find(|(own, _)| *own == name).map_or(0.0, |(_, value)| *value);
+pub fn acceleration(
+    spring: Spring,
+    loss: Loss,
+    truth: &[(&str, f64)],
+    x: f64,
+    v: f64,
+    sign: f64,
+) -> f64 {
+    let number =
+        |name: &str| truth.iter().find(|(own, _)| *own == name).map_or(0.0, |(_, value)| *value);
     let w = number("w");
     let force = match spring {
         Spring::Linear => w * w * x,
@@ -60,8 +68,10 @@ pub fn motion(
     times: &[f64],
 ) -> Vec<f64> {
     let size = start[0].abs().max(1e-3 * start[1].abs());
-    let options =
-        IntegrationOptions { absolute_tolerance: 1e-12 * size, ..IntegrationOptions::with_tolerance(1e-12) };
+    let options = IntegrationOptions {
+        absolute_tolerance: 1e-12 * size,
+        ..IntegrationOptions::with_tolerance(1e-12)
+    };
     let last = times[times.len() - 1];
     let mut state = State { t: times[0], x: start[0], v: start[1] };
     let mut sign = match state.v == 0.0 {
@@ -72,12 +82,17 @@ pub fn motion(
     while values.len() < times.len() {
         let own = |x: f64, v: f64, sign: f64| acceleration(spring, loss, truth, x, v, sign);
         let mut events = vec![Event::stop(|_, _, v| v)];
-        events[0] = if sign > 0.0 { Event::stop(|_, _, v| v).falling() } else { Event::stop(|_, _, v| v).rising() };
+        events[0] = if sign > 0.0 {
+            Event::stop(|_, _, v| v).falling()
+        } else {
+            Event::stop(|_, _, v| v).rising()
+        };
         if spring == Spring::Power {
             let crossing = Event::stop(|_, x, _| x);
             events.push(if sign > 0.0 { crossing.rising() } else { crossing.falling() });
         }
-        let path = integrate(|_, x, v| own(x, v, sign), state, last, &events, &options).expect("a motion");
+        let path =
+            integrate(|_, x, v| own(x, v, sign), state, last, &events, &options).expect("a motion");
         let from = values.len();
         let found = times[from..].iter().map_while(|time| path.phase_point_at(*time));
         values.extend(found.map(|(x, _)| x));
@@ -97,8 +112,21 @@ pub fn motion(
     values
 }
 
+/// How long a record is: the ranges of its cycles and of the samples of each.
+#[derive(Clone, Copy)]
+pub struct Length {
+    pub cycles: [f64; 2],
+    pub samples: [f64; 2],
+}
+
+/// The records of the long run.
+pub const LONG: Length = Length { cycles: [15.0, 40.0], samples: [20.0, 50.0] };
+
+/// Records that are fitted sooner.
+pub const SHORT: Length = Length { cycles: [9.0, 14.0], samples: [20.0, 30.0] };
+
 /// The record of this seed. Springs and losses take turns; all else is drawn.
-pub fn synthetic(seed: u64) -> Synthetic {
+pub fn synthetic(seed: u64, length: Length) -> Synthetic {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let generator = &mut generator;
     let spring = Spring::ALL[(seed % 5) as usize];
@@ -121,11 +149,15 @@ pub fn synthetic(seed: u64) -> Synthetic {
             truth.extend([("w", w), ("b", share * w * w / size)]);
         }
         Spring::Power => {
-            let n = if sign > 0.0 { uniform(generator, 1.3, 3.0) } else { uniform(generator, 0.5, 0.8) };
+            let n = if sign > 0.0 {
+                uniform(generator, 1.3, 3.0)
+            } else {
+                uniform(generator, 0.5, 0.8)
+            };
             truth.extend([("k", w * w * size.powf(1.0 - n)), ("n", n)]);
         }
     }
-    let cycles = uniform(generator, 15.0, 40.0);
+    let cycles = uniform(generator, length.cycles[0], length.cycles[1]);
     let rest = uniform(generator, 0.15, 0.5);
     let has_frequency = spring != Spring::Power;
     let viscous = |zeta: f64| if has_frequency { ("zeta", zeta) } else { ("c", 2.0 * zeta * w) };
@@ -142,7 +174,8 @@ pub fn synthetic(seed: u64) -> Synthetic {
             const STEPS: u32 = 2000;
             let place = |step: u32| (f64::from(step) + 0.5) * PI / f64::from(STEPS);
             let integral: f64 = (0..STEPS).map(|step| place(step).sin().powf(p + 1.0)).sum::<f64>()
-                * PI / f64::from(STEPS);
+                * PI
+                / f64::from(STEPS);
             let change = size.powf(1.0 - p) * (rest.powf(1.0 - p) - 1.0) / (p - 1.0);
             truth.extend([("r", change / (2.0 * cycles * w.powf(p - 2.0) * integral)), ("p", p)]);
         }
@@ -152,7 +185,7 @@ pub fn synthetic(seed: u64) -> Synthetic {
             truth.extend([viscous(zeta), dry(TAU * zeta * size / (4.0 * share))]);
         }
     }
-    let count = (cycles * uniform(generator, 20.0, 50.0)) as usize;
+    let count = (cycles * uniform(generator, length.samples[0], length.samples[1])) as usize;
     let step = cycles * TAU / w / count as f64;
     let is_uneven = generator.random::<bool>();
     let first = uniform(generator, -10.0, 10.0);
@@ -169,12 +202,15 @@ pub fn synthetic(seed: u64) -> Synthetic {
     let start = [size * phase.cos(), size * w * phase.sin()];
     let motion = motion(spring, loss, &truth, start, &times);
     let values = motion.iter().zip(&times).map(|(x, time)| {
-        let value = x + offset + drift * (time - first) / (step * count as f64) + noise * normal(generator);
+        let value =
+            x + offset + drift * (time - first) / (step * count as f64) + noise * normal(generator);
         if is_quantised { (value / quantum).round() * quantum } else { value }
     });
     let words = format!(
         "seed {seed}: {} {} cycles {cycles:.0} samples {count} rest {rest:.2} noise {:.4} quantised {is_quantised} uneven {is_uneven}",
-        spring.name(), loss.name(), noise / size
+        spring.name(),
+        loss.name(),
+        noise / size
     );
     let record = Record {
         values: values.collect(),

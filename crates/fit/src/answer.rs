@@ -9,22 +9,21 @@
 //! simplest law that fits comes first. (G. Schwarz, *Ann. Statist.* 6 (1978) 461; H. Akaike, *IEEE Trans. Autom. Control* 19 (1974) 716.)
 //! Autocorrelated residuals enlarge the errors by the covariance of Newey and West.
 
-use std::collections::BTreeMap;
-
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use crate::backbone::{BackbonePoint, backbone};
+use crate::backbone::BackbonePoint;
 use crate::closed_forms::{MapFit, fit_maps};
-use crate::equation_error::{initial_state, start as equation_error_start};
-use crate::integration::oscillating_integral;
+use crate::equation_error::{initial_state, parameters as equation_error_parameters};
+use crate::fitted_record::{FittedRecord, weigh};
 use crate::laws::{Law, LawError, Loss, Spring};
 use crate::least_squares::Covariance;
 use crate::motion::{MotionSolver, Quantity};
+use crate::parallel::par_map;
 use crate::polynomial::median;
-use crate::quality::{Quality, quality};
+use crate::quality::Quality;
 use crate::record::Record;
-use crate::sample_fit::{SampleFit, Samples, fit_samples, motion};
+use crate::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, motion, values_of};
 use crate::turning_points::{Swings, SwingsError};
 use crate::whiteness::{Whiteness, robust_covariance};
 
@@ -53,7 +52,7 @@ pub struct Estimate {
 pub struct LawFit {
     /// The law.
     pub law: Law,
-    /// The parameters, then `x0`, `v0`, `offset` at the middle of the record and `drift` per unit of time.
+    /// The parameters, then `x0`, `v0`, `offset` at the middle of the record and `drift` per unit of time; for further records `x0_2` and so on.
     pub estimates: Vec<Estimate>,
     /// The correlations of the estimates.
     pub correlations: DMatrix<f64>,
@@ -75,7 +74,7 @@ pub struct LawFit {
     pub flat: Vec<String>,
     /// Whether the fit converged.
     pub converged: bool,
-    /// The residuals at the times of the samples that were used.
+    /// The residuals at the times of the samples that were used, those of one record after those of another.
     pub residuals: Vec<f64>,
     covariance: DMatrix<f64>,
 }
@@ -107,7 +106,7 @@ pub struct ExcludedLaw {
     pub ratio: f64,
 }
 
-/// What a record says.
+/// The result for one record or several. Quality, backbone, swings, outliers and samples are those of the first record.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The laws that were fitted to the samples, the best first.
@@ -124,10 +123,12 @@ pub struct Answer {
     pub noise: f64,
     /// Over how many samples the residuals of the best law are correlated: 1 if they are white.
     pub correlation_length: f64,
-    /// The samples that were left out since they lie far from the best law, by their index.
+    /// The samples that were left out since they lie far from their neighbours or from the best law, by their index in the record.
     pub outliers: Vec<usize>,
     /// The samples that were fitted.
     pub samples: Samples,
+    /// The records after the first.
+    pub further: Vec<FittedRecord>,
 }
 
 /// The reason why there is no answer.
@@ -156,6 +157,9 @@ pub enum FitError {
         /// The number of samples.
         total: usize,
     },
+    /// There is no record.
+    #[error("there is no record")]
+    NoRecord,
     /// No law has a motion near the record.
     #[error("no law has a motion near the record")]
     NoMotion,
@@ -174,180 +178,191 @@ impl FitError {
                  `x'' + c*x' + k*x = F*cos(Omega*t)`"
                 .to_owned(),
             Self::Saturated { .. } => "measure with a larger range, or leave out the part with large amplitudes".to_owned(),
+            Self::NoRecord => "give one record at least".to_owned(),
             Self::NoMotion => "try an equation of your own".to_owned(),
             Self::NoStart(_) => "give a first value for each parameter".to_owned(),
         }
     }
 }
 
-/// Fits the laws of the list to a free decay.
+/// Fits the laws of the list to a free decay, or to several of the same body: parameters are shared, and each record has its own start,
+/// offset and drift.
 ///
 /// # Errors
 /// [`FitError`].
-pub fn fit(record: &Record, options: &FitOptions) -> Result<Answer, FitError> {
-    let (swings, samples, quality) = prepare(record)?;
-    refuse_growth(&swings)?;
-    let laws = Law::list(record.is_angle);
-    let mut others: BTreeMap<(Spring, Loss), Vec<MapFit>> = BTreeMap::new();
-    let mut maps: Vec<(Law, MapFit)> = vec![];
-    for law in laws {
-        let mut found = fit_maps(&law, &swings).into_iter();
-        let (Some(parts), Some(best)) = (law.parts, found.next()) else { continue };
-        others.insert(parts, found.collect());
-        maps.push((law, best));
-    }
-    let number = (2 * swings.points.len()) as f64;
-    let score =
-        |(law, map): &(Law, MapFit)| map.chi_square + number.ln() * law.parameters.len() as f64;
+///
+/// ```
+/// use lindstedt_fit::answer::{FitOptions, fit};
+/// use lindstedt_fit::record::Record;
+///
+/// // x'' + 0.04 x' + 4 x = 0 from two amplitudes, with a ripple in place of noise.
+/// let times: Vec<f64> = (0..600).map(|index| 0.05 * f64::from(index)).collect();
+/// let decay = |t: &f64| (-0.02 * t).exp() * (2.0 * t).cos() + 3e-3 * (1e4 * t * t).sin();
+/// let record = |size: f64| Record {
+///     values: times.iter().map(|t| size * decay(t)).collect(),
+///     times: times.clone(),
+///     ..Record::default()
+/// };
+/// let answer = fit(&[record(1.0), record(0.5)], &FitOptions::default())?;
+/// let best = answer.best().ok_or("a law")?;
+/// let x0 = best.estimate("x0_2").ok_or("a start")?;
+/// assert!((x0.value - 0.5).abs() < 4.0 * x0.error);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn fit(
+    records: &(impl AsRef<[Record]> + ?Sized),
+    options: &FitOptions,
+) -> Result<Answer, FitError> {
+    let all = records.as_ref();
+    let records = prepare(all, false, options)?;
+    records.iter().try_for_each(FittedRecord::refuse_growth)?;
+    let swings: Vec<&Swings> = records.iter().map(|own| &own.swings).collect();
+    let laws = Law::list(all.iter().all(|record| record.is_angle));
+    let found = par_map(&laws, |law| fit_maps(law, &swings));
+    let mut maps: Vec<(Law, Vec<MapFit>)> = laws.into_iter().zip(found).collect();
+    maps.retain(|(_, found)| !found.is_empty());
+    let number = swings.iter().map(|own| 2.0 * own.points.len() as f64).sum::<f64>();
+    let score = |(law, maps): &(Law, Vec<MapFit>)| {
+        maps[0].chi_square + number.ln() * law.parameters.len() as f64
+    };
     maps.sort_by(|one, other| score(one).total_cmp(&score(other)));
-    let (best, map) = maps.first().ok_or(FitError::NoMotion)?;
+    let (best, found) = maps.first().ok_or(FitError::NoMotion)?;
     let mut best = best.parts.ok_or(FitError::NoMotion)?;
-    let least = map.chi_square;
-    // What is far worse than the best law already by its turning points is not fitted to the samples.
-    let is_far = |map: &MapFit| map.chi_square > FAR[0] * least + FAR[1];
-    let excluded = maps.iter().filter(|(_, map)| is_far(map)).map(|(law, map)| {
+    let least = found[0].chi_square;
+    // A law that is far worse than the best one already by its turning points is not fitted to the samples.
+    let is_far = |maps: &[MapFit]| maps[0].chi_square > FAR[0] * least + FAR[1];
+    let excluded = maps.iter().filter(|(_, maps)| is_far(maps)).map(|(law, maps)| {
         let names = law.parameters.iter().map(|name| name.to_string());
         ExcludedLaw {
             law: law.clone(),
-            values: names.zip(map.parameters.iter().copied()).collect(),
-            ratio: map.chi_square / least,
+            values: names.zip(maps[0].parameters.iter().copied()).collect(),
+            ratio: maps[0].chi_square / least,
         }
     });
     let excluded: Vec<ExcludedLaw> = excluded.collect();
-    maps.retain(|(_, map)| !is_far(map));
+    maps.retain(|(_, maps)| !is_far(maps));
+    let samples: Vec<&Samples> = records.iter().map(|own| &own.samples).collect();
     let mut fits: Vec<SampleFit> = vec![];
     let mut tried: Vec<(Spring, Loss)> = vec![];
     // The best law by its turning points, and all that share the spring or the loss with it; again if another one wins.
     loop {
-        for (law, map) in &maps {
-            let Some(parts) = law.parts else { continue };
-            if tried.contains(&parts) || (parts.0 != best.0 && parts.1 != best.1) {
-                continue;
-            }
-            tried.push(parts);
+        let is_next = |(law, _): &&(Law, Vec<MapFit>)| {
+            law.parts.is_some_and(|parts| {
+                !tried.contains(&parts) && (parts.0 == best.0 || parts.1 == best.1)
+            })
+        };
+        let next: Vec<&(Law, Vec<MapFit>)> = maps.iter().filter(is_next).collect();
+        let own = par_map(&next, |(law, maps)| -> Result<Option<SampleFit>, FitError> {
             let solver = MotionSolver::new(law)?;
-            let starts = std::iter::once(map).chain(others.get(&parts).into_iter().flatten());
-            let own = starts.filter_map(|map| {
-                let start = start_of(&solver, &samples, &swings, map)?;
+            let own = maps.iter().filter_map(|map| {
+                let start = start_of(&solver, &records, map)?;
                 fit_samples(law, &solver, &samples, &start)
             });
-            fits.extend(own.min_by(|one, other| one.square().total_cmp(&other.square())));
+            Ok(own.min_by(|one, other| one.square().total_cmp(&other.square())))
+        });
+        for fit in own {
+            fits.extend(fit?);
         }
+        tried.extend(next.iter().filter_map(|(law, _)| law.parts));
         let winner = order(&mut fits, 1.0).and_then(|fit| fit.law.parts);
         match winner {
             Some(parts) if parts != best => best = parts,
             _ => break,
         }
     }
-    Ok(Answer { excluded, ..finish(fits, swings, samples, quality, options)? })
+    Ok(Answer { excluded, ..finish(fits, records, options)? })
 }
 
-/// Fits laws of one's own, each from a start of its parameters.
+/// Fits laws of one's own to one record or several, each from a start of its parameters; without one it is found from the accelerations.
+/// Where a law contains the time, it is that of each record.
 ///
 /// # Errors
 /// [`FitError`].
 pub fn fit_laws(
-    record: &Record,
+    records: &(impl AsRef<[Record]> + ?Sized),
     laws: &[(Law, Option<Vec<f64>>)],
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
-    let (swings, samples, quality) = prepare(record)?;
-    let mut fits = vec![];
-    for (law, start) in laws {
+    let is_driven = laws.iter().any(|(law, _)| law.is_driven());
+    let records = prepare(records.as_ref(), is_driven, options)?;
+    let swings: Vec<&Swings> = records.iter().map(|own| &own.swings).collect();
+    let samples: Vec<&Samples> = records.iter().map(|own| &own.samples).collect();
+    let own = par_map(laws, |(law, start)| -> Result<Option<SampleFit>, FitError> {
         let solver = MotionSolver::new(law)?;
         let map = fit_maps(law, &swings).into_iter().next();
-        let start = match (start, map) {
-            (Some(parameters), _) => {
-                let local = initial_state(&samples, &swings);
-                Some([parameters.as_slice(), &local].concat())
+        let starts = match (start, map) {
+            (None, Some(map)) => start_of(&solver, &records, &map).into_iter().collect(),
+            (Some(parameters), _) => starts_about_centres(parameters, &records),
+            (None, None) => {
+                let both: Vec<_> = samples.iter().copied().zip(swings.iter().copied()).collect();
+                let found = equation_error_parameters(law, &both);
+                let found = found.ok_or_else(|| FitError::NoStart(law.equation.clone()))?;
+                starts_about_centres(&found, &records)
             }
-            (None, Some(map)) => start_of(&solver, &samples, &swings, &map),
-            (None, None) => equation_error_start(law, &samples, &swings),
         };
-        let start = start.ok_or_else(|| FitError::NoStart(law.equation.clone()))?;
-        fits.extend(fit_samples(law, &solver, &samples, &start));
+        let fits = starts.iter().filter_map(|start| fit_samples(law, &solver, &samples, start));
+        Ok(fits.min_by(|one, other| one.square().total_cmp(&other.square())))
+    });
+    let fits = own.into_iter().filter_map(Result::transpose).collect::<Result<_, FitError>>()?;
+    finish(fits, records, options)
+}
+
+fn prepare(
+    records: &[Record],
+    is_driven: bool,
+    options: &FitOptions,
+) -> Result<Vec<FittedRecord>, FitError> {
+    let own =
+        records.iter().map(|record| FittedRecord::new(record, is_driven, options.keep_outliers));
+    let mut records = own.collect::<Result<Vec<_>, _>>()?;
+    if records.is_empty() {
+        return Err(FitError::NoRecord);
     }
-    finish(fits, swings, samples, quality, options)
+    weigh(&mut records);
+    Ok(records)
 }
 
-/// The swings of the displacement, the samples of the free decay, and the quality of the record.
-fn prepare(record: &Record) -> Result<(Swings, Samples, Quality), FitError> {
-    /// The share of saturated samples above which a record is refused.
-    const MOST: f64 = 0.3;
-    let quality = quality(record)?;
-    let (saturated, total) = (quality.saturated.len(), record.times.len());
-    if saturated as f64 > MOST * total as f64 {
-        return Err(FitError::Saturated { saturated, total });
+/// Starts with these parameters: the offset is the centre of the swings, or zero, since a barrier on one side shifts the swings.
+fn starts_about_centres(parameters: &[f64], records: &[FittedRecord]) -> Vec<Vec<f64>> {
+    let [mut centred, mut plain] = [parameters.to_vec(), parameters.to_vec()];
+    for own in records {
+        let [x, v, level, drift] = initial_state(&own.samples, &own.swings);
+        centred.extend([x, v, level, drift]);
+        plain.extend([x + level, v, 0.0, 0.0]);
     }
-    let Record { times, values, quantity, .. } = quality.cleaned(record);
-    let observed = Swings::find(&times, &values)?;
-    let period = 2.0 * observed.half_period;
-    let integral = |values: &[f64]| oscillating_integral(&times, values, period);
-    let swings = match quantity {
-        Quantity::Displacement => observed.clone(),
-        Quantity::Velocity => Swings::find(&times, &integral(&values))?,
-        Quantity::Acceleration => Swings::find(&times, &integral(&integral(&values)))?,
-    };
-    let [level, drift, _] = observed.centre;
-    let half_period = swings.half_period;
-    let samples = Samples {
-        times,
-        values,
-        quantity,
-        half_period,
-        middle: swings.middle,
-        centre: [level, drift],
-    };
-    Ok((swings, samples, quality))
+    vec![centred, plain]
 }
 
-fn refuse_growth(swings: &Swings) -> Result<(), FitError> {
-    const GROWTH: f64 = 1.2;
-    let amplitudes = swings.amplitudes();
-    let third = (amplitudes.len() / 3).max(1);
-    let from = median(amplitudes[..third].to_vec());
-    let to = median(amplitudes[amplitudes.len() - third..].to_vec());
-    if to > GROWTH * from { Err(FitError::Grows { from, to }) } else { Ok(()) }
-}
-
-/// Parameters, initial coordinate and velocity at the first sample, offset and drift, from a fit to the turning points.
-fn start_of(
-    solver: &MotionSolver,
-    samples: &Samples,
-    swings: &Swings,
-    map: &MapFit,
-) -> Option<Vec<f64>> {
-    let [x, time] = map.start;
-    let first = *samples.times.first()?;
+/// Parameters, then initial coordinate and velocity at the first sample, offset and drift of each record, from a fit to the turning points.
+fn start_of(solver: &MotionSolver, records: &[FittedRecord], map: &MapFit) -> Option<Vec<f64>> {
     let mut start = map.parameters.clone();
-    // The motion from the first turning point backwards is that of the law without its loss, to first order in it: as
-    // long forwards from the next turning point as the record begins before the first one.
-    let lead = time - first;
-    let [x, v] = match lead.abs() < 1e-9 * swings.half_period {
-        true => [x, 0.0],
-        false => {
-            let motion = |quantity| {
-                let times = [0.0, lead.abs()];
-                let sampled = solver.sample(
-                    &map.parameters,
-                    [x, 0.0],
-                    &times,
-                    swings.half_period,
-                    quantity,
-                )?;
-                sampled.columns[0].get(1).copied()
-            };
-            let sign = if lead > 0.0 { -1.0 } else { 1.0 };
-            let [x, v] = [motion(Quantity::Displacement)?, motion(Quantity::Velocity)?];
-            [x, sign * v]
-        }
-    };
-    let centre = match samples.quantity {
-        Quantity::Displacement => map.centre,
-        Quantity::Velocity | Quantity::Acceleration => samples.centre,
-    };
-    start.extend([x, v]);
-    start.extend(centre);
+    for (own, [x, time, level, drift]) in records.iter().zip(&map.starts) {
+        let samples = &own.samples;
+        // The motion from the first turning point backwards is that of the law without its loss, to first order in it: as
+        // long forwards from the next turning point as the record begins before the first one.
+        let lead = time - samples.times.first()?;
+        let half_period = samples.half_period;
+        let [x, v] = match lead.abs() < 1e-9 * half_period {
+            true => [*x, 0.0],
+            false => {
+                let motion = |quantity| {
+                    let times = [0.0, lead.abs()];
+                    let sampled =
+                        solver.sample(&map.parameters, [*x, 0.0], &times, half_period, quantity)?;
+                    sampled.columns[0].get(1).copied()
+                };
+                let sign = if lead > 0.0 { -1.0 } else { 1.0 };
+                let [x, v] = [motion(Quantity::Displacement)?, motion(Quantity::Velocity)?];
+                [x, sign * v]
+            }
+        };
+        let centre = match samples.quantity {
+            Quantity::Displacement => [*level, *drift],
+            Quantity::Velocity | Quantity::Acceleration => samples.centre,
+        };
+        start.extend([x, v]);
+        start.extend(centre);
+    }
     Some(start)
 }
 
@@ -367,29 +382,26 @@ fn bic(fit: &SampleFit, correlation_length: f64) -> f64 {
 
 fn finish(
     mut fits: Vec<SampleFit>,
-    swings: Swings,
-    mut samples: Samples,
-    quality: Quality,
+    mut records: Vec<FittedRecord>,
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
     let best = order(&mut fits, 1.0).ok_or(FitError::NoMotion)?;
-    let mut outliers = vec![];
-    if !options.keep_outliers {
-        outliers = far_samples(best);
-    }
-    if !outliers.is_empty() {
-        let is_kept = |index: &usize| outliers.binary_search(index).is_err();
-        let kept: Vec<usize> = (0..samples.times.len()).filter(is_kept).collect();
-        samples.times = kept.iter().map(|index| samples.times[*index]).collect();
-        samples.values = kept.iter().map(|index| samples.values[*index]).collect();
-        fits = fits
-            .iter()
-            .filter_map(|fit| {
-                // The first sample may be gone: the start is that at the first one that is left.
-                let solver = MotionSolver::new(&fit.law).ok()?;
-                fit_samples(&fit.law, &solver, &samples, &fit.values)
-            })
-            .collect();
+    let far = if options.keep_outliers { vec![] } else { far_samples(best) };
+    if !far.is_empty() {
+        let mut from = 0;
+        for own in &mut records {
+            let to = from + own.samples.times.len();
+            let places = far.iter().filter(|place| (from..to).contains(place));
+            own.leave_out(&places.map(|place| place - from).collect::<Vec<_>>());
+            from = to;
+        }
+        let samples: Vec<&Samples> = records.iter().map(|own| &own.samples).collect();
+        let again = par_map(&fits, |fit| {
+            // The first sample may be gone: the start is that at the first one that is left.
+            let solver = MotionSolver::new(&fit.law).ok()?;
+            fit_samples(&fit.law, &solver, &samples, &fit.values)
+        });
+        fits = again.into_iter().flatten().collect();
     }
     let correlation_length =
         order(&mut fits, 1.0).map(correlation_length).ok_or(FitError::NoMotion)?;
@@ -397,25 +409,24 @@ fn finish(
     let freedom = |fit: &SampleFit| (fit.residuals.len() as f64 - fit.values.len() as f64).max(1.0);
     let noise = options.noise.unwrap_or((best.square() / freedom(best)).sqrt());
     let (least, most) = (best.square(), best.values.len());
-    let laws = fits
-        .iter()
-        .map(|fit| {
-            let excess = (fit.square() - least) / (noise * noise * correlation_length);
-            let more = most.saturating_sub(fit.values.len()).max(1);
-            law_fit(fit, noise, [excess, excess / more as f64], correlation_length)
-        })
-        .collect();
-    let backbone = backbone(&swings, 12);
+    let laws = par_map(&fits, |fit| {
+        let excess = (fit.square() - least) / (noise * noise * correlation_length);
+        let more = most.saturating_sub(fit.values.len()).max(1);
+        law_fit(fit, noise, [excess, excess / more as f64], correlation_length, &records)
+    });
+    let mut records = records.into_iter();
+    let first = records.next().ok_or(FitError::NoRecord)?;
     Ok(Answer {
         laws,
         excluded: vec![],
-        quality,
-        backbone,
-        swings,
+        quality: first.quality,
+        backbone: first.backbone,
+        swings: first.swings,
         noise,
         correlation_length,
-        outliers,
-        samples,
+        outliers: first.outliers,
+        samples: first.samples,
+        further: records.collect(),
     })
 }
 
@@ -442,7 +453,13 @@ fn correlation_length(fit: &SampleFit) -> f64 {
     1.0 + 2.0 * first.sum::<f64>()
 }
 
-fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f64) -> LawFit {
+fn law_fit(
+    fit: &SampleFit,
+    noise: f64,
+    [excess, exclusion]: [f64; 2],
+    length: f64,
+    records: &[FittedRecord],
+) -> LawFit {
     let count = fit.residuals.len() as f64;
     let width = fit.values.len();
     let inverse = Covariance::new(&fit.jacobian);
@@ -464,8 +481,11 @@ fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f
             DMatrix::from_fn(width, width, |i, j| covariance[(i, j)] * factors[i] * factors[j]);
     }
     let names = fit.law.parameters.iter().map(|name| name.to_string());
-    let names: Vec<String> =
-        names.chain(["x0", "v0", "offset", "drift"].map(str::to_owned)).collect();
+    let own = (1..=records.len()).flat_map(|number| {
+        let suffix = if number == 1 { String::new() } else { format!("_{number}") };
+        ["x0", "v0", "offset", "drift"].map(|name| format!("{name}{suffix}"))
+    });
+    let names: Vec<String> = names.chain(own).collect();
     let estimates = names.iter().zip(&fit.values).enumerate().map(|(index, (name, value))| {
         let error = covariance[(index, index)].max(0.0).sqrt();
         Estimate { name: name.clone(), value: *value, error }
@@ -474,6 +494,8 @@ fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f
     let correlations = DMatrix::from_fn(width, width, |i, j| {
         covariance[(i, j)] / (estimates[i].error * estimates[j].error).max(f64::MIN_POSITIVE)
     });
+    let weights = records.iter().map(|own| &own.samples);
+    let weights = weights.flat_map(|own| std::iter::repeat_n(own.weight, own.times.len()));
     let flat = inverse.flat.iter().map(|direction| in_words(direction, &names)).collect();
     LawFit {
         law: fit.law.clone(),
@@ -487,7 +509,7 @@ fn law_fit(fit: &SampleFit, noise: f64, [excess, exclusion]: [f64; 2], length: f
         whiteness,
         flat,
         converged: fit.converged,
-        residuals: fit.residuals.iter().copied().collect(),
+        residuals: fit.residuals.iter().zip(weights).map(|(own, weight)| own / weight).collect(),
         covariance,
         estimates,
     }
@@ -509,26 +531,46 @@ impl Answer {
         self.laws.first()
     }
 
-    /// The values that a law predicts at increasing times from the first sample on, with their standard errors: those
+    /// The values that a law predicts at increasing times from the first sample of the first record on, with their standard errors: those
     /// of the fitted curve, without the noise of a sample.
     pub fn predict(&self, law: &LawFit, times: &[f64]) -> Option<Vec<[f64; 2]>> {
+        self.predict_record(law, 0, times)
+    }
+
+    /// The values that a law predicts for a record, counted from 0, as [`Answer::predict`] does for the first. Returns `None` if there is no
+    /// such record, or the motion cannot be followed.
+    pub fn predict_record(
+        &self,
+        law: &LawFit,
+        record: usize,
+        times: &[f64],
+    ) -> Option<Vec<[f64; 2]>> {
+        let samples = match record.checked_sub(1) {
+            None => &self.samples,
+            Some(place) => &self.further.get(place)?.samples,
+        };
+        let count = 1 + self.further.len();
         let solver = MotionSolver::new(&law.law).ok()?;
-        let first = *self.samples.times.first()?;
+        let first = *samples.times.first()?;
         // The motion begins at the first sample.
         let all: Vec<f64> = std::iter::once(first).chain(times.iter().copied()).collect();
-        let values = law.values();
-        let motion = motion(&solver, &self.samples, &values, &all)?;
+        let values = values_of(&law.values(), count, record);
+        let motion = motion(&solver, samples, &values, &all)?;
         let [offset, drift] = *values.last_chunk::<2>()?;
         let width = values.len();
+        let shared = width - LOCAL;
+        let place = |index: usize| if index < shared { index } else { index + LOCAL * record };
+        let covariance =
+            DMatrix::from_fn(width, width, |i, j| law.covariance[(place(i), place(j))]);
         let row = |index: usize| {
-            let lag = all[index] - self.samples.middle;
+            let lag = all[index] - samples.middle;
             let slope = |column: usize| match width - column {
                 2 => 1.0,
                 1 => lag,
                 _ => motion.columns[column + 1][index],
             };
             let slopes = nalgebra::DVector::from_fn(width, |column, _| slope(column));
-            let variance = slopes.dot(&(&law.covariance * &slopes));
+            let variance = slopes.dot(&(&covariance * &slopes));
             [motion.columns[0][index] + offset + drift * lag, variance.max(0.0).sqrt()]
         };
         Some((1..all.len()).map(row).collect())

@@ -24,10 +24,9 @@ use crate::turning_points::Swings;
 pub struct MapFit {
     /// The parameters of the law.
     pub parameters: Vec<f64>,
-    /// The initial turning point: its coordinate without the offset, and its time.
-    pub start: [f64; 2],
-    /// Offset at the middle of the record, and drift per unit of time.
-    pub centre: [f64; 2],
+    /// For each record the initial turning point, as its coordinate without the offset and its time, then the offset at
+    /// the middle of the record and the drift per unit of time.
+    pub starts: Vec<[f64; 4]>,
     /// The sum of the squares of the residuals over their errors.
     pub chi_square: f64,
 }
@@ -184,15 +183,18 @@ impl Numbers {
     }
 }
 
-/// Fits a law of the list to turning points: the best fit, then others that the turning points do not tell from it. There is none for
-/// an equation of one's own and where no motion of the law is near.
-pub fn fit_maps(law: &Law, swings: &Swings) -> Vec<MapFit> {
+/// Fits a law of the list to the turning points of all records: the best fit, then others that the turning points do not tell from it. There
+/// is none for an equation of one's own and where no motion of the law is near.
+pub fn fit_maps(law: &Law, records: &[&Swings]) -> Vec<MapFit> {
     let Some((spring, loss)) = law.parts else { return vec![] };
-    let rows = backbone(swings, 12);
-    let Some(first) = guess(spring, loss, &rows, swings.centre[2]) else { return vec![] };
-    let mut fits: Vec<MapFit> = further_starts(spring, &first, swings)
+    let rows: Vec<BackbonePoint> = records.iter().flat_map(|swings| backbone(swings, 12)).collect();
+    let largest =
+        records.iter().max_by(|one, other| one.amplitudes()[0].total_cmp(&other.amplitudes()[0]));
+    let Some(largest) = largest else { return vec![] };
+    let Some(first) = guess(spring, loss, &rows, largest.centre[2]) else { return vec![] };
+    let mut fits: Vec<MapFit> = further_starts(spring, &first, largest)
         .iter()
-        .filter_map(|start| fit_map_from((spring, loss), swings, start))
+        .filter_map(|start| fit_map_from((spring, loss), records, start))
         .collect();
     fits.sort_by(|one, other| one.chi_square.total_cmp(&other.chi_square));
     let least = fits.first().map_or(0.0, |fit| fit.chi_square);
@@ -229,62 +231,64 @@ fn further_starts(spring: Spring, first: &[f64], swings: &Swings) -> Vec<Vec<f64
     starts
 }
 
+/// The residuals of the turning points of a record, in units of their errors, appended to others.
+fn map_residuals(
+    numbers: &Numbers,
+    swings: &Swings,
+    [mut x, mut time, level, drift]: [f64; 4],
+    residuals: &mut Vec<f64>,
+) {
+    let mut count = 0;
+    for point in &swings.points {
+        while count < point.half_swings {
+            let Some([next, duration]) = numbers.next(x) else {
+                // The law comes to rest: it stays there.
+                (x, time) = (0.0, time + swings.half_period);
+                count += 1;
+                continue;
+            };
+            (x, time) = (next, time + duration);
+            count += 1;
+        }
+        let centre = level + drift * (point.time - swings.middle);
+        residuals.push((x + centre - point.value) / point.value_error);
+        residuals.push((time - point.time) / point.time_error);
+    }
+}
+
 /// Fits a law from these parameters.
 fn fit_map_from(
     (spring, loss): (Spring, Loss),
-    swings: &Swings,
+    records: &[&Swings],
     parameters: &[f64],
 ) -> Option<MapFit> {
     const ITERATIONS: u64 = 30;
-    let first = swings.points[0];
-    let [level, drift, _] = swings.centre;
     let own = parameters.len();
     let mut start = parameters.to_vec();
-    let amplitude = swings.amplitudes()[0];
-    let sign = if first.is_maximum { 1.0 } else { -1.0 };
-    let coordinate = first.value - level - drift * (first.time - swings.middle);
-    let coordinate = if coordinate * sign > 0.0 { coordinate } else { sign * amplitude };
-    start.extend([coordinate, first.time, level, drift]);
+    let scale = |value: &f64| if value.abs() > 1e-5 { value.abs() } else { 1e-2 };
+    let mut scales: Vec<f64> = parameters.iter().map(scale).collect();
+    for swings in records {
+        let first = swings.points[0];
+        let [level, drift, _] = swings.centre;
+        let amplitude = swings.amplitudes()[0];
+        let sign = if first.is_maximum { 1.0 } else { -1.0 };
+        let coordinate = first.value - level - drift * (first.time - swings.middle);
+        let coordinate = if coordinate * sign > 0.0 { coordinate } else { sign * amplitude };
+        start.extend([coordinate, first.time, level, drift]);
+        scales.extend([amplitude, swings.half_period, amplitude, amplitude / swings.half_period]);
+    }
+    let local = |values: &[f64], record: usize| -> Option<[f64; 4]> {
+        values.get(own + 4 * record..)?.first_chunk::<4>().copied()
+    };
     let residuals = |values: &[f64]| -> Option<DVector<f64>> {
         let numbers = Numbers::new(spring, loss, &values[..own]);
-        let [mut x, mut time, level, drift] = *values[own..].first_chunk::<4>()?;
-        let mut residuals = Vec::with_capacity(2 * swings.points.len());
-        let mut count = 0;
-        for point in &swings.points {
-            while count < point.half_swings {
-                let Some([next, duration]) = numbers.next(x) else {
-                    // The law comes to rest: it stays where it is.
-                    (x, time) = (0.0, time + swings.half_period);
-                    count += 1;
-                    continue;
-                };
-                (x, time) = (next, time + duration);
-                count += 1;
-            }
-            let centre = level + drift * (point.time - swings.middle);
-            residuals.push((x + centre - point.value) / point.value_error);
-            residuals.push((time - point.time) / point.time_error);
+        let mut residuals = vec![];
+        for (record, swings) in records.iter().enumerate() {
+            map_residuals(&numbers, swings, local(values, record)?, &mut residuals);
         }
         let residuals = DVector::from_vec(residuals);
         residuals.iter().all(|value| value.is_finite()).then_some(residuals)
     };
-    let scales: Vec<f64> = start
-        .iter()
-        .enumerate()
-        .map(|(index, value)| {
-            let small = match index.checked_sub(own) {
-                Some(0 | 2) => amplitude,
-                Some(1) => swings.half_period,
-                Some(_) => amplitude / swings.half_period,
-                None => 1e-2,
-            };
-            if value.abs() > 1e-3 * small {
-                value.abs().min(small.max(value.abs() * 1e-3))
-            } else {
-                small
-            }
-        })
-        .collect();
     let linearised = |values: &[f64]| -> Option<Linearised> {
         const STEP: f64 = 1e-6;
         let at = residuals(values)?;
@@ -299,11 +303,10 @@ fn fit_map_from(
     };
     let minimum = minimise(&start, ITERATIONS, linearised)?;
     let chi_square = minimum.square();
-    let [x, time, level, drift] = *minimum.parameters[own..].first_chunk::<4>()?;
+    let starts = (0..records.len()).map(|record| local(&minimum.parameters, record));
     Some(MapFit {
         parameters: minimum.parameters[..own].to_vec(),
-        start: [x, time],
-        centre: [level, drift],
+        starts: starts.collect::<Option<_>>()?,
         chi_square,
     })
 }

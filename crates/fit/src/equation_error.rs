@@ -26,9 +26,7 @@ fn local_state(samples: &Samples, swings: &Swings, time: f64) -> Option<State> {
     let to = samples.times.partition_point(|own| *own <= time + width);
     let (times, values) = (&samples.times[from..to], &samples.values[from..to]);
     let fit = LocalPolynomial::fit(times, values, time, width, DEGREE)?;
-    let next = swings.points.partition_point(|point| point.time < time);
-    let amplitude = swings.amplitudes()[next.min(swings.points.len() - 1)];
-    let centre = swings.centre_at(time, 0.0 * amplitude);
+    let centre = swings.centre_at(time, 0.0);
     Some([fit.derivative(time, 0).0 - centre, fit.derivative(time, 1).0, fit.derivative(time, 2).0])
 }
 
@@ -47,21 +45,22 @@ pub fn initial_state(samples: &Samples, swings: &Swings) -> [f64; 4] {
     [x, v, level, drift]
 }
 
-/// A start for an equation: parameters, initial coordinate and velocity, offset and drift. Returns `None` if the
-/// record is not one of displacement, or no parameters fit.
-pub fn start(law: &Law, samples: &Samples, swings: &Swings) -> Option<Vec<f64>> {
+/// The parameters of an equation that fit the accelerations of records of displacement best. Returns `None` if there are no such
+/// records, or no parameters fit.
+pub fn parameters(law: &Law, records: &[(&Samples, &Swings)]) -> Option<Vec<f64>> {
     const PLACES: usize = 400;
     const ITERATIONS: u64 = 200;
-    if samples.quantity != Quantity::Displacement {
+    let is_displacement =
+        |(samples, _): &&(&Samples, &Swings)| samples.quantity == Quantity::Displacement;
+    let states = records.iter().filter(is_displacement).flat_map(|(samples, swings)| {
+        let stride = (samples.times.len() / PLACES).max(1);
+        let times = samples.times.iter().step_by(stride);
+        times.filter_map(|time| Some((*time, local_state(samples, swings, *time)?)))
+    });
+    let states: Vec<(f64, State)> = states.collect();
+    if states.is_empty() {
         return None;
     }
-    let stride = (samples.times.len() / PLACES).max(1);
-    let states: Vec<(f64, State)> = samples
-        .times
-        .iter()
-        .step_by(stride)
-        .filter_map(|time| Some((*time, local_state(samples, swings, *time)?)))
-        .collect();
     let (coordinate, time) = (law.coordinate, Symbol::new("t"));
     let velocity = coordinate.derivative();
     let mut values = vec![law.acceleration.clone()];
@@ -92,5 +91,5 @@ pub fn start(law: &Law, samples: &Samples, swings: &Swings) -> Option<Vec<f64>> 
         minimise(&first, ITERATIONS, residuals)
     });
     let best = found.min_by(|one, other| one.square().total_cmp(&other.square()))?;
-    Some([best.parameters.as_slice(), &initial_state(samples, swings)].concat())
+    Some(best.parameters)
 }

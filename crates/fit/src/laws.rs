@@ -235,6 +235,11 @@ impl Law {
         self.parameters.iter().position(|own| own.name() == name)
     }
 
+    /// Whether the equation contains the time.
+    pub fn is_driven(&self) -> bool {
+        self.acceleration.contains(Symbol::new("t"))
+    }
+
     /// All laws of the list: every spring with every loss. The pendulum is among them for angles alone.
     pub fn list(is_angle: bool) -> Vec<Self> {
         let springs =

@@ -28,7 +28,7 @@
 #![warn(missing_docs)]
 
 #[doc(no_inline)]
-pub use lindstedt_dynamics::{expr, numeric, symbol, system};
+pub use lindstedt_dynamics::{expr, numeric, parallel, symbol, system};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::oscillator;
 
@@ -37,6 +37,8 @@ pub mod laws;
 mod powers;
 
 mod polynomial;
+
+mod spikes;
 
 pub mod turning_points;
 
@@ -59,6 +61,8 @@ pub mod record;
 pub mod quality;
 
 mod equation_error;
+
+pub mod fitted_record;
 
 pub mod answer;
 

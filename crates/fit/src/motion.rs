@@ -107,7 +107,7 @@ impl MotionSolver {
             names: law.parameters.clone(),
             sides: sides.collect::<Result<_, ExprError>>().map_err(jump)?,
             powers,
-            is_driven: law.acceleration.contains(time),
+            is_driven: law.is_driven(),
         })
     }
 

@@ -2,7 +2,8 @@
 
 use crate::polynomial::median;
 use crate::record::Record;
-use crate::turning_points::{Swings, SwingsError, local_noise};
+use crate::spikes::{local_noise, spikes};
+use crate::turning_points::{Swings, SwingsError};
 
 /// What a record is like, before any law.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Quality {
     pub gaps: Vec<(usize, [f64; 2])>,
     /// The samples that lie on a flat top or bottom: their indices.
     pub saturated: Vec<usize>,
+    /// Single samples far from the curve through their neighbours: their indices.
+    pub spikes: Vec<usize>,
     /// The first sample of the free decay.
     pub start: usize,
 }
@@ -34,18 +37,37 @@ pub fn quality(record: &Record) -> Result<Quality, SwingsError> {
     let is_gap = |(_, own): &(usize, &f64)| **own > GAP * step;
     let gaps = steps.iter().enumerate().filter(is_gap);
     let gaps = gaps.map(|(index, _)| (index, [times[index], times[index + 1]])).collect();
-    let quantum = quantum(values);
-    let swings = Swings::find(times, values)?;
-    let saturated = saturated(record, &swings, quantum.unwrap_or(0.0));
-    let start = start(record, &swings, noise);
+    let spikes = spikes(times, values, quantum(values).unwrap_or(0.0));
+    // A spike above a flat top would hide it, and one between the steps of a record its quantum.
+    let kept: Vec<usize> =
+        (0..times.len()).filter(|index| spikes.binary_search(index).is_err()).collect();
+    let clean = part(record, &kept);
+    let quantum = quantum(&clean.values);
+    let swings = Swings::find(&clean.times, &clean.values)?;
+    let saturated = saturated(&clean, &swings, quantum.unwrap_or(0.0));
+    let saturated = saturated.into_iter().map(|place| kept[place]).collect();
+    let start = match start(&clean, &swings, noise) {
+        0 => 0,
+        place => kept[place],
+    };
     Ok(Quality {
         step,
         noise,
         quantum: quantum.filter(|own| *own > 0.02 * noise),
         gaps,
         saturated,
+        spikes,
         start,
     })
+}
+
+/// These samples of a record.
+pub(crate) fn part(record: &Record, indices: &[usize]) -> Record {
+    Record {
+        times: indices.iter().map(|index| record.times[*index]).collect(),
+        values: indices.iter().map(|index| record.values[*index]).collect(),
+        ..*record
+    }
 }
 
 /// The smallest distance between different values, if all values are whole multiples of it from the first one.
@@ -113,16 +135,19 @@ fn start(record: &Record, swings: &Swings, noise: f64) -> usize {
 }
 
 impl Quality {
-    /// The record without what is no free decay and without saturated samples.
+    /// The record without what is no free decay, without saturated samples and without spikes.
     pub fn cleaned(&self, record: &Record) -> Record {
-        let is_kept =
-            |index: &usize| *index >= self.start && self.saturated.binary_search(index).is_err();
-        let kept: Vec<usize> = (0..record.times.len()).filter(is_kept).collect();
-        Record {
-            times: kept.iter().map(|index| record.times[*index]).collect(),
-            values: kept.iter().map(|index| record.values[*index]).collect(),
-            ..*record
-        }
+        part(record, &self.indices(record.times.len(), false))
+    }
+
+    /// The indices of the samples of the free decay that are not saturated, with or without spikes.
+    pub(crate) fn indices(&self, count: usize, with_spikes: bool) -> Vec<usize> {
+        let is_kept = |index: &usize| {
+            *index >= self.start
+                && self.saturated.binary_search(index).is_err()
+                && (with_spikes || self.spikes.binary_search(index).is_err())
+        };
+        (0..count).filter(is_kept).collect()
     }
 }
 

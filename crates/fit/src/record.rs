@@ -21,6 +21,13 @@ pub struct Record {
     pub is_angle: bool,
 }
 
+/// A record serves where several may be given.
+impl AsRef<[Self]> for Record {
+    fn as_ref(&self) -> &[Self] {
+        std::slice::from_ref(self)
+    }
+}
+
 /// Which columns to read, and what they hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {

@@ -4,6 +4,8 @@
 //! y_i = x(t_i; p, x_0, v_0) + offset + drift (t_i - t_m)        x: the integrated equation with its derivatives
 //! ```
 //!
+//! Several records share the parameters; each has its own start, offset and drift, and its residuals count by its noise.
+//!
 //! Where the motion of the start is out of step with the record, the fit grows: an eighth of the record, a quarter, a half, all of it.
 
 use nalgebra::{DMatrix, DVector};
@@ -27,6 +29,8 @@ pub struct Samples {
     pub middle: f64,
     /// Offset at the middle and drift of the observed values, as the swings show them.
     pub centre: [f64; 2],
+    /// The factor of the residuals: the noise of the first record over that of this one.
+    pub weight: f64,
 }
 
 /// A law whose parameters fit a record best.
@@ -34,9 +38,9 @@ pub struct Samples {
 pub struct SampleFit {
     /// The law.
     pub law: Law,
-    /// Its parameters, then the initial coordinate and velocity, the offset at the middle and the drift.
+    /// Its parameters, then for each record the initial coordinate and velocity, the offset at the middle and the drift.
     pub values: Vec<f64>,
-    /// Observed minus fitted values.
+    /// Observed minus fitted values, times the weight of the record.
     pub residuals: DVector<f64>,
     /// The derivatives of the fitted values by `values`, with the sign of the residuals.
     pub jacobian: DMatrix<f64>,
@@ -51,12 +55,12 @@ impl SampleFit {
     }
 }
 
-/// Fits a law from a start: parameters, initial coordinate and velocity at the first sample, offset, drift.
-/// Returns `None` if the law has no motion there.
+/// Fits a law to one record or several from a start: parameters, then for each record the initial coordinate and velocity at the first
+/// sample, offset, drift. Returns `None` if the law has no motion there.
 pub fn fit_samples(
     law: &Law,
     solver: &MotionSolver,
-    samples: &Samples,
+    records: &[&Samples],
     start: &[f64],
 ) -> Option<SampleFit> {
     const ITERATIONS: u64 = 12;
@@ -67,34 +71,34 @@ pub fn fit_samples(
     const RESTARTS: usize = 3;
     /// The square of the distance from the minimum in standard errors: a tenth of one.
     const NEAR: f64 = 0.01;
-    let total = samples.values.len();
-    let evaluate = |values: &[f64], count: usize| linearised(solver, samples, values, count);
-    let mean = samples.values.iter().sum::<f64>() / total as f64;
-    let variance: f64 = samples.values.iter().map(|value| (value - mean).powi(2)).sum();
-    let first = evaluate(start, total);
+    let evaluate = |values: &[f64], counts: &[usize]| linearised(solver, records, values, counts);
+    let totals: Vec<usize> = records.iter().map(|samples| samples.values.len()).collect();
+    let variance: f64 = records.iter().map(|samples| samples.square_about_mean()).sum();
+    let first = evaluate(start, &totals);
     let in_step =
         first.is_some_and(|(residuals, _)| residuals.norm_squared() < OUT_OF_STEP * variance);
     let mut values = start.to_vec();
     if !in_step {
         for share in [16, 8, 4, 2] {
-            let count = total / share;
-            if count < FEWEST {
+            if totals.iter().all(|total| total / share < FEWEST) {
                 continue;
             }
+            let count = |total: &usize| (total / share).max(FEWEST).min(*total);
+            let counts: Vec<usize> = totals.iter().map(count).collect();
             if let Some(found) =
-                minimise(&values, ITERATIONS_OF_PARTS, |values| evaluate(values, count))
+                minimise(&values, ITERATIONS_OF_PARTS, |values| evaluate(values, &counts))
             {
                 values = found.parameters;
             }
         }
     }
-    let mut minimum = minimise(&values, ITERATIONS, |values| evaluate(values, total))?;
+    let mut minimum = minimise(&values, ITERATIONS, |values| evaluate(values, &totals))?;
     // In a curved valley the method stops early: it begins anew from there.
     for _ in 0..RESTARTS {
         if minimum.distance() < NEAR {
             break;
         }
-        let next = minimise(&minimum.parameters, ITERATIONS, |values| evaluate(values, total))?;
+        let next = minimise(&minimum.parameters, ITERATIONS, |values| evaluate(values, &totals))?;
         let gain = minimum.square() - next.square();
         let is_better = gain > 1e-9 * next.square();
         minimum = next;
@@ -118,6 +122,15 @@ pub fn fit_samples(
     Some(fit)
 }
 
+impl Samples {
+    /// The sum of the squares of the weighted values about their mean.
+    fn square_about_mean(&self) -> f64 {
+        let mean = self.values.iter().sum::<f64>() / self.values.len() as f64;
+        let square: f64 = self.values.iter().map(|value| (value - mean).powi(2)).sum();
+        square * self.weight * self.weight
+    }
+}
+
 /// The motion of a law with these parameters, start, offset and drift at any increasing times.
 pub fn motion(
     solver: &MotionSolver,
@@ -125,31 +138,55 @@ pub fn motion(
     values: &[f64],
     times: &[f64],
 ) -> Option<SampledMotion> {
-    let own = values.len().checked_sub(4)?;
+    let own = values.len().checked_sub(LOCAL)?;
     let start = [values[own], values[own + 1]];
     solver.sample(&values[..own], start, times, samples.half_period, samples.quantity)
 }
 
-/// The residuals of the first samples and their derivatives.
+/// The number of values that belong to one record alone.
+pub(crate) const LOCAL: usize = 4;
+
+/// The values of one record among those of all: the parameters, then its own.
+pub(crate) fn values_of(values: &[f64], records: usize, record: usize) -> Vec<f64> {
+    let shared = values.len().saturating_sub(LOCAL * records);
+    let own = (values.iter().skip(shared + LOCAL * record)).take(LOCAL);
+    values.iter().take(shared).chain(own).copied().collect()
+}
+
+/// The residuals of the first samples of each record and their derivatives.
 fn linearised(
     solver: &MotionSolver,
-    samples: &Samples,
+    records: &[&Samples],
     values: &[f64],
-    count: usize,
+    counts: &[usize],
 ) -> Option<Linearised> {
-    let times = &samples.times[..count];
-    let columns = motion(solver, samples, values, times)?.columns;
-    let [offset, drift] = *values.last_chunk::<2>()?;
-    let lag = |row: usize| times[row] - samples.middle;
-    let residuals = DVector::from_fn(count, |row, _| {
-        samples.values[row] - columns[0][row] - offset - drift * lag(row)
-    });
-    let mut jacobian = DMatrix::zeros(count, values.len());
-    let last = values.len() - 2;
-    for (index, column) in columns[1..].iter().enumerate() {
-        jacobian.column_mut(index).iter_mut().zip(column).for_each(|(own, slope)| *own = -slope);
+    let total = counts.iter().sum();
+    let shared = values.len() - LOCAL * records.len();
+    let mut residuals = DVector::zeros(total);
+    let mut jacobian = DMatrix::zeros(total, values.len());
+    let mut from = 0;
+    for (record, (samples, count)) in records.iter().zip(counts).enumerate() {
+        let times = &samples.times[..*count];
+        let own = values_of(values, records.len(), record);
+        let columns = motion(solver, samples, &own, times)?.columns;
+        let [offset, drift] = *own.last_chunk::<2>()?;
+        let (weight, middle) = (samples.weight, samples.middle);
+        for (row, time) in times.iter().enumerate() {
+            let fitted = columns[0][row] + offset + drift * (time - middle);
+            residuals[from + row] = weight * (samples.values[row] - fitted);
+        }
+        let local = shared + LOCAL * record;
+        let place = |index: usize| if index < shared { index } else { local + index - shared };
+        for (index, column) in columns[1..].iter().enumerate() {
+            let mut rows = jacobian.column_mut(place(index));
+            let rows = rows.iter_mut().skip(from);
+            rows.zip(column).for_each(|(own, slope)| *own = -weight * slope);
+        }
+        for (row, time) in times.iter().enumerate() {
+            jacobian[(from + row, local + 2)] = -weight;
+            jacobian[(from + row, local + 3)] = -weight * (time - middle);
+        }
+        from += count;
     }
-    jacobian.column_mut(last).fill(-1.0);
-    jacobian.column_mut(last + 1).iter_mut().enumerate().for_each(|(row, own)| *own = -lag(row));
     Some((residuals, jacobian))
 }

@@ -4,7 +4,7 @@
 //! are compared by their exact frequencies `omega(A) = pi/(T/2)`, losses by `zeta(A) = W/(pi A dE/dA)` with the best spring.
 //!
 //! ```text
-//! BIC = N ln(RSS/N) + k ln N                     errors as given, or equal and found from the residuals
+//! BIC = N ln(RSS/N) + k ln N                     relative errors, found from the residuals
 //! ```
 
 use nalgebra::{DMatrix, DVector};
@@ -123,10 +123,13 @@ pub fn fit_table(rows: &[TableRow], is_angle: bool) -> Result<TableAnswer, Table
         return Err(TableError::Narrow { from, to });
     }
     let springs = Spring::ALL.into_iter().filter(|spring| is_angle || *spring != Spring::Pendulum);
-    let springs = ordered(springs.filter_map(|spring| fit_parts(rows, spring, Loss::None)));
+    let springs =
+        ordered(springs.filter_map(|spring| fit_parts(rows, (spring, Loss::None), false)));
     let best = springs.first().and_then(|fit| fit.law.parts).ok_or(TableError::NoFit)?.0;
     let laws = match rows.iter().any(|row| row.damping.is_some()) {
-        true => ordered(Loss::ALL.into_iter().filter_map(|loss| fit_parts(rows, best, loss))),
+        true => {
+            ordered(Loss::ALL.into_iter().filter_map(|loss| fit_parts(rows, (best, loss), true)))
+        }
         false => vec![],
     };
     Ok(TableAnswer { springs, laws })
@@ -139,22 +142,32 @@ fn ordered(fits: impl Iterator<Item = TableFit>) -> Vec<TableFit> {
 }
 
 /// Fits a spring to the frequencies, or a loss with its spring to the frequencies and dampings.
-fn fit_parts(rows: &[TableRow], spring: Spring, loss: Loss) -> Option<TableFit> {
+fn fit_parts(
+    rows: &[TableRow],
+    (spring, loss): (Spring, Loss),
+    with_damping: bool,
+) -> Option<TableFit> {
+    /// The weight of the dampings beside that of the frequencies, so that they leave the spring as it is.
+    const SHARE: f64 = 0.01;
+    /// The share of the mean damping below which a damping has no relative error of its own.
+    const LEAST: f64 = 0.01;
     let law = Law::from_parts(spring, loss).ok()?;
-    let only_frequencies = loss == Loss::None;
+    let of_spring = Law::from_parts(spring, Loss::None).ok()?.parameters.len();
     let first = first_guess(rows, spring, loss)?;
-    // Relative deviations of the frequency; those of the damping count a hundredth, so that they leave the spring as it is.
-    let share = 0.01;
+    let typical = typical(rows);
+    // Relative deviations of the frequencies, then those of the dampings.
     let residuals = |values: &[f64]| -> Option<DVector<f64>> {
         let numbers = Numbers::new(spring, loss, values);
-        let mut residuals = vec![];
+        let (mut residuals, mut dampings) = (vec![], vec![]);
         for row in rows {
             let [frequency, damping] = numbers.frequency_and_damping(row.amplitude)?;
             residuals.push(frequency / row.frequency - 1.0);
-            if let Some(measured) = row.damping {
-                residuals.push(share * (damping - measured) / typical(rows));
-            }
+            let measured = row.damping.filter(|_| with_damping);
+            dampings.extend(measured.map(|measured| {
+                SHARE * (damping - measured) / measured.abs().max(LEAST * typical)
+            }));
         }
+        residuals.extend(dampings);
         Some(DVector::from_vec(residuals))
     };
     let linearised = |values: &[f64]| {
@@ -172,23 +185,23 @@ fn fit_parts(rows: &[TableRow], spring: Spring, loss: Loss) -> Option<TableFit> 
         Some((at, jacobian))
     };
     let Minimum { parameters, residuals, jacobian, .. } = minimise(&first, 100, linearised)?;
-    let step = if rows.iter().all(|row| row.damping.is_some()) { 2 } else { 1 };
-    let frequencies: Vec<f64> = residuals.iter().copied().step_by(step).collect();
-    let dampings: Vec<f64> = residuals.iter().copied().skip(1).step_by(2).collect();
-    let counted = if only_frequencies || step == 1 { &frequencies } else { &dampings };
+    let (frequencies, dampings) = residuals.as_slice().split_at(rows.len());
+    let square = |own: &[f64]| own.iter().map(|own| own * own).sum::<f64>();
+    let (counted, width) = match with_damping {
+        true => (dampings, parameters.len() - of_spring),
+        false => (frequencies, of_spring),
+    };
     let number = counted.len() as f64;
-    let square: f64 = counted.iter().map(|own| own * own).sum();
-    let square = square.max(number * f64::EPSILON * f64::EPSILON);
-    let width = parameters.len() as f64;
+    let least = number * f64::EPSILON * f64::EPSILON;
+    let bic = number * (square(counted).max(least) / number).ln() + width as f64 * number.ln();
     // Frequencies and dampings have errors of their own: the covariance is that of the scatter of each.
     let inverse = Covariance::new(&jacobian).matrix;
-    let scatter = |own: &[f64]| {
-        let sum: f64 = own.iter().map(|own| own * own).sum();
-        sum / (own.len() as f64 - width / step as f64).max(1.0)
-    };
-    let weights = [scatter(&frequencies), if step == 2 { scatter(&dampings) } else { 0.0 }];
+    let scatter =
+        |own: &[f64], width: usize| square(own) / (own.len() as f64 - width as f64).max(1.0);
+    let weights =
+        [scatter(frequencies, of_spring), scatter(dampings, parameters.len() - of_spring)];
     let scaled = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |row, column| {
-        jacobian[(row, column)] * weights[row % step].sqrt()
+        jacobian[(row, column)] * weights[usize::from(row >= rows.len())].sqrt()
     });
     let covariance = &inverse * (scaled.transpose() * &scaled) * &inverse;
     let estimates =
@@ -197,12 +210,11 @@ fn fit_parts(rows: &[TableRow], spring: Spring, loss: Loss) -> Option<TableFit> 
             value: *value,
             error: covariance[(index, index)].max(0.0).sqrt(),
         });
-    let worst = frequencies.iter().fold(0.0_f64, |worst, own| worst.max(own.abs()));
-    let bic = number * (square / number).ln() + width * number.ln();
-    Some(TableFit { estimates: estimates.collect(), worst_frequency: worst, bic, law })
+    let worst_frequency = frequencies.iter().fold(0.0_f64, |worst, own| worst.max(own.abs()));
+    Some(TableFit { estimates: estimates.collect(), worst_frequency, bic, law })
 }
 
-/// The mean damping ratio, by which deviations are divided.
+/// The mean damping ratio.
 fn typical(rows: &[TableRow]) -> f64 {
     let dampings: Vec<f64> = rows.iter().filter_map(|row| row.damping).map(f64::abs).collect();
     (dampings.iter().sum::<f64>() / dampings.len().max(1) as f64).max(f64::MIN_POSITIVE)

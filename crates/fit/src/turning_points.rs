@@ -10,6 +10,8 @@ use thiserror::Error;
 
 use crate::polynomial::{LocalPolynomial, median, regression};
 
+pub use crate::spikes::local_noise;
+
 /// A turning point of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurningPoint {
@@ -232,26 +234,6 @@ impl Swings {
         }
         centre
     }
-}
-
-/// The standard deviation of the noise: from the distance of each sample from the cubic through its four neighbours.
-pub fn local_noise(times: &[f64], values: &[f64]) -> f64 {
-    let distances = times.windows(5).zip(values.windows(5)).filter_map(|(time, value)| {
-        let (mut sum, mut square) = (0.0, 1.0);
-        for i in [0, 1, 3, 4] {
-            let mut weight = 1.0;
-            for j in [0, 1, 3, 4] {
-                if i != j {
-                    weight *= (time[2] - time[j]) / (time[i] - time[j]);
-                }
-            }
-            sum += weight * value[i];
-            square += weight * weight;
-        }
-        let distance = (value[2] - sum).abs() / square.sqrt();
-        distance.is_finite().then_some(distance)
-    });
-    median(distances.collect()) / 0.6745
 }
 
 /// The sample with the largest deviation of each excursion, and whether it lies above the centre.

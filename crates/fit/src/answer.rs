@@ -23,7 +23,7 @@ use crate::parallel::par_map;
 use crate::polynomial::median;
 use crate::quality::Quality;
 use crate::record::Record;
-use crate::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, motion, values_of};
+use crate::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, misfit, motion, values_of};
 use crate::turning_points::{Swings, SwingsError};
 use crate::whiteness::{Whiteness, robust_covariance};
 
@@ -218,7 +218,7 @@ pub fn fit(
     records.iter().try_for_each(FittedRecord::refuse_growth)?;
     let swings: Vec<&Swings> = records.iter().map(|own| &own.swings).collect();
     let laws = Law::list(all.iter().all(|record| record.is_angle));
-    let found = par_map(&laws, |law| fit_maps(law, &swings));
+    let found = fit_maps(&laws, &swings);
     let mut maps: Vec<(Law, Vec<MapFit>)> = laws.into_iter().zip(found).collect();
     maps.retain(|(_, found)| !found.is_empty());
     let number = swings.iter().map(|own| 2.0 * own.points.len() as f64).sum::<f64>();
@@ -254,10 +254,9 @@ pub fn fit(
         let next: Vec<&(Law, Vec<MapFit>)> = maps.iter().filter(is_next).collect();
         let own = par_map(&next, |(law, maps)| -> Result<Option<SampleFit>, FitError> {
             let solver = MotionSolver::new(law)?;
-            let own = maps.iter().filter_map(|map| {
-                let start = start_of(&solver, &records, map)?;
-                fit_samples(law, &solver, &samples, &start)
-            });
+            let starts = maps.iter().filter_map(|map| start_of(&solver, &records, map));
+            let starts = nearest_starts(&solver, &samples, starts.collect());
+            let own = starts.iter().filter_map(|start| fit_samples(law, &solver, &samples, start));
             Ok(own.min_by(|one, other| one.square().total_cmp(&other.square())))
         });
         for fit in own {
@@ -289,7 +288,7 @@ pub fn fit_laws(
     let samples: Vec<&Samples> = records.iter().map(|own| &own.samples).collect();
     let own = par_map(laws, |(law, start)| -> Result<Option<SampleFit>, FitError> {
         let solver = MotionSolver::new(law)?;
-        let map = fit_maps(law, &swings).into_iter().next();
+        let map = fit_maps(std::slice::from_ref(law), &swings).into_iter().flatten().next();
         let starts = match (start, map) {
             (None, Some(map)) => start_of(&solver, &records, &map).into_iter().collect(),
             (Some(parameters), _) => starts_about_centres(parameters, &records),
@@ -305,6 +304,24 @@ pub fn fit_laws(
     });
     let fits = own.into_iter().filter_map(Result::transpose).collect::<Result<_, FitError>>()?;
     finish(fits, records, options)
+}
+
+/// The starts whose motions are nearest to the samples: two of them, since one may lead to a minimum of its own.
+fn nearest_starts(
+    solver: &MotionSolver,
+    samples: &[&Samples],
+    starts: Vec<Vec<f64>>,
+) -> Vec<Vec<f64>> {
+    const MOST: usize = 2;
+    if starts.len() <= MOST {
+        return starts;
+    }
+    let mut near: Vec<(f64, Vec<f64>)> = starts
+        .into_iter()
+        .filter_map(|start| Some((misfit(solver, samples, &start)?, start)))
+        .collect();
+    near.sort_by(|one, other| one.0.total_cmp(&other.0));
+    near.into_iter().take(MOST).map(|(_, start)| start).collect()
 }
 
 fn prepare(

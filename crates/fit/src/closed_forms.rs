@@ -9,13 +9,16 @@
 //! elliptic action. The integrals are computed in `x = m + r sin(phi)`, where they are smooth, by a Gauss
 //! rule. The map is exact for dry friction, and to second order in any other loss.
 
+use std::sync::LazyLock;
+
 use nalgebra::{DMatrix, DVector};
 use spec_math::cephes64::gamma;
 
 use crate::backbone::{BackbonePoint, backbone};
 use crate::laws::{Law, Loss, Spring};
-use crate::least_squares::{Linearised, minimise};
+use crate::least_squares::{Covariance, Linearised, minimise};
 use crate::numeric::ode::quadrature::nodes_and_weights;
+use crate::parallel::par_map;
 use crate::polynomial::regression;
 use crate::turning_points::Swings;
 
@@ -29,6 +32,8 @@ pub struct MapFit {
     pub starts: Vec<[f64; 4]>,
     /// The sum of the squares of the residuals over their errors.
     pub chi_square: f64,
+    /// The standard error of the second parameter.
+    second_error: f64,
 }
 
 /// The numbers of a law of the list in the roles of its equation.
@@ -118,10 +123,8 @@ impl Numbers {
     /// it. In between the energy is linear in the coordinate, as it is with dry friction.
     fn half_swing(&self, [low, high]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
         let (middle, radius) = (0.5 * (low[0] + high[0]), 0.5 * (high[0] - low[0]));
-        let quarter = std::f64::consts::FRAC_PI_2;
         let (mut time, mut work) = (0.0, 0.0);
-        for (angle, weight) in nodes_and_weights(-quarter, quarter) {
-            let (sine, cosine) = angle.sin_cos();
+        for [sine, cosine, weight] in NODES.iter() {
             let energy = 0.5 * (low[1] + high[1] + sine * (high[1] - low[1]));
             let speed = (2.0 * (energy - self.potential(middle + radius * sine))).max(0.0).sqrt();
             time += weight * radius * cosine / speed;
@@ -131,24 +134,40 @@ impl Numbers {
         both.iter().all(|value| value.is_finite()).then_some(both)
     }
 
-    /// The turning point after this one and the time between both; `None` if the motion ends.
-    fn next(&self, x: f64) -> Option<[f64; 2]> {
-        const ROUNDS: usize = 30;
-        const CHANGE: f64 = 1e-12;
+    /// The turning point after this one, the time between both and the work in it; `None` if the motion ends. The guess is the work of the
+    /// half swing before.
+    fn next(&self, x: f64, guess: f64) -> Option<[f64; 3]> {
+        const ROUNDS: usize = 15;
+        const CHANGE: f64 = 1e-11;
         let energy = self.potential(x);
-        let (mut work, mut time) = (0.0, 0.0);
-        for _ in 0..ROUNDS {
+        let round = |work: f64| -> Option<[f64; 2]> {
             let other = self.turning_point(energy - work, -x.signum())?;
             let [here, there] = [[x, energy], [other, energy - work]];
-            let before = work;
-            [time, work] = self.half_swing(if x > 0.0 { [there, here] } else { [here, there] })?;
+            self.half_swing(if x > 0.0 { [there, here] } else { [here, there] })
+        };
+        let (mut before, mut work, mut time) = (guess, 0.0, 0.0);
+        for _ in 0..ROUNDS {
+            [time, work] = round(before)?;
             if (work - before).abs() <= CHANGE * energy {
                 break;
             }
+            // By Aitken's formula: the error falls by the same factor in each round.
+            let [_, next] = round(work)?;
+            let bend = next - 2.0 * work + before;
+            let step = (work - before).powi(2) / bend;
+            before = if step.abs() <= (work - before).abs() { before - step } else { next };
         }
-        Some([self.turning_point(energy - work, -x.signum())?, time])
+        Some([self.turning_point(energy - work, -x.signum())?, time, work])
     }
 }
+
+/// Sine and cosine of the nodes between -pi/2 and pi/2, with their weights.
+static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    nodes_and_weights(-quarter, quarter)
+        .map(|(angle, weight)| [angle.sin(), angle.cos(), weight])
+        .collect()
+});
 
 impl Numbers {
     /// The angular frequency and the damping ratio of a motion whose turning points are twice the amplitude apart.
@@ -183,19 +202,34 @@ impl Numbers {
     }
 }
 
-/// Fits a law of the list to the turning points of all records: the best fit, then others that the turning points do not tell from it. There
-/// is none for an equation of one's own and where no motion of the law is near.
-pub fn fit_maps(law: &Law, records: &[&Swings]) -> Vec<MapFit> {
-    let Some((spring, loss)) = law.parts else { return vec![] };
+/// Fits laws of the list to the turning points of all records: for each the best fit, then others that the turning points do not tell from
+/// it. There is none for an equation of one's own and where no motion of the law is near.
+///
+/// The search for the numbers of a spring is made once, with the loss of two parameters, which is near any other one.
+pub fn fit_maps(laws: &[Law], records: &[&Swings]) -> Vec<Vec<MapFit>> {
     let rows: Vec<BackbonePoint> = records.iter().flat_map(|swings| backbone(swings, 12)).collect();
     let largest =
         records.iter().max_by(|one, other| one.amplitudes()[0].total_cmp(&other.amplitudes()[0]));
-    let Some(largest) = largest else { return vec![] };
-    let Some(first) = guess(spring, loss, &rows, largest.centre[2]) else { return vec![] };
-    let mut fits: Vec<MapFit> = further_starts(spring, &first, largest)
-        .iter()
-        .filter_map(|start| fit_map_from((spring, loss), records, start))
-        .collect();
+    let Some(largest) = largest else { return vec![vec![]; laws.len()] };
+    let mut springs: Vec<Spring> =
+        laws.iter().filter_map(|law| law.parts).map(|parts| parts.0).collect();
+    springs.sort_unstable();
+    springs.dedup();
+    let found = par_map(&springs, |spring| spring_starts(*spring, &rows, records, largest));
+    par_map(laws, |law| {
+        let Some((spring, loss)) = law.parts else { return vec![] };
+        let Some(first) = guess(spring, loss, &rows, largest.centre[2]) else { return vec![] };
+        let own = springs.iter().zip(&found).filter(|(own, _)| **own == spring);
+        let fits = own.flat_map(|(_, starts)| starts).filter_map(|(numbers, held)| {
+            let start = [numbers, &first[numbers.len()..]].concat();
+            fit_map_from((spring, loss), records, &start, *held)
+        });
+        distinct(fits.collect())
+    })
+}
+
+/// The fits whose chi-square is near the least, without those that are alike, the best first.
+fn distinct(mut fits: Vec<MapFit>) -> Vec<MapFit> {
     fits.sort_by(|one, other| one.chi_square.total_cmp(&other.chi_square));
     let least = fits.first().map_or(0.0, |fit| fit.chi_square);
     fits.retain(|fit| fit.chi_square <= 1.5 * least + 10.0);
@@ -204,6 +238,27 @@ pub fn fit_maps(law: &Law, records: &[&Swings]) -> Vec<MapFit> {
         pairs.into_iter().all(|(one, other)| (one - other).abs() <= 0.02 * other.abs())
     });
     fits
+}
+
+/// Numbers of a spring to start from, each with the index of the one that is held.
+fn spring_starts(
+    spring: Spring,
+    rows: &[BackbonePoint],
+    records: &[&Swings],
+    largest: &Swings,
+) -> Vec<(Vec<f64>, Option<usize>)> {
+    let loss = Loss::ViscousAndCoulomb;
+    let Some(first) = guess(spring, loss, rows, largest.centre[2]) else { return vec![] };
+    let count = first.len() - 2;
+    let fit = |start: &Vec<f64>, held| fit_map_from((spring, loss), records, start, held);
+    let starts = further_starts(spring, &first, largest);
+    let fits = distinct(starts.iter().filter_map(|start| fit(start, None)).collect());
+    let Some(best) = fits.first() else { return vec![(first[..count].to_vec(), None)] };
+    let others = undetermined(spring, best, largest);
+    // The second number of the spring stays, the first one follows the period.
+    let others = others.iter().filter_map(|start| Some((fit(start, Some(1))?, Some(1))));
+    let all = fits.iter().cloned().map(|fit| (fit, None)).chain(others);
+    all.map(|(fit, held)| (fit.parameters[..count].to_vec(), held)).collect()
 }
 
 /// The first guess and others: where the amplitude hardly changes, frequencies do not tell a quadratic spring or a power from a line.
@@ -231,6 +286,36 @@ fn further_starts(spring: Spring, first: &[f64], swings: &Swings) -> Vec<Vec<f64
     starts
 }
 
+/// Starts with other second numbers of a spring, if the turning points leave it undetermined: in a record whose amplitude hardly changes
+/// only the shape of the swings tells it.
+fn undetermined(spring: Spring, best: &MapFit, swings: &Swings) -> Vec<Vec<f64>> {
+    let amplitude = swings.amplitudes()[0];
+    let rate = std::f64::consts::PI / swings.half_period;
+    // The second number relative to the force at the amplitude; of a power it is the exponent.
+    let (unit, large, shares): (f64, f64, &[f64]) = match spring {
+        Spring::Duffing => ((rate / amplitude).powi(2), 0.1, &[-0.4, -0.15, 0.15, 0.5, 1.5]),
+        Spring::Quadratic => (rate.powi(2) / amplitude, 0.05, &[-0.3, -0.15, 0.15, 0.3]),
+        Spring::Power => (1.0, 0.1, &[0.4, 0.6, 0.8, 1.2, 1.6, 2.2, 3.0]),
+        Spring::Linear | Spring::Pendulum => return vec![],
+    };
+    if best.second_error <= large * unit {
+        return vec![];
+    }
+    let start = |share: &f64| {
+        let second = share * unit;
+        let square = match spring {
+            Spring::Duffing => rate.powi(2) - 0.75 * second * amplitude * amplitude,
+            Spring::Quadratic => rate.powi(2) + 5.0 / 6.0 * (second * amplitude / rate).powi(2),
+            _ => rate.powi(2) * amplitude.powf(1.0 - second),
+        };
+        let first = if spring == Spring::Power { square } else { square.max(0.0).sqrt() };
+        let mut start = best.parameters.clone();
+        (start[0], start[1]) = (first, second);
+        start
+    };
+    shares.iter().map(start).collect()
+}
+
 /// The residuals of the turning points of a record, in units of their errors, appended to others.
 fn map_residuals(
     numbers: &Numbers,
@@ -238,16 +323,16 @@ fn map_residuals(
     [mut x, mut time, level, drift]: [f64; 4],
     residuals: &mut Vec<f64>,
 ) {
-    let mut count = 0;
+    let (mut count, mut work) = (0, 0.0);
     for point in &swings.points {
         while count < point.half_swings {
-            let Some([next, duration]) = numbers.next(x) else {
+            let Some([next, duration, spent]) = numbers.next(x, work) else {
                 // The law comes to rest: it stays there.
-                (x, time) = (0.0, time + swings.half_period);
+                (x, time, work) = (0.0, time + swings.half_period, 0.0);
                 count += 1;
                 continue;
             };
-            (x, time) = (next, time + duration);
+            (x, time, work) = (next, time + duration, spent);
             count += 1;
         }
         let centre = level + drift * (point.time - swings.middle);
@@ -256,11 +341,12 @@ fn map_residuals(
     }
 }
 
-/// Fits a law from these parameters.
+/// Fits a law from these parameters, one of which may be held.
 fn fit_map_from(
     (spring, loss): (Spring, Loss),
     records: &[&Swings],
     parameters: &[f64],
+    held: Option<usize>,
 ) -> Option<MapFit> {
     const ITERATIONS: u64 = 30;
     let own = parameters.len();
@@ -293,7 +379,7 @@ fn fit_map_from(
         const STEP: f64 = 1e-6;
         let at = residuals(values)?;
         let mut jacobian = DMatrix::zeros(at.len(), values.len());
-        for index in 0..values.len() {
+        for index in (0..values.len()).filter(|index| Some(*index) != held) {
             let mut moved = values.to_vec();
             let step = STEP * scales[index];
             moved[index] += step;
@@ -303,11 +389,18 @@ fn fit_map_from(
     };
     let minimum = minimise(&start, ITERATIONS, linearised)?;
     let chi_square = minimum.square();
+    let covariance = Covariance::new(&minimum.jacobian);
+    // What a flat direction leaves out has no error.
+    let second_error = match covariance.flat.is_empty() {
+        true => covariance.matrix[(1, 1)].max(0.0).sqrt(),
+        false => f64::INFINITY,
+    };
     let starts = (0..records.len()).map(|record| local(&minimum.parameters, record));
     Some(MapFit {
         parameters: minimum.parameters[..own].to_vec(),
         starts: starts.collect::<Option<_>>()?,
         chi_square,
+        second_error,
     })
 }
 
@@ -420,7 +513,7 @@ mod tests {
         assert!((time - exact).abs() < 1e-12, "{time} {exact}");
         // Dry friction takes 2 alpha from the amplitude of a linear spring.
         let dry = Numbers::new(Spring::Linear, Loss::Coulomb, &[3.0, 0.05]);
-        let [next, _] = dry.next(1.0).unwrap();
+        let [next, ..] = dry.next(1.0, 0.0).unwrap();
         assert!((next + 0.9).abs() < 1e-12, "{next}");
         // Both turning points of x + x^2/5 have the same energy.
         let quadratic = Numbers::new(Spring::Quadratic, Loss::None, &[1.0, 0.2]);

@@ -50,6 +50,8 @@ mod closed_forms;
 
 pub mod motion;
 
+mod fit_coordinates;
+
 pub mod sample_fit;
 
 pub mod whiteness;

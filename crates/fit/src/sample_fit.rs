@@ -10,6 +10,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::fit_coordinates::FitCoordinates;
 use crate::laws::Law;
 use crate::least_squares::{Linearised, Minimum, minimise};
 use crate::motion::{MotionSolver, Quantity, SampledMotion};
@@ -71,13 +72,19 @@ pub fn fit_samples(
     const RESTARTS: usize = 3;
     /// The square of the distance from the minimum in standard errors: a tenth of one.
     const NEAR: f64 = 0.01;
-    let evaluate = |values: &[f64], counts: &[usize]| linearised(solver, records, values, counts);
+    let coordinates = FitCoordinates::new(law, records);
+    let evaluate = |inner: &[f64], counts: &[usize]| -> Option<Linearised> {
+        let values = coordinates.to_law(inner)?;
+        let (residuals, jacobian) = linearised(solver, records, &values, counts)?;
+        Some((residuals, jacobian * coordinates.slopes(inner)?))
+    };
+    let start = &coordinates.from_law(start)?;
     let totals: Vec<usize> = records.iter().map(|samples| samples.values.len()).collect();
     let variance: f64 = records.iter().map(|samples| samples.square_about_mean()).sum();
     let first = evaluate(start, &totals);
     let in_step =
         first.is_some_and(|(residuals, _)| residuals.norm_squared() < OUT_OF_STEP * variance);
-    let mut values = start.to_vec();
+    let mut values = start.clone();
     if !in_step {
         for share in [16, 8, 4, 2] {
             if totals.iter().all(|total| total / share < FEWEST) {
@@ -108,8 +115,9 @@ pub fn fit_samples(
     }
     let converged = minimum.distance() < NEAR;
     let Minimum { parameters, residuals, jacobian, .. } = minimum;
-    let mut fit =
-        SampleFit { law: law.clone(), values: parameters, residuals, jacobian, converged };
+    let jacobian = jacobian * coordinates.slopes(&parameters)?.try_inverse()?;
+    let values = coordinates.to_law(&parameters)?;
+    let mut fit = SampleFit { law: law.clone(), values, residuals, jacobian, converged };
     // The equations of the list are the same for -w and -zeta.
     if let (Some(_), Some(w)) = (law.parts, law.parameter("w"))
         && fit.values[w] < 0.0
@@ -120,6 +128,13 @@ pub fn fit_samples(
         }
     }
     Some(fit)
+}
+
+/// The sum of the squares of the residuals at a start of [`fit_samples`]; `None` if the law has no motion there.
+pub fn misfit(solver: &MotionSolver, records: &[&Samples], start: &[f64]) -> Option<f64> {
+    let totals: Vec<usize> = records.iter().map(|samples| samples.values.len()).collect();
+    let (residuals, _) = linearised(solver, records, start, &totals)?;
+    Some(residuals.norm_squared()).filter(|square| square.is_finite())
 }
 
 impl Samples {

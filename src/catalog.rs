@@ -227,6 +227,13 @@ pub const CATALOG: &[CatalogEntry] = &[
         published: None,
     },
     CatalogEntry {
+        name: "bubble",
+        title: "gas bubble, x = (R/R0)^(5/2)",
+        equation: "x'' + 5/2*(x^(1/5) - x^(-7/5)) = 0",
+        source: "Lord Rayleigh, Phil. Mag. 34 (1917) 94-98, polytropic exponent 4/3; x by N. A. Kudryashov, D. I. Sinelshchikov, J. Phys. A 47 (2014) 405202",
+        published: None,
+    },
+    CatalogEntry {
         name: "quadratic-odd",
         title: "odd quadratic spring",
         equation: "x'' + x*abs(x) = 0",
@@ -371,6 +378,13 @@ pub const CATALOG: &[CatalogEntry] = &[
         title: "two masses of Toda's lattice between walls",
         equation: "x'' - exp(-x) + exp(x - y) = 0; y'' - exp(x - y) + exp(y) = 0",
         source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
+        published: None,
+    },
+    CatalogEntry {
+        name: "bubble",
+        title: "gas bubble, x = (R/R0)^(5/2)",
+        equation: "x'' + 5/2*(x^(1/5) - x^(-7/5)) = 0",
+        source: "Lord Rayleigh, Phil. Mag. 34 (1917) 94-98, polytropic exponent 4/3; x by N. A. Kudryashov, D. I. Sinelshchikov, J. Phys. A 47 (2014) 405202",
         published: None,
     },
     CatalogEntry {

@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from .commands import paper as paper
     from .commands import response as response
     from .commands import shortest as shortest
+    from .measurements import Fit as Fit
+    from .measurements import fit as fit
     from .commands import simulate as simulate
     from .commands import stability as stability
     from .errors import InternalError as InternalError
@@ -68,6 +70,7 @@ PLACES = {
     "Law": "law",
     **dict.fromkeys(("Modes", "modes"), "normal_modes"),
     **dict.fromkeys(("SlowEquations", "slow_equations"), "slow"),
+    **dict.fromkeys(("Fit", "fit"), "measurements"),
     "Oscillator": "oscillator",
     "from_sympy": "symbolic",
     **dict.fromkeys(("Study", "collect", "missing_shards"), "studies"),

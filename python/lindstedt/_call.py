@@ -28,6 +28,7 @@ OWN = {
     "Audit": ("audits", "Audit"),
     "CertificateDocument": ("certificates", "Certificate"),
     "Comparison": ("comparison", "Comparison"),
+    "Fit": ("measurements", "Fit"),
     "Friction": ("tabulated", "Friction"),
     "Materials": ("tabulated", "Materials"),
     "Impact": ("impacts", "Impact"),

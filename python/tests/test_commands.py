@@ -53,6 +53,7 @@ CALLS = {
     "law of contacts": lambda: ls.shortest(
         "x'' + k*x^(3/2)*(1 + lambda*x') = 0", quantity="contact-time", range={"e": (0.4, 1)}, longest=6
     ),
+    "fit": lambda: ls.fit(EXAMPLES / "fit" / "impacts.csv", data="impacts"),
     "friction": lambda: ls.friction(),
     "stability": lambda: ls.stability("x'' + (delta + eps*cos(t))*x = 0"),
     "certify": lambda: ls.certify("pendulum", A=1),

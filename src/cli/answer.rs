@@ -137,12 +137,13 @@ pub(super) fn no_such<T>(format: Format) -> Result<T, Failure> {
     let (what, has_it) = match format {
         Format::Csv => (
             "table of comma-separated values",
-            "`lindstedt compare`, `simulate`, `response`, `stability`, `absorber`, `orbits`, `friction`, `materials` or `optimize`",
+            "`lindstedt compare`, `simulate`, `response`, `stability`, `absorber`, `orbits`, `shortest`, `fit`, `friction`, `materials` or `optimize`",
         ),
+        Format::Toml => ("problem file", "`lindstedt fit`"),
         Format::Code(_) => ("program", "`lindstedt derive`"),
         Format::Svg => (
             "picture",
-            "`lindstedt derive`, `compare`, `impact`, `simulate`, `response`, `stability`, `absorber`, `orbits`, `friction`, `materials` or `optimize`",
+            "`lindstedt derive`, `compare`, `impact`, `simulate`, `response`, `stability`, `absorber`, `orbits`, `shortest`, `fit`, `friction`, `materials` or `optimize`",
         ),
         Format::Text | Format::Latex | Format::Json | Format::Html => {
             ("result in this format", "other commands")

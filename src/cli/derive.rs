@@ -354,7 +354,7 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
             let document = report::solution(&solution, verification.as_ref());
             arguments.common.latex(derivation + &latex::document(&document))
         }
-        format @ Format::Csv => no_such(format)?,
+        format @ (Format::Csv | Format::Toml) => no_such(format)?,
         Format::Json => {
             let mut document = json::solution(&solution, verification.as_ref());
             // The first line is the heading.

@@ -18,6 +18,7 @@ mod collect;
 mod compare;
 mod derive;
 mod files;
+mod fit;
 mod friction;
 mod impact;
 mod lagrange;
@@ -80,7 +81,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 22] = [
+static COMMANDS: [Command; 23] = [
     Command::new::<derive::DeriveArguments>("derive")
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
@@ -103,6 +104,9 @@ static COMMANDS: [Command; 22] = [
         .writing(Formats::ProgramsAndTables)
         .waiting(one_minute)
         .judged(),
+    Command::new::<fit::FitArguments>("fit")
+        .showing(include_str!("help/fit.txt"))
+        .writing(Formats::PicturesTablesAndProblems),
     Command::new::<friction::FrictionArguments>("friction")
         .showing(include_str!("help/friction.txt")),
     Command::new::<lagrange::LagrangeArguments>("lagrange")
@@ -273,6 +277,8 @@ enum Formats {
     Pictures,
     /// Pictures and tables of comma-separated values.
     PicturesAndTables,
+    /// Pictures, tables of comma-separated values and problem files.
+    PicturesTablesAndProblems,
     /// No formats beside those of every result.
     Words,
     /// A single format, whatever the file is called: there is no `--format`.
@@ -291,6 +297,7 @@ impl Formats {
             }
             Self::Pictures => vec![Format::Svg],
             Self::PicturesAndTables => vec![Format::Svg, Format::Csv],
+            Self::PicturesTablesAndProblems => vec![Format::Svg, Format::Csv, Format::Toml],
             Self::Words | Self::One => vec![],
         }
     }
@@ -341,6 +348,7 @@ enum Format {
     Csv,
     Svg,
     Html,
+    Toml,
     Code(Language),
 }
 
@@ -351,7 +359,7 @@ impl Format {
     /// All of them.
     fn all() -> impl Iterator<Item = Self> {
         let programs = Language::ALL.map(Self::Code);
-        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
+        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv, Self::Toml]).chain(programs)
     }
 
     /// What the names of its files end in beside the name of the format itself.
@@ -364,7 +372,7 @@ impl Format {
             Self::Code(Language::Python) => &["py"],
             Self::Code(Language::Julia) => &["jl"],
             Self::Code(Language::Matlab) => &["m"],
-            Self::Json | Self::Csv | Self::Svg | Self::Code(Language::C) => &[],
+            Self::Json | Self::Csv | Self::Svg | Self::Toml | Self::Code(Language::C) => &[],
         }
     }
 
@@ -402,6 +410,7 @@ impl Format {
             Self::Csv => "csv",
             Self::Svg => "svg",
             Self::Html => "html",
+            Self::Toml => "toml",
             Self::Code(language) => language.name(),
         }
     }

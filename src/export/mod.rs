@@ -12,6 +12,7 @@ pub mod code;
 pub mod comparison;
 mod csv;
 pub mod figure;
+pub mod fit;
 pub mod friction;
 #[cfg(feature = "html")]
 pub mod html;

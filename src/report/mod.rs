@@ -12,6 +12,7 @@ mod audit;
 mod certificate;
 mod comparison;
 mod driven;
+mod fit;
 mod friction;
 mod impact;
 mod impact_certificate;
@@ -40,6 +41,7 @@ pub(crate) use audit::{
 pub(crate) use certificate::known_digits;
 pub use certificate::{AnyCertificate, CertificateReport, CertifiedQuestion, certificate};
 pub use comparison::comparison;
+pub use fit::{FitReport, FittedLaw, fit};
 pub use friction::friction;
 pub use impact::impact;
 pub use impact_certificate::{ImpactCertificateReport, impact_certificate};

@@ -35,8 +35,8 @@ impl Layers {
 
 /// The members of the workspace by the way of the data, lowest first; the package of the program
 /// stands above them all.
-const CRATES: [&str; 8] =
-    ["numeric", "expr", "series", "dynamics", "oscillator", "modes", "verify", "impact"];
+const CRATES: [&str; 9] =
+    ["numeric", "expr", "series", "dynamics", "oscillator", "modes", "verify", "impact", "fit"];
 
 /// The folders of sources, lowest crate first.
 fn source_folders() -> Vec<PathBuf> {

@@ -10,12 +10,13 @@ use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
     self, AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
     CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, LawCertificateDocument,
-    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
-    OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, ShortestDocument, SimulationDocument,
-    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    DampedCertificateDocument, DocumentKind, FitDocument, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    LawCertificateDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument,
+    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, OrbitsDocument,
+    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, ShortestDocument,
+    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
+    SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
@@ -110,6 +111,7 @@ fn reads_back(document: &Value) {
         DocumentKind::Simulation => again::<SimulationDocument>(document),
         DocumentKind::Sweep => again::<SweepDocument>(document),
         DocumentKind::Absorber => again::<AbsorberDocument>(document),
+        DocumentKind::Fit => again::<FitDocument>(document),
         DocumentKind::Shortest => again::<ShortestDocument>(document),
         DocumentKind::Orbits => again::<OrbitsDocument>(document),
         DocumentKind::Friction => again::<FrictionDocument>(document),

@@ -192,7 +192,7 @@ fn help_begins_with_a_command_and_its_output() {
         assert!(help.starts_with(&example), "{help}");
         count += 1;
     }
-    assert_eq!(count, 20);
+    assert_eq!(count, 21);
 }
 
 /// Every example on a page shows what its command prints in a terminal of 90 characters.

@@ -12,16 +12,14 @@
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use crate::backbone::BackbonePoint;
 use crate::closed_forms::{MapFit, fit_maps};
 use crate::equation_error::{initial_state, parameters as equation_error_parameters};
 use crate::fitted_record::{FittedRecord, weigh};
-use crate::laws::{Law, LawError, Loss, Spring};
+use crate::laws::{LOCAL_NAMES, Law, LawError, Loss, Spring};
 use crate::least_squares::Covariance;
 use crate::motion::{MotionSolver, Quantity};
 use crate::parallel::par_map;
 use crate::polynomial::median;
-use crate::quality::Quality;
 use crate::record::Record;
 use crate::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, misfit, motion, values_of};
 use crate::turning_points::{Swings, SwingsError};
@@ -106,29 +104,19 @@ pub struct ExcludedLaw {
     pub ratio: f64,
 }
 
-/// The result for one record or several. Quality, backbone, swings, outliers and samples are those of the first record.
+/// What one record or several say.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The laws that were fitted to the samples, the best first.
     pub laws: Vec<LawFit>,
     /// The laws that the turning points exclude, the nearest first.
     pub excluded: Vec<ExcludedLaw>,
-    /// The quality of the record.
-    pub quality: Quality,
-    /// Frequency and damping against amplitude, without any law.
-    pub backbone: Vec<BackbonePoint>,
-    /// The turning points.
-    pub swings: Swings,
+    /// The records, each with what was found in it before any law.
+    pub records: Vec<FittedRecord>,
     /// The standard deviation of the noise, as given or found from the residuals of the best law.
     pub noise: f64,
     /// Over how many samples the residuals of the best law are correlated: 1 if they are white.
     pub correlation_length: f64,
-    /// The samples that were left out since they lie far from their neighbours or from the best law, by their index in the record.
-    pub outliers: Vec<usize>,
-    /// The samples that were fitted.
-    pub samples: Samples,
-    /// The records after the first.
-    pub further: Vec<FittedRecord>,
 }
 
 /// The reason why there is no answer.
@@ -431,20 +419,7 @@ fn finish(
         let more = most.saturating_sub(fit.values.len()).max(1);
         law_fit(fit, noise, [excess, excess / more as f64], correlation_length, &records)
     });
-    let mut records = records.into_iter();
-    let first = records.next().ok_or(FitError::NoRecord)?;
-    Ok(Answer {
-        laws,
-        excluded: vec![],
-        quality: first.quality,
-        backbone: first.backbone,
-        swings: first.swings,
-        noise,
-        correlation_length,
-        outliers: first.outliers,
-        samples: first.samples,
-        further: records.collect(),
-    })
+    Ok(Answer { laws, excluded: vec![], records, noise, correlation_length })
 }
 
 /// The samples whose residual is larger than noise ever makes it, unless they are too many to be outliers.
@@ -500,7 +475,7 @@ fn law_fit(
     let names = fit.law.parameters.iter().map(|name| name.to_string());
     let own = (1..=records.len()).flat_map(|number| {
         let suffix = if number == 1 { String::new() } else { format!("_{number}") };
-        ["x0", "v0", "offset", "drift"].map(|name| format!("{name}{suffix}"))
+        LOCAL_NAMES.map(|name| format!("{name}{suffix}"))
     });
     let names: Vec<String> = names.chain(own).collect();
     let estimates = names.iter().zip(&fit.values).enumerate().map(|(index, (name, value))| {
@@ -548,25 +523,12 @@ impl Answer {
         self.laws.first()
     }
 
-    /// The values that a law predicts at increasing times from the first sample of the first record on, with their standard errors: those
-    /// of the fitted curve, without the noise of a sample.
-    pub fn predict(&self, law: &LawFit, times: &[f64]) -> Option<Vec<[f64; 2]>> {
-        self.predict_record(law, 0, times)
-    }
-
-    /// The values that a law predicts for a record, counted from 0, as [`Answer::predict`] does for the first. Returns `None` if there is no
-    /// such record, or the motion cannot be followed.
-    pub fn predict_record(
-        &self,
-        law: &LawFit,
-        record: usize,
-        times: &[f64],
-    ) -> Option<Vec<[f64; 2]>> {
-        let samples = match record.checked_sub(1) {
-            None => &self.samples,
-            Some(place) => &self.further.get(place)?.samples,
-        };
-        let count = 1 + self.further.len();
+    /// The values that a law predicts for a record, counted from 0, at increasing times from its first sample on, with their
+    /// standard errors: those of the fitted curve, without the noise of a sample. Returns `None` if there is no such record, or
+    /// the motion cannot be followed.
+    pub fn predict(&self, law: &LawFit, record: usize, times: &[f64]) -> Option<Vec<[f64; 2]>> {
+        let samples = &self.records.get(record)?.samples;
+        let count = self.records.len();
         let solver = MotionSolver::new(&law.law).ok()?;
         let first = *samples.times.first()?;
         // The motion begins at the first sample.
@@ -591,6 +553,14 @@ impl Answer {
             [motion.columns[0][index] + offset + drift * lag, variance.max(0.0).sqrt()]
         };
         Some((1..all.len()).map(row).collect())
+    }
+
+    /// The residuals of a law at the samples of a record, counted from 0.
+    pub fn residuals<'a>(&self, law: &'a LawFit, record: usize) -> &'a [f64] {
+        let length = |own: &FittedRecord| own.samples.times.len();
+        let from: usize = self.records.iter().take(record).map(length).sum();
+        let length = self.records.get(record).map_or(0, length);
+        law.residuals.get(from..from + length).unwrap_or_default()
     }
 
     /// What the record excludes, one line for each law but the best.

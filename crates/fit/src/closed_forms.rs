@@ -169,6 +169,16 @@ static NODES: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
         .collect()
 });
 
+impl Law {
+    /// The angular frequency and the damping ratio against the amplitude, half the distance of turning points, with these values of
+    /// the parameters. Returns `None` for an equation of one's own, and where the law has no such motion.
+    pub fn frequency_and_damping(&self, parameters: &[f64], amplitude: f64) -> Option<[f64; 2]> {
+        let (spring, loss) = self.parts?;
+        let parameters = parameters.get(..self.parameters.len())?;
+        Numbers::new(spring, loss, parameters).frequency_and_damping(amplitude)
+    }
+}
+
 impl Numbers {
     /// The angular frequency and the damping ratio of a motion whose turning points are twice the amplitude apart.
     ///

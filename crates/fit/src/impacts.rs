@@ -55,6 +55,13 @@ pub struct ImpactFit {
     pub excess: f64,
 }
 
+impl ImpactFit {
+    /// The coefficient of restitution at a speed of approach.
+    pub fn restitution(&self, speed: f64) -> Option<f64> {
+        self.law.restitution(self.estimates.first()?.value, speed)
+    }
+}
+
 /// The restitution of one impact, as measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredRestitution {

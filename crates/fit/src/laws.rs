@@ -14,6 +14,10 @@ use crate::expr::{Equation, Expr, parse_equation};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::symbol::Symbol;
 
+/// What is fitted to each record beside the parameters: its initial coordinate and velocity, the offset in its middle and the
+/// drift of that per unit of time.
+pub(crate) const LOCAL_NAMES: [&str; 4] = ["x0", "v0", "offset", "drift"];
+
 /// The restoring force of a law of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Spring {
@@ -162,6 +166,9 @@ pub enum LawError {
     /// Every symbol has a value.
     #[error("`{0}` has no unknown parameter")]
     NoParameter(String),
+    /// A parameter has a name of the start or of the offset.
+    #[error("`{0}` is a name of the record: x0 and v0 are its start, offset and drift its centre")]
+    Taken(String),
     /// A corner other than `abs(x')` and `sgn(x')` makes the force jump, so that the motion has no
     /// derivative by the parameters.
     #[error("`{0}` jumps, so that the motion has no derivative by the parameters")]
@@ -174,6 +181,7 @@ impl LawError {
         match self {
             Self::Equation(_) => "write one equation such as `x'' + c*x' + k*x = 0`",
             Self::NoParameter(_) => "write a letter in place of a number that is to be found",
+            Self::Taken(_) => "write another letter",
             Self::Jump(_) => {
                 "write dry friction as `sgn(x')`; other jumps can be rounded off, for example by tanh"
             }
@@ -219,6 +227,10 @@ impl Law {
         let oscillator = Oscillator::from_equation(equation)?;
         if oscillator.parameters.is_empty() {
             return Err(LawError::NoParameter(text.to_owned()));
+        }
+        let is_taken = |name: &&Symbol| LOCAL_NAMES.contains(&name.name());
+        if let Some(name) = oscillator.parameters.iter().find(is_taken) {
+            return Err(LawError::Taken(name.to_string()));
         }
         Ok(Self {
             name: text.to_owned(),

@@ -162,6 +162,9 @@ const UNITS: [(&str, f64, bool); 11] = [
 pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<ReadRecord>, ReadError> {
     let table = Table::new(text)?;
     let names = &table.names;
+    if let ([_], Some((line, _))) = (names.as_slice(), table.rows.first()) {
+        return Err(ReadError::OneColumn { line: *line });
+    }
     let is_time = |name: &String| ["t", "time"].contains(&bare(name).to_lowercase().as_str());
     let time = match &options.time {
         Some(wanted) => table.column(wanted)?,
@@ -174,6 +177,58 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<ReadRecord>, ReadEr
         }
     };
     values.into_iter().map(|value| table.record(time, value, options)).collect()
+}
+
+/// A column of numbers, in any order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name, with its unit.
+    pub name: String,
+    /// The numbers; those of units that are converted are in seconds or radians.
+    pub values: Vec<f64>,
+}
+
+/// Reads columns of numbers, such as amplitudes and frequencies, or times of impacts: those of these names or
+/// numbers from 1, or else the first ones, as many as there are up to `most`. Lines with an empty cell are left out.
+///
+/// # Errors
+/// [`ReadError`].
+///
+/// ```
+/// use lindstedt_fit::record::read_columns;
+///
+/// let columns = read_columns("A, f (Hz)\n2, 1.5\n1, 1.6\n", &[], 3)?;
+/// assert_eq!((columns.len(), columns[1].name.as_str()), (2, "f (Hz)"));
+/// assert_eq!(columns[0].values, [2.0, 1.0]);
+/// # Ok::<(), lindstedt_fit::record::ReadError>(())
+/// ```
+pub fn read_columns(text: &str, wanted: &[String], most: usize) -> Result<Vec<Column>, ReadError> {
+    let table = Table::new(text)?;
+    let places: Vec<usize> = match wanted {
+        [] => (0..table.names.len().min(most)).collect(),
+        wanted => wanted.iter().map(|own| table.column(own)).collect::<Result<_, _>>()?,
+    };
+    let mut columns: Vec<Column> = places
+        .iter()
+        .map(|place| Column { name: table.names[*place].clone(), values: vec![] })
+        .collect();
+    for row in &table.rows {
+        let cells = places.iter().map(|place| table.cell(row, *place));
+        let cells = cells.collect::<Result<Vec<Option<f64>>, _>>()?;
+        if cells.iter().any(Option::is_none) {
+            continue;
+        }
+        for ((column, cell), place) in
+            columns.iter_mut().zip(cells.into_iter().flatten()).zip(&places)
+        {
+            let factor = unit(&table.names[*place]).map_or(1.0, |(factor, _)| factor);
+            column.values.push(cell * factor);
+        }
+    }
+    match columns.first().is_none_or(|column| column.values.is_empty()) {
+        true => Err(ReadError::Empty),
+        false => Ok(columns),
+    }
 }
 
 /// The cells of a text.
@@ -208,10 +263,7 @@ impl<'a> Table<'a> {
         if rows.first().is_some_and(is_head) {
             names = rows.remove(0).1.iter().map(|name| name.trim_matches('"').to_owned()).collect();
         }
-        let Some((line, row)) = rows.first() else { return Err(ReadError::Empty) };
-        if row.len() < 2 && names.len() < 2 {
-            return Err(ReadError::OneColumn { line: *line });
-        }
+        let Some((_, row)) = rows.first() else { return Err(ReadError::Empty) };
         let width = row.len().max(names.len());
         names.extend((names.len()..width).map(|column| format!("{}", column + 1)));
         Ok(Self { names, rows, has_decimal_comma })
@@ -224,6 +276,29 @@ impl<'a> Table<'a> {
         self.names.iter().position(by_name).or(by_number).ok_or_else(|| ReadError::NoColumn {
             wanted: wanted.to_owned(),
             columns: self.names.join(", "),
+        })
+    }
+
+    /// The number in a cell of a line; `None` if it is empty.
+    fn cell(
+        &self,
+        (line, cells): &(usize, Vec<&str>),
+        column: usize,
+    ) -> Result<Option<f64>, ReadError> {
+        let text = cells.get(column).copied().ok_or_else(|| ReadError::Short {
+            line: *line,
+            found: cells.len(),
+            column: self.names[column].clone(),
+            needed: column + 1,
+        })?;
+        if text.is_empty() || text.eq_ignore_ascii_case("nan") {
+            return Ok(None);
+        }
+        let found = number(text, self.has_decimal_comma).filter(|own| own.is_finite());
+        found.map(Some).ok_or_else(|| ReadError::NotANumber {
+            line: *line,
+            column: self.names[column].clone(),
+            text: text.to_owned(),
         })
     }
 
@@ -243,28 +318,9 @@ impl<'a> Table<'a> {
         let mut read =
             ReadRecord { record, name, lines: vec![], missing: vec![], repeated: vec![] };
         let mut equal = 1.0;
-        for (line, cells) in &self.rows {
-            let cell = |column: usize| {
-                cells.get(column).copied().ok_or_else(|| ReadError::Short {
-                    line: *line,
-                    found: cells.len(),
-                    column: self.names[column].clone(),
-                    needed: column + 1,
-                })
-            };
-            let parsed = |column: usize| -> Result<Option<f64>, ReadError> {
-                let text = cell(column)?;
-                if text.is_empty() || text.eq_ignore_ascii_case("nan") {
-                    return Ok(None);
-                }
-                let found = number(text, self.has_decimal_comma).filter(|own| own.is_finite());
-                found.map(Some).ok_or_else(|| ReadError::NotANumber {
-                    line: *line,
-                    column: self.names[column].clone(),
-                    text: text.to_owned(),
-                })
-            };
-            let (Some(now), Some(own)) = (parsed(time)?, parsed(value)?) else {
+        for row in &self.rows {
+            let (line, _) = row;
+            let (Some(now), Some(own)) = (self.cell(row, time)?, self.cell(row, value)?) else {
                 read.missing.push(*line);
                 continue;
             };

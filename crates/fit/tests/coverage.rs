@@ -70,7 +70,7 @@ fn run(seeds: impl Iterator<Item = u64>, length: Length, is_talkative: bool) -> 
                     format!("{} first by {behind:.1}", first.law.name)
                 },
                 answer.correlation_length,
-                answer.outliers.len()
+                answer.records[0].outliers.len()
             );
         }
     }
@@ -231,5 +231,5 @@ fn outliers_are_left_out_and_named() {
         made.values[*index] += size;
     }
     let answer = fit(&made, &FitOptions::default()).unwrap();
-    assert_eq!(answer.outliers, wrong);
+    assert_eq!(answer.records[0].outliers, wrong);
 }

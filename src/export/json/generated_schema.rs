@@ -10,12 +10,13 @@ use serde_json::Value;
 use super::{
     AbsorberDocument, AuditDocument, CatalogDocument, CertificateDocument,
     CertificateRangeDocument, ComparisonDocument, CoupledCertificateDocument,
-    DampedCertificateDocument, DocumentKind, FrictionDocument, ImpactCertificateDocument,
-    ImpactComparisonDocument, ImpactDocument, LagrangianDocument, LawCertificateDocument,
-    MaterialsDocument, ModeCertificateDocument, ModesDocument, MotionDocument, MotionSweepDocument,
-    OneHarmonicDocument, OptimizationDocument, OrbitsDocument, PointDocument, PrimaryDocument,
-    PrimarySweepDocument, ResponseDocument, ShortestDocument, SimulationDocument,
-    SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument, SweepDocument,
+    DampedCertificateDocument, DocumentKind, FitDocument, FrictionDocument,
+    ImpactCertificateDocument, ImpactComparisonDocument, ImpactDocument, LagrangianDocument,
+    LawCertificateDocument, MaterialsDocument, ModeCertificateDocument, ModesDocument,
+    MotionDocument, MotionSweepDocument, OneHarmonicDocument, OptimizationDocument, OrbitsDocument,
+    PointDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, ShortestDocument,
+    SimulationDocument, SlowEquationsDocument, SolutionDocument, StabilityDocument, StudyDocument,
+    SweepDocument,
 };
 use crate::solution::Method;
 
@@ -44,6 +45,7 @@ impl DocumentKind {
             Self::Absorber => generator.into_root_schema_for::<AbsorberDocument>(),
             Self::Orbits => generator.into_root_schema_for::<OrbitsDocument>(),
             Self::Shortest => generator.into_root_schema_for::<ShortestDocument>(),
+            Self::Fit => generator.into_root_schema_for::<FitDocument>(),
             Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
             Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
             Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),

@@ -21,6 +21,7 @@ pub mod certificate_range;
 pub mod comparison;
 pub mod coupled_certificate;
 pub mod damped_certificate;
+mod fit;
 pub mod friction;
 #[cfg(feature = "schema")]
 mod generated_schema;
@@ -69,6 +70,10 @@ pub use coupled_certificate::{
 };
 pub use damped_certificate::{
     DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate,
+};
+pub use fit::{
+    BackbonePointDocument, BestLawDocument, EstimateDocument, FitDocument, FittedLawDocument,
+    RecordDocument, RestitutionDocument, fit,
 };
 pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};

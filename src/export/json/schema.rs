@@ -41,6 +41,8 @@ pub enum DocumentKind {
     Orbits,
     /// `shortest`.
     Shortest,
+    /// `fit`.
+    Fit,
     /// `friction`.
     Friction,
     /// `lagrange`.
@@ -67,7 +69,7 @@ pub enum DocumentKind {
 
 impl DocumentKind {
     /// Every kind.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::Solution,
         Self::Modes,
         Self::OneHarmonic,
@@ -86,6 +88,7 @@ impl DocumentKind {
         Self::Absorber,
         Self::Orbits,
         Self::Shortest,
+        Self::Fit,
         Self::Friction,
         Self::Lagrangian,
         Self::Materials,
@@ -132,6 +135,7 @@ impl DocumentKind {
             Self::Absorber => ["lindstedt/absorber/1", include_str!("schemas/absorber.json")],
             Self::Orbits => ["lindstedt/orbits/1", include_str!("schemas/orbits.json")],
             Self::Shortest => ["lindstedt/shortest/1", include_str!("schemas/shortest.json")],
+            Self::Fit => ["lindstedt/fit/1", include_str!("schemas/fit.json")],
             Self::Friction => ["lindstedt/friction/1", include_str!("schemas/friction.json")],
             Self::Lagrangian => ["lindstedt/lagrangian/1", include_str!("schemas/lagrangian.json")],
             Self::Materials => ["lindstedt/materials/1", include_str!("schemas/materials.json")],

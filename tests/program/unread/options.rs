@@ -41,6 +41,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         "F=0.2",
     ];
     let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "5"];
+    let swing = path("decay").with_extension("csv");
+    let rows = (0..300).map(|row| f64::from(row) / 5.0);
+    let value = |t: f64| 0.1 + (-t / 50.0).exp() * (2.0 * t).cos() + 3e-3 * (1e4 * t * t).sin();
+    let rows = rows.map(|t| format!("{t},{},{}\n", value(t), 0.5 * value(t)));
+    std::fs::write(&swing, "t,x,y\n".to_owned() + &rows.collect::<String>()).expect("a file");
+    let swing = swing.to_str().expect("a path in text");
+    let fitted = [swing, "x'' + c*x' + k*x = 0"];
+    const IMPACTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fit/impacts.csv");
     let well_laws = [well, "--range", "A=0:1/4", "--longest", "3"];
     let backbone = [pair, "--mode", "1", "--range", "a=0:1", "--longest", "5"];
     let long = ["simulate", "--sweep", "zeta=0:0.1:3000"];
@@ -217,6 +225,24 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("shortest", laws[1..].to_vec(), vec!["--standalone"]),
         ("shortest", laws[1..].to_vec(), vec!["--timeout", NO_TIME]),
         ("shortest", laws[1..].to_vec(), vec!["--quiet"]),
+        ("fit", fitted.to_vec(), vec!["--also", swing]),
+        ("fit", fitted.to_vec(), vec!["--data", "impacts"]),
+        ("fit", fitted.to_vec(), vec!["--time", "y"]),
+        ("fit", fitted.to_vec(), vec!["--column", "y"]),
+        ("fit", fitted.to_vec(), vec!["--quantity", "velocity"]),
+        ("fit", fitted.to_vec(), vec!["--angle"]),
+        ("fit", fitted.to_vec(), vec!["--start", "c=1"]),
+        ("fit", fitted.to_vec(), vec!["--noise", "0.1"]),
+        ("fit", vec![IMPACTS, "--data", "impacts"], vec!["--keep-outliers"]),
+        ("fit", vec![IMPACTS, "--data", "impacts"], vec!["--gravity", "1.62"]),
+        ("fit", fitted.to_vec(), vec!["--format", "csv"]),
+        ("fit", fitted.to_vec(), vec!["--format", "latex"]),
+        ("fit", fitted.to_vec(), vec!["--output", file]),
+        ("fit", fitted.to_vec(), vec!["--plot", "-"]),
+        ("fit", fitted.to_vec(), vec!["--tolerance", "0.1"]),
+        ("fit", fitted.to_vec(), vec!["--standalone"]),
+        ("fit", fitted.to_vec(), vec!["--timeout", NO_TIME]),
+        ("fit", fitted.to_vec(), vec!["--quiet"]),
         ("friction", vec![], vec!["--alpha", "0.1"]),
         ("friction", vec![], vec!["--amplitude", "1"]),
         ("friction", vec![], vec!["--speed", "0.01"]),

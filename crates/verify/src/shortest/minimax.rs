@@ -240,3 +240,38 @@ fn substituted(
     }
     solution
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest errors of best approximations on these places were computed by Remez' exchange with 50
+    /// digits.
+    #[test]
+    fn constants_reach_the_least_largest_error() {
+        let places: Vec<f64> = (0..49)
+            .map(|i| (1.0 - (std::f64::consts::PI * f64::from(i) / 48.0).cos()) / 2.0)
+            .collect();
+        let power = |n: i32| -> Vec<f64> { places.iter().map(|t| t.powi(n)).collect() };
+        let powers: Vec<Vec<f64>> = (0..4).map(power).collect();
+        let cases: [(usize, usize, fn(f64) -> f64, f64); 4] = [
+            (2, 1, f64::exp, 2.603_778_479_076_246_4e-3),
+            (3, 2, f64::exp, 2.700_222_439_003_551e-6),
+            (3, 3, f64::exp, 6.767_168_345_400_847e-8),
+            (4, 2, |t| (1.0 + t).sqrt(), 2.588_367_842_664_019e-8),
+        ];
+        for (above, below, function, least) in cases {
+            let target: Vec<f64> = places.iter().copied().map(function).collect();
+            let sums = QuotientOfSums {
+                numerator: powers[..above].iter().map(Vec::as_slice).collect(),
+                denominator: powers[1..=below].iter().map(Vec::as_slice).collect(),
+                target: &target,
+                power: 1.0,
+                tie: None,
+            };
+            let fit = sums.minimax(&[None; MOST_CONSTANTS], 40).unwrap();
+            assert!(fit.error >= least * (1.0 - 1e-6), "{} {least}", fit.error);
+            assert!(fit.error <= least * 1.02, "{} {least}", fit.error / least - 1.0);
+        }
+    }
+}

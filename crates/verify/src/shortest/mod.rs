@@ -471,7 +471,8 @@ fn of_structure(
     found
 }
 
-/// The candidates of which none is longer than one with a smaller error.
+/// The candidates of which none is longer than one with a smaller error. Errors below the least claim
+/// count as that: none of them can be proved to be smaller than another.
 fn best(mut found: Vec<Candidate>) -> Vec<Candidate> {
     /// A function in another form errs alike to rounding, and is no gain.
     const GAIN: f64 = 1e-6;
@@ -481,8 +482,9 @@ fn best(mut found: Vec<Candidate>) -> Vec<Candidate> {
     });
     let mut least = f64::INFINITY;
     found.retain(|candidate| {
-        let is_better = candidate.error < (1.0 - GAIN) * least;
-        least = least.min(candidate.error);
+        let error = candidate.error.max(LEAST_CLAIM);
+        let is_better = error < (1.0 - GAIN) * least;
+        least = least.min(error);
         is_better
     });
     found

@@ -17,11 +17,14 @@ mod certify;
 mod collect;
 mod compare;
 mod derive;
+mod failure;
 mod files;
 mod fit;
+mod format;
 mod friction;
 mod impact;
 mod lagrange;
+mod limits;
 mod materials;
 mod modes;
 mod one_harmonic;
@@ -46,27 +49,24 @@ mod walls;
 pub use call::{CallFailure, CallResult, EquationRead, call, commands, read_equation};
 
 use std::ffi::OsString;
-use std::fmt::Display;
 use std::io::{Read as _, Write as _};
 use std::panic::RefUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::time::{Duration, Instant};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::channel;
+use std::time::Duration;
 
-use crate::Symbol;
-use crate::export::code::Language;
 use crate::export::{is_invisible, latex, printable};
 use crate::problem::LARGEST_FILE;
-use crate::solution::{Advice, Setting};
 use crate::verify::{DEFAULT_TOLERANCE, Verdict};
 use clap::builder::styling::{AnsiColor, Style};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
-use lindstedt_expr::parallel::on_threads;
 use serde::Serialize;
 
+use self::failure::{Failure, Reason, in_flags, values_of};
+use self::format::{Format, Formats, format_parser};
+use self::limits::{INTERRUPTED, Limits, Message, Watch, within_limits};
 use self::session::Session;
 
 /// The version, with the commit that it was built from where that is known.
@@ -266,43 +266,6 @@ fn one_minute(_: &Session) -> Duration {
     Duration::from_secs(60)
 }
 
-/// The formats of a command beside those of every command.
-#[derive(Clone, Copy)]
-enum Formats {
-    /// Pictures and programs.
-    Programs,
-    /// Pictures, tables of comma-separated values and programs.
-    ProgramsAndTables,
-    /// Pictures.
-    Pictures,
-    /// Pictures and tables of comma-separated values.
-    PicturesAndTables,
-    /// Pictures, tables of comma-separated values and problem files.
-    PicturesTablesAndProblems,
-    /// No formats beside those of every result.
-    Words,
-    /// A single format, whatever the file is called: there is no `--format`.
-    One,
-}
-
-impl Formats {
-    /// The formats that the help lists beside those of every command.
-    fn listed(self) -> Vec<Format> {
-        match self {
-            Self::Programs | Self::ProgramsAndTables => {
-                let mut formats = vec![Format::Svg];
-                formats.extend(matches!(self, Self::ProgramsAndTables).then_some(Format::Csv));
-                formats.extend(Language::ALL.map(Format::Code));
-                formats
-            }
-            Self::Pictures => vec![Format::Svg],
-            Self::PicturesAndTables => vec![Format::Svg, Format::Csv],
-            Self::PicturesTablesAndProblems => vec![Format::Svg, Format::Csv, Format::Toml],
-            Self::Words | Self::One => vec![],
-        }
-    }
-}
-
 /// What every command takes.
 #[derive(Args, Clone, Default)]
 #[command(next_help_heading = "Result")]
@@ -336,102 +299,6 @@ struct Common {
 /// with the reason.
 fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
     tolerance.hide(true)
-}
-
-/// The format of a result.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Format {
-    #[default]
-    Text,
-    Latex,
-    Json,
-    Csv,
-    Svg,
-    Html,
-    Toml,
-    Code(Language),
-}
-
-impl Format {
-    /// The formats of every command that has a result.
-    const OF_ALL: [Self; 4] = [Self::Text, Self::Latex, Self::Json, Self::Html];
-
-    /// All of them.
-    fn all() -> impl Iterator<Item = Self> {
-        let programs = Language::ALL.map(Self::Code);
-        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv, Self::Toml]).chain(programs)
-    }
-
-    /// What the names of its files end in beside the name of the format itself.
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            Self::Text => &["txt"],
-            Self::Latex => &["tex"],
-            Self::Html => &["htm"],
-            Self::Code(Language::Rust) => &["rs"],
-            Self::Code(Language::Python) => &["py"],
-            Self::Code(Language::Julia) => &["jl"],
-            Self::Code(Language::Matlab) => &["m"],
-            Self::Json | Self::Csv | Self::Svg | Self::Toml | Self::Code(Language::C) => &[],
-        }
-    }
-
-    /// The format of files whose names end so; `None` for an unknown one.
-    fn of_ending(ending: &str) -> Option<Self> {
-        let ending = ending.to_ascii_lowercase();
-        // A file called `x.rust` or `x.latex` is none of ours.
-        let is_ending = |format: &Self| match format.endings() {
-            [] => format.name() == ending,
-            endings => {
-                endings.contains(&ending.as_str()) || *format == Self::Html && ending == "html"
-            }
-        };
-        Self::all().find(is_ending)
-    }
-
-    /// Advice for a file with this ending, of a kind that is not written here.
-    fn instead_of(ending: &str) -> Option<&'static str> {
-        Some(match ending.to_ascii_lowercase().as_str() {
-            "pdf" => "write .html and print it, or .tex",
-            "png" | "jpg" | "jpeg" => "write .svg, which converts to it",
-            "xls" | "xlsx" | "ods" => "write .csv",
-            "doc" | "docx" => "write .html or .tex",
-            "nb" | "ipynb" => "write .py or .json",
-            _ => return None,
-        })
-    }
-
-    /// The name on the command line.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Text => "text",
-            Self::Latex => "latex",
-            Self::Json => "json",
-            Self::Csv => "csv",
-            Self::Svg => "svg",
-            Self::Html => "html",
-            Self::Toml => "toml",
-            Self::Code(language) => language.name(),
-        }
-    }
-}
-
-/// Reads a format. Help lists those of every command and these; a command refuses all others with
-/// the reason.
-fn format_parser(
-    listed: impl IntoIterator<Item = Format>,
-) -> impl TypedValueParser<Value = Format> {
-    let listed: Vec<Format> = Format::OF_ALL.into_iter().chain(listed).collect();
-    let values = Format::all().map(|format| {
-        let endings = format.endings().iter().copied();
-        PossibleValue::new(format.name()).aliases(endings).hide(!listed.contains(&format))
-    });
-    let unknown = || "no format of this name".to_owned();
-    PossibleValuesParser::new(values).try_map(move |name| {
-        let is_meant =
-            |format: &Format| format.name() == name || format.endings().contains(&name.as_str());
-        Format::all().find(is_meant).ok_or_else(unknown)
-    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -468,143 +335,6 @@ fn count(text: &str) -> Result<u32, String> {
         Ok(count) if count > 0 => Ok(count),
         _ => Err("expected a whole number, 1 or more".to_owned()),
     }
-}
-
-/// Why a command ends without its result.
-enum Failure {
-    /// Exit code 1: the problem was refused, or something failed.
-    Refused(Reason),
-    /// Exit code 2.
-    Usage(String),
-}
-
-/// The reason of a refusal.
-#[derive(Debug, PartialEq)]
-struct Reason {
-    /// The whole message, with its help and its notes.
-    text: String,
-    /// The part of the program that refused, by the name of its error, `oscillator` say; `command`
-    /// for what belongs to no part.
-    kind: String,
-    /// The term of the equation that is to blame, as it was typed.
-    term: Option<String>,
-}
-
-/// A refusal that knows no way forward.
-impl<E: std::error::Error> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self::refused(&error, None)
-    }
-}
-
-impl Failure {
-    /// A refusal with its way forward.
-    fn refused(error: &impl Display, help: Option<String>) -> Self {
-        let text = match help {
-            Some(help) => format!("{error}\n  help: {help}"),
-            None => error.to_string(),
-        };
-        Self::Refused(Reason { text, kind: kind_of(error), term: None })
-    }
-
-    /// A refusal for this reason, by the command itself.
-    fn because(text: impl Into<String>) -> Self {
-        Self::refused(&text.into(), None)
-    }
-
-    /// A refusal by the part of the program that this error belongs to.
-    fn of_kind<E>(self, error: &E) -> Self {
-        match self {
-            Self::Refused(reason) => Self::Refused(Reason { kind: kind_of(error), ..reason }),
-            usage => usage,
-        }
-    }
-
-    /// A refusal with the term that is to blame.
-    fn naming(self, term: Option<&str>) -> Self {
-        match self {
-            Self::Refused(reason) => {
-                Self::Refused(Reason { term: term.map(str::to_owned), ..reason })
-            }
-            usage => usage,
-        }
-    }
-
-    /// The failure of one of many, after the name of that one.
-    fn within(self, name: &str) -> Self {
-        match self {
-            Self::Refused(reason) => {
-                Self::Refused(Reason { text: format!("{name}: {}", reason.text), ..reason })
-            }
-            Self::Usage(text) => Self::because(format!("{name}: {text}")),
-        }
-    }
-
-    /// A refusal with what else may be behind it.
-    fn with_notes(self, notes: &[String]) -> Self {
-        match self {
-            Self::Refused(reason) => {
-                let added = |text: String, note: &String| text + "\n  note: " + note;
-                Self::Refused(Reason { text: notes.iter().fold(reason.text, added), ..reason })
-            }
-            Self::Usage(text) => Self::Usage(text),
-        }
-    }
-
-    /// A refusal with the advice of the library.
-    fn with_advice(error: &impl Display, advice: Option<Advice>) -> Self {
-        Self::refused(error, advice.as_ref().map(in_flags))
-    }
-}
-
-/// The name of an error without `Error`, in the spelling of the formats: `oscillator`.
-fn kind_of<E>(_: &E) -> String {
-    let path = std::any::type_name::<E>();
-    let name = path.rsplit("::").next().unwrap_or_default().trim_end_matches("Error");
-    let mut kind = String::new();
-    for letter in name.chars().filter(|letter| letter.is_ascii_alphanumeric()) {
-        if letter.is_ascii_uppercase() && !kind.is_empty() {
-            kind.push('-');
-        }
-        kind.push(letter.to_ascii_lowercase());
-    }
-    match kind.as_str() {
-        "string" | "" => "command".to_owned(),
-        _ => kind,
-    }
-}
-
-/// Advice of the library with its options as they are typed here: words of the command line, or
-/// keywords inside another process.
-fn in_flags(advice: &Advice) -> String {
-    let is_call = session::current().is_call();
-    let option = |name: &str, value: &str| match is_call {
-        true if value.parse::<f64>().is_ok() => format!("{name}={value}"),
-        true => format!("{name}=\"{value}\""),
-        false => format!("--{name} {value}"),
-    };
-    advice.spelt(|setting| match setting {
-        Setting::Method(method) => option("method", method.name()),
-        Setting::Order(order) => option("order", &order.to_string()),
-        Setting::Degrees(degrees) => option("order", &degrees.separated()),
-        Setting::Amplitude(convention) => option("amplitude", convention.name()),
-        Setting::Small(name) => option("small", &name.to_string()),
-        Setting::Taylor if is_call => "taylor=DEGREE".to_owned(),
-        Setting::Taylor => "--taylor DEGREE".to_owned(),
-        Setting::About { coordinate, position } => {
-            option("about", &format!("{coordinate}={position}"))
-        }
-        Setting::Values if is_call => "values of the symbols".to_owned(),
-        Setting::Values => "--at".to_owned(),
-        Setting::Resonance(driving, linear) => option("resonance", &format!("{driving}:{linear}")),
-        other => other.to_string(),
-    })
-}
-
-/// The option that gives values to these names.
-fn values_of(names: &[Symbol]) -> String {
-    let values: Vec<String> = names.iter().map(|name| format!("{name}=VALUE")).collect();
-    format!("--at {}", values.join(","))
 }
 
 /// Writes a result to where it is to go.
@@ -734,152 +464,6 @@ fn by_ending(failure: Failure, common: &Common) -> Failure {
         )),
         failure => failure,
     }
-}
-
-/// The result of the work; `None` if it panicked.
-type Worked = Option<Result<Outcome, Failure>>;
-
-/// Exit code and message of work that ends without a result.
-type InVain = (u8, String);
-
-/// Does work until its end, an interrupt or the time limit: what came of it, where anything did,
-/// and what to say where nothing did because it was ended.
-fn within_limits(
-    work: Box<dyn Work>,
-    session: &'static Session,
-    (sender, receiver): (Sender<Message>, Receiver<Message>),
-    Limits { timeout, patience, watch }: Limits,
-) -> (Option<Worked>, Option<InVain>) {
-    // The work has a thread of its own so that a time limit can end it, wherever it is.
-    let limit =
-        timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
-    // No time at all is up before the work begins, whichever of the two threads is run first.
-    if limit.is_some_and(|limit| limit.is_zero()) {
-        session.stop.store(true, Ordering::Relaxed);
-    }
-    let started = Instant::now();
-    let is_forked = is_forked();
-    let worker = std::thread::spawn(move || {
-        let run = move || {
-            session.enter();
-            std::panic::catch_unwind(|| work.run())
-        };
-        let outcome = match is_forked {
-            true => on_threads(0, run),
-            false => run(),
-        };
-        let _ = sender.send(Message::Done(outcome.ok()));
-    });
-    // A caller that ends a work has no use for a part of it.
-    let after_interrupt: fn(&Session) -> Duration = match watch {
-        Some(_) => |_| Duration::ZERO,
-        None => patience,
-    };
-    let first = match watch {
-        None => receive(&receiver, limit),
-        Some(watch) => loop {
-            let left = limit.map(|limit| limit.saturating_sub(started.elapsed()));
-            let wait = left.unwrap_or(EVERY).min(EVERY);
-            match receiver.recv_timeout(wait) {
-                Err(RecvTimeoutError::Timeout) if left.is_none_or(|left| left > EVERY) => {
-                    let (done, all) = session.progress.read();
-                    if !watch(done, all) {
-                        session.abandon();
-                        break Ok(Message::Interrupt);
-                    }
-                }
-                other => break other,
-            }
-        },
-    };
-    // A whole result that comes too late is too late, however soon it was taken from the channel.
-    let late = limit.is_some_and(|limit| started.elapsed() > limit) && patience(session).is_zero();
-    let found = match first {
-        Ok(Message::Done(outcome)) if !late => (Some(outcome), None),
-        Ok(Message::Interrupt) => (
-            wait_for_part(&receiver, session, after_interrupt(session)),
-            Some((INTERRUPTED, "interrupted without a result".to_owned())),
-        ),
-        Ok(Message::Done(_)) | Err(_) => {
-            let seconds = timeout.unwrap_or_default();
-            let message = format!(
-                "stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"
-            );
-            (wait_for_part(&receiver, session, patience(session)), Some((1, message)))
-        }
-    };
-    if let (Some(None), _) | (None, None) = found {
-        // It broke: its own words on standard error come first.
-        let _ = worker.join();
-    }
-    found
-}
-
-/// Whether this process is the child of one that had run a command before it was forked. The threads
-/// of the parent's pool are not in the child, which would wait for them for ever: it takes new ones.
-fn is_forked() -> bool {
-    static FIRST: AtomicU32 = AtomicU32::new(0);
-    let own = std::process::id();
-    let first = FIRST.compare_exchange(0, own, Ordering::Relaxed, Ordering::Relaxed);
-    first.is_err_and(|first| first != own)
-}
-
-/// The limits of a work.
-struct Limits<'a> {
-    /// The time limit in seconds.
-    timeout: Option<f64>,
-    /// The time to wait for a part of the result.
-    patience: fn(&Session) -> Duration,
-    /// Is told the progress again and again, and says whether to go on.
-    watch: Option<Watch<'a>>,
-}
-
-/// Takes the parts done and all of them, and returns whether the work is to go on.
-type Watch<'a> = &'a mut dyn FnMut(u64, u64) -> bool;
-
-/// The time between two looks at the progress of a call.
-const EVERY: Duration = Duration::from_millis(50);
-
-/// The next message, within the limit.
-fn receive(
-    receiver: &Receiver<Message>,
-    limit: Option<Duration>,
-) -> Result<Message, RecvTimeoutError> {
-    match limit {
-        None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
-        Some(limit) => receiver.recv_timeout(limit),
-    }
-}
-
-/// The exit code of a program ended by an interrupt, by the convention of shells.
-const INTERRUPTED: u8 = 130;
-
-/// A message to the main thread.
-enum Message {
-    /// The work is done; nothing where it broke.
-    Done(Worked),
-    /// The user wants it to end.
-    Interrupt,
-}
-
-/// Asks the work to hand back what it has, and waits a little for it; not at all for work that has
-/// no parts.
-fn wait_for_part(
-    receiver: &Receiver<Message>,
-    session: &Session,
-    patience: Duration,
-) -> Option<Worked> {
-    session.stop.store(true, Ordering::Relaxed);
-    if patience.is_zero() {
-        return None;
-    }
-    let end = Instant::now() + patience;
-    while let Ok(message) = receiver.recv_timeout(end.saturating_duration_since(Instant::now())) {
-        if let Message::Done(outcome) = message {
-            return Some(outcome);
-        }
-    }
-    None
 }
 
 fn finish(outcome: Outcome, common: &Common, judged: bool) -> u8 {

@@ -24,9 +24,10 @@
 //! Coefficients that fall [faster than the powers of any number](is_entire), or [end](last_power),
 //! belong to a function without a singularity.
 
+mod complex;
+
 use std::cmp::Ordering;
 use std::fmt;
-use std::ops::{Add, Mul, Sub};
 
 use num_complex::Complex64;
 use num_traits::Zero as _;
@@ -36,6 +37,7 @@ use crate::decimal::plain_decimal;
 use crate::exact::big_float::BigFloat;
 use crate::exact::{Rational, Scaled, to_f64};
 use crate::parallel::par_map;
+use complex::Complex;
 
 /// An estimated number with a bound of its error.
 #[derive(Clone, Debug, PartialEq)]
@@ -243,66 +245,6 @@ impl ApproximantKind {
         match self {
             Self::Quadratic => coefficients,
             Self::Differential | Self::OfInverseRoot => coefficients - 1,
-        }
-    }
-}
-
-/// A complex number of many digits.
-#[derive(Clone, Debug)]
-struct Complex {
-    re: BigFloat,
-    im: BigFloat,
-}
-
-impl Complex {
-    fn from_complex64(value: Complex64, bits: usize) -> Self {
-        Self { re: BigFloat::of_f64(value.re, bits), im: BigFloat::of_f64(value.im, bits) }
-    }
-
-    fn to_f64(&self) -> Complex64 {
-        Complex64::new(self.re.to_f64(), self.im.to_f64())
-    }
-
-    fn squared_size(&self) -> BigFloat {
-        &(&self.re * &self.re) + &(&self.im * &self.im)
-    }
-
-    /// Distance to another number, as a double.
-    fn distance(&self, other: &Self) -> f64 {
-        (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
-    }
-
-    /// The quotient; zero where the divisor is.
-    fn divided_by(&self, divisor: &Self) -> Self {
-        let size = divisor.squared_size();
-        let above = self * &Self { re: divisor.re.clone(), im: -&divisor.im };
-        Self { re: &above.re / &size, im: &above.im / &size }
-    }
-}
-
-impl Add for &Complex {
-    type Output = Complex;
-
-    fn add(self, other: Self) -> Complex {
-        Complex { re: &self.re + &other.re, im: &self.im + &other.im }
-    }
-}
-
-impl Sub for &Complex {
-    type Output = Complex;
-
-    fn sub(self, other: Self) -> Complex {
-        Complex { re: &self.re - &other.re, im: &self.im - &other.im }
-    }
-}
-
-impl Mul for &Complex {
-    type Output = Complex;
-
-    fn mul(self, other: Self) -> Complex {
-        Complex {
-            re: &(&self.re * &other.re) - &(&self.im * &other.im),
-            im: &(&self.re * &other.im) + &(&self.im * &other.re),
         }
     }
 }

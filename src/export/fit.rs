@@ -129,7 +129,7 @@ fn of_decay(answer: &Answer, name: &str) -> Result<String, FigureError> {
         if law[which].len() > 1 {
             curves.push(curve("law", &law[which], CurveStyle::SECOND_FORMULA));
         }
-        if points.len() > 1 {
+        if points.len() > 1 && !best.law.is_driven() {
             panels.push(panel(title, ["amplitude", label], curves, vec![]));
         }
     }

@@ -214,22 +214,31 @@ pub fn fit<'a>(report: &FitReport) -> Document<'a> {
     match report {
         FitReport::Decay { answer, .. } => {
             let points = answer.records.iter().flat_map(|own| &own.backbone);
-            let rows = points.map(|point| {
-                let of = |value, error| {
-                    let [value, error] =
-                        with_error(&Estimate { name: String::new(), value, error });
-                    format!("{value} +- {error}")
-                };
-                vec![
-                    of(point.amplitude, point.amplitude_error),
-                    of(point.frequency, point.frequency_error),
-                    of(point.damping, point.damping_error),
-                ]
-            });
-            sections.push(vec![
-                Block::Heading("Without a law: frequency and damping against amplitude".to_owned()),
-                Block::table([("amplitude", "A"), ("omega", r"\omega"), ("zeta", r"\zeta")], rows),
-            ]);
+            let rows: Vec<Vec<String>> = points
+                .map(|point| {
+                    let of =
+                        |value, error| with_error(&Estimate { name: String::new(), value, error });
+                    let [amplitude, _] = of(point.amplitude, point.amplitude_error);
+                    let [frequency, damping] = [
+                        of(point.frequency, point.frequency_error),
+                        of(point.damping, point.damping_error),
+                    ];
+                    [[amplitude].as_slice(), &frequency, &damping].concat()
+                })
+                .collect();
+            let head = [
+                ("amplitude", "A"),
+                ("omega", r"\omega"),
+                ("error", "error"),
+                ("zeta", r"\zeta"),
+                ("error", "error"),
+            ];
+            // A driven motion has the frequency of its drive.
+            let is_driven = report.best().is_some_and(|fit| fit.law.is_driven());
+            if !rows.is_empty() && !is_driven {
+                let heading = "Without a law: frequency and damping against amplitude";
+                sections.push(vec![Block::Heading(heading.to_owned()), Block::table(head, rows)]);
+            }
         }
         FitReport::Impacts(answer) => {
             let rows = answer.measured.iter().map(|own| {
@@ -291,8 +300,8 @@ fn others<'a>(report: &FitReport, laws: &[FittedLaw]) -> Vec<Vec<Block<'a>>> {
     } else if laws.len() > 1 {
         let rows = laws.iter().map(|law| {
             let values = law.estimates.iter().map(|own| {
-                let [value, error] = with_error(own);
-                format!("{} = {value} +- {error}", own.name)
+                let [value, _] = with_error(own);
+                format!("{} = {value}", own.name)
             });
             let values: Vec<String> = values.collect();
             vec![law.name.clone(), values.join(", "), law.excluded.clone().unwrap_or_default()]

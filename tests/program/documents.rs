@@ -207,6 +207,9 @@ fn documents() -> Vec<(String, Value)> {
     let laws = ["shortest", "pendulum", "--range", "A=0:2.8", "--longest", "6"];
     add(&laws);
     add(&[&laws[..], &["--error", "0.01", "--certificate"]].concat());
+    add(&["fit", "examples/fit/pendulum.csv", "x'' + c*x' + d*sgn(x') + g*sin(x) = 0"]);
+    add(&["fit", "examples/fit/backbone.csv", "--data", "backbone"]);
+    add(&["fit", "examples/fit/impacts.csv", "--data", "impacts"]);
     add(&["paper"]);
     add(&["impact", "--compare"]);
     add(&["impact", "--certify"]);

@@ -211,7 +211,7 @@ fn laws_of_one_s_own_and_other_quantities_are_fitted() {
                 "{quantity:?} {estimate:?} {truth}"
             );
         }
-        let band = answer.predict(best, &[31.0, 35.0]).unwrap();
+        let band = answer.predict(best, 0, &[31.0, 35.0]).unwrap();
         let exact = solver.sample(&truth, [0.8, 0.5], &[0.0, 31.0, 35.0], 0.5, quantity).unwrap();
         for ([value, error], exact) in band.iter().zip(&exact.columns[0][1..]) {
             assert!(

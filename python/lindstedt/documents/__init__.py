@@ -11,6 +11,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lindstedt/certificate-range/1": ("certificate_range", ("CertificateRange",)),
     "lindstedt/certificate/1": ("certificate", ("CertificateDocument", "DampedCertificateDocument", "ModeCertificateDocument", "CoupledCertificateDocument", "LawCertificateDocument",)),
     "lindstedt/comparison/1": ("comparison", ("Comparison",)),
+    "lindstedt/fit/1": ("fit", ("Fit",)),
     "lindstedt/friction/1": ("friction", ("Friction",)),
     "lindstedt/impact-certificate/1": ("impact_certificate", ("ImpactCertificate",)),
     "lindstedt/impact-comparison/1": ("impact_comparison", ("ImpactComparison",)),

@@ -381,13 +381,6 @@ pub const CATALOG: &[CatalogEntry] = &[
         published: None,
     },
     CatalogEntry {
-        name: "bubble",
-        title: "gas bubble, x = (R/R0)^(5/2)",
-        equation: "x'' + 5/2*(x^(1/5) - x^(-7/5)) = 0",
-        source: "Lord Rayleigh, Phil. Mag. 34 (1917) 94-98, polytropic exponent 4/3; x by N. A. Kudryashov, D. I. Sinelshchikov, J. Phys. A 47 (2014) 405202",
-        published: None,
-    },
-    CatalogEntry {
         name: "fermi-pasta-ulam",
         title: "three masses of the chain of Fermi, Pasta and Ulam",
         equation: "x'' + 2*x - y - alpha*((y - x)^2 - x^2) = 0; y'' + 2*y - x - z - alpha*((z - y)^2 - (y - x)^2) = 0; z'' + 2*z - y - alpha*(z^2 - (z - y)^2) = 0",

@@ -35,7 +35,7 @@
 //! | [`response`] | follows steady states through resonances: branches, stability, bifurcations | [`response::respond`] |
 //! | [`absorber_verdict`] | judges absorbers by searches, branches and simulations | [`absorber_verdict::judge_absorber`] |
 //! | [`shortest`] | searches the shortest frequency law within an error on a range, and proves it | [`shortest::search`] |
-//! | [`fit`](mod@fit) | finds the law of a measured motion, with the errors of its parameters | [`fit::answer::fit`] |
+//! | [`fit`] | finds the law of a measured motion, with the errors of its parameters | [`fit::answer::fit`] |
 //! | [`hill`] | says where rest is stable under periodic coefficients: transition curves, multipliers | [`hill::transition_curves`] |
 //! | [`coupled`] | reads coupled equations of motion of any number of coordinates | [`coupled::CoupledEquations`] |
 //! | [`wall`] | reads rigid walls with a coefficient of restitution | [`wall::Wall`] |
@@ -77,7 +77,7 @@ pub use lindstedt_dynamics::{coupled, mechanics, system, wall};
 #[doc(inline)]
 pub use lindstedt_expr::{exact, expr};
 #[doc(inline)]
-pub use lindstedt_fit as fit;
+pub use lindstedt_fit::fit;
 #[doc(inline)]
 pub use lindstedt_impact::{impact, optimize, orbits};
 #[doc(inline)]

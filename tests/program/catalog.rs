@@ -209,7 +209,10 @@ fn derived_laws_follow_the_shift_of_the_frequency() {
             let judged = |size| {
                 judge(&oscillator, &solution, &values(&solution, size), 1e-3).expect(entry.name)
             };
-            let (linear, nonlinear) = (judged("1/1000"), judged("1/20"));
+            // Where the leading shift nearly cancels, as that of a bubble, the next terms soon exceed it.
+            let sizes =
+                if entry.name == "bubble" { ["1/10000", "1/200"] } else { ["1/1000", "1/20"] };
+            let [linear, nonlinear] = sizes.map(judged);
             let shift = (nonlinear.true_frequency / linear.true_frequency - 1.0).abs();
             let missed = nonlinear.relative_error.expect("a real frequency").abs();
             assert!(shift > 1e-7, "{} does not shift: {shift:e}", entry.name);

@@ -311,6 +311,7 @@ fn innermost(document: &mut Value) -> &mut Value {
         },
         Some("lindstedt/motion/1" | "lindstedt/primary/1") => "/final_state",
         Some("lindstedt/one-harmonic/1") => "/motions/0",
+        Some("lindstedt/fit/1") => "/laws/0",
         Some("lindstedt/slow-equations/1") => "/modes/0",
         Some("lindstedt/stability/1") => "/curves/0",
         Some("lindstedt/certificate/1") if document["ode"] == json::EQUATIONS_WITH_DRIVE => {

@@ -3,14 +3,14 @@
 //! In: a record of a free decay, a backbone table or times of impacts. Out: frequency and damping against
 //! amplitude without any law, a table of laws with their parameters, errors and exclusions.
 //!
-//! Five names to know: [`record::read`], a record from text; [`answer::fit`], the laws of a free decay; [`laws::Law`], a law of
-//! the list or an equation of one's own; [`backbone::backbone`], frequency and damping without a law; [`motion::MotionSolver`], a
+//! Five names to know: [`fit::record::read`], a record from text; [`fit::answer::fit`], the laws of a free decay; [`fit::laws::Law`], a law of
+//! the list or an equation of one's own; [`fit::backbone::backbone`], frequency and damping without a law; [`fit::motion::MotionSolver`], a
 //! motion with its derivatives by the parameters.
 //!
 //! ```
-//! use lindstedt_fit::answer::{FitOptions, fit};
-//! use lindstedt_fit::laws::{Loss, Spring};
-//! use lindstedt_fit::record::Record;
+//! use lindstedt_fit::fit::answer::{FitOptions, fit};
+//! use lindstedt_fit::fit::laws::{Loss, Spring};
+//! use lindstedt_fit::fit::record::Record;
 //!
 //! // x'' + 0.04 x' + 4 x = 0 with an offset, and a ripple in place of noise.
 //! let times: Vec<f64> = (0..800).map(|index| 0.05 * f64::from(index)).collect();
@@ -32,42 +32,4 @@ pub use lindstedt_dynamics::{expr, numeric, parallel, symbol, system};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::oscillator;
 
-pub mod laws;
-
-mod powers;
-
-mod polynomial;
-
-mod spikes;
-
-pub mod turning_points;
-
-mod least_squares;
-
-pub mod backbone;
-
-mod closed_forms;
-
-pub mod motion;
-
-mod fit_coordinates;
-
-pub mod sample_fit;
-
-pub mod whiteness;
-
-mod integration;
-
-pub mod record;
-
-pub mod quality;
-
-mod equation_error;
-
-pub mod fitted_record;
-
-pub mod answer;
-
-pub mod impacts;
-
-pub mod tables;
+pub mod fit;

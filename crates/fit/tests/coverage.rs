@@ -7,8 +7,8 @@ mod synthetic;
 
 use std::collections::BTreeMap;
 
-use lindstedt_fit::answer::{FitOptions, fit};
-use lindstedt_fit::laws::{Loss, Spring};
+use lindstedt_fit::fit::answer::{FitOptions, fit};
+use lindstedt_fit::fit::laws::{Loss, Spring};
 use synthetic::{LONG, Length, SHORT, synthetic};
 
 /// What a run over many records found.
@@ -137,7 +137,7 @@ fn errors_are_true_over_some_short_records() {
 }
 
 /// The example of a pendulum with viscous damping and dry friction, 60 s at 200 Hz with 0.3 degrees of noise.
-fn pendulum(seed: u64) -> lindstedt_fit::record::Record {
+fn pendulum(seed: u64) -> lindstedt_fit::fit::record::Record {
     use rand::SeedableRng;
     let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let times: Vec<f64> = (0..12_000).map(|index| f64::from(index) / 200.0).collect();
@@ -146,7 +146,7 @@ fn pendulum(seed: u64) -> lindstedt_fit::record::Record {
     let motion = synthetic::motion(spring, loss, &truth, [1.4, 0.0], &times);
     let noise = 0.3_f64.to_radians();
     let values = motion.iter().map(|x| x + noise * synthetic::normal(&mut generator));
-    lindstedt_fit::record::Record {
+    lindstedt_fit::fit::record::Record {
         values: values.collect(),
         times,
         is_angle: true,
@@ -173,9 +173,9 @@ fn a_pendulum_with_viscous_damping_and_dry_friction_is_told_apart() {
 
 #[test]
 fn laws_of_one_s_own_and_other_quantities_are_fitted() {
-    use lindstedt_fit::answer::fit_laws;
-    use lindstedt_fit::laws::Law;
-    use lindstedt_fit::motion::{MotionSolver, Quantity};
+    use lindstedt_fit::fit::answer::fit_laws;
+    use lindstedt_fit::fit::laws::Law;
+    use lindstedt_fit::fit::motion::{MotionSolver, Quantity};
     use rand::SeedableRng;
 
     let law = Law::parse("x'' + c*x' + k*x + f*tanh(8*x) = 0").unwrap();
@@ -193,7 +193,7 @@ fn laws_of_one_s_own_and_other_quantities_are_fitted() {
             .iter()
             .map(|own| own + 0.3 * size + 3e-3 * size * synthetic::normal(&mut generator))
             .collect();
-        let record = lindstedt_fit::record::Record {
+        let record = lindstedt_fit::fit::record::Record {
             times: times.clone(),
             values,
             quantity,

@@ -2,10 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use lindstedt_fit::laws::{Loss, Spring};
-use lindstedt_fit::motion::Quantity;
+use lindstedt_fit::fit::laws::{Loss, Spring};
+use lindstedt_fit::fit::motion::Quantity;
+use lindstedt_fit::fit::record::Record;
 use lindstedt_fit::numeric::ode::{Event, IntegrationOptions, State, integrate};
-use lindstedt_fit::record::Record;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

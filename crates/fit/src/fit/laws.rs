@@ -211,12 +211,12 @@ impl Law {
     /// [`LawError`].
     ///
     /// ```
-    /// use lindstedt_fit::laws::Law;
+    /// use lindstedt_fit::fit::laws::Law;
     ///
     /// let law = Law::parse("m*x'' + c*x' + k*x + 2*x^3 = 0")?;
     /// let names: Vec<String> = law.parameters.iter().map(|name| name.to_string()).collect();
     /// assert_eq!(names, ["c", "k", "m"]);
-    /// # Ok::<(), lindstedt_fit::laws::LawError>(())
+    /// # Ok::<(), lindstedt_fit::fit::laws::LawError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, LawError> {
         let equation = parse_equation(text).map_err(OscillatorError::from)?;

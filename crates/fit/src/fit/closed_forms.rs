@@ -14,13 +14,13 @@ use std::sync::LazyLock;
 use nalgebra::{DMatrix, DVector};
 use spec_math::cephes64::gamma;
 
-use crate::backbone::{BackbonePoint, backbone};
-use crate::laws::{Law, Loss, Spring};
-use crate::least_squares::{Covariance, Linearised, minimise};
+use crate::fit::backbone::{BackbonePoint, backbone};
+use crate::fit::laws::{Law, Loss, Spring};
+use crate::fit::least_squares::{Covariance, Linearised, minimise};
+use crate::fit::polynomial::regression;
+use crate::fit::turning_points::Swings;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::parallel::par_map;
-use crate::polynomial::regression;
-use crate::turning_points::Swings;
 
 /// A law fitted to turning points.
 #[derive(Clone, Debug)]

@@ -10,10 +10,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit_coordinates::FitCoordinates;
-use crate::laws::Law;
-use crate::least_squares::{Linearised, Minimum, minimise};
-use crate::motion::{MotionSolver, Quantity, SampledMotion};
+use crate::fit::fit_coordinates::FitCoordinates;
+use crate::fit::laws::Law;
+use crate::fit::least_squares::{Linearised, Minimum, minimise};
+use crate::fit::motion::{MotionSolver, Quantity, SampledMotion};
 
 /// The samples that a law is fitted to.
 #[derive(Clone, Debug, PartialEq)]

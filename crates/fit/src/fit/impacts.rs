@@ -12,9 +12,9 @@ use lindstedt_impact::impact::contact::hunt_crossley::{damping_for, restitution}
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use crate::answer::Estimate;
-use crate::least_squares::{Covariance, minimise};
-use crate::polynomial::median;
+use crate::fit::answer::Estimate;
+use crate::fit::least_squares::{Covariance, minimise};
+use crate::fit::polynomial::median;
 
 /// How the coefficient of restitution depends on the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +128,7 @@ impl ImpactsError {
 /// [`ImpactsError`].
 ///
 /// ```
-/// use lindstedt_fit::impacts::{RestitutionLaw, fit_impacts};
+/// use lindstedt_fit::fit::impacts::{RestitutionLaw, fit_impacts};
 ///
 /// let mut times = vec![0.0];
 /// let mut flight = 0.8;
@@ -139,7 +139,7 @@ impl ImpactsError {
 /// let answer = fit_impacts(&times, 9.81, Some(1e-4))?;
 /// assert_eq!(answer.laws[0].law, RestitutionLaw::Constant);
 /// assert!((answer.laws[0].estimates[0].value - 0.9).abs() < 1e-6);
-/// # Ok::<(), lindstedt_fit::impacts::ImpactsError>(())
+/// # Ok::<(), lindstedt_fit::fit::impacts::ImpactsError>(())
 /// ```
 pub fn fit_impacts(
     times: &[f64],

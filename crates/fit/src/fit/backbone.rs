@@ -10,8 +10,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::polynomial::regression;
-use crate::turning_points::Swings;
+use crate::fit::polynomial::regression;
+use crate::fit::turning_points::Swings;
 
 /// Frequency and damping at one amplitude, with their standard errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub struct BackbonePoint {
 /// number of points.
 ///
 /// ```
-/// use lindstedt_fit::{backbone::backbone, turning_points::Swings};
+/// use lindstedt_fit::fit::{backbone::backbone, turning_points::Swings};
 ///
 /// // A linear decay has the damping ratio 0.01 at every amplitude.
 /// let times: Vec<f64> = (0..6000).map(|index| 0.01 * f64::from(index)).collect();
@@ -44,7 +44,7 @@ pub struct BackbonePoint {
 /// for point in backbone(&Swings::find(&times, &values)?, 12) {
 ///     assert!((point.damping - 0.01).abs() < 1e-4 && (point.frequency - 5.0).abs() < 1e-3);
 /// }
-/// # Ok::<(), lindstedt_fit::turning_points::SwingsError>(())
+/// # Ok::<(), lindstedt_fit::fit::turning_points::SwingsError>(())
 /// ```
 pub fn backbone(swings: &Swings, most: usize) -> Vec<BackbonePoint> {
     const FEWEST: usize = 4;
@@ -78,7 +78,7 @@ fn point(
     let own = &amplitudes[start..end];
     let logarithms: Vec<f64> = own.iter().map(|amplitude| amplitude.ln()).collect();
     // An amplitude is a mean of three turning points with the weights 1/2, 1/4, 1/4.
-    let weight = |(point, amplitude): (&crate::turning_points::TurningPoint, &f64)| {
+    let weight = |(point, amplitude): (&crate::fit::turning_points::TurningPoint, &f64)| {
         (amplitude / (0.6124 * point.value_error)).powi(2)
     };
     let weights: Vec<f64> = points.iter().zip(own).map(weight).collect();

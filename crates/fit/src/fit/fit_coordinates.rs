@@ -14,9 +14,9 @@
 use nalgebra::DMatrix;
 use spec_math::cephes64::gamma;
 
-use crate::laws::{Law, Loss, Spring};
-use crate::motion::Quantity;
-use crate::sample_fit::Samples;
+use crate::fit::laws::{Law, Loss, Spring};
+use crate::fit::motion::Quantity;
+use crate::fit::sample_fit::Samples;
 
 /// The coordinates for a law of the list; the values themselves for an equation of one's own.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@
 
 use thiserror::Error;
 
-use crate::motion::Quantity;
+use crate::fit::motion::Quantity;
 
 /// A record of one quantity at increasing times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -150,14 +150,14 @@ const UNITS: [(&str, f64, bool); 11] = [
 /// [`ReadError`].
 ///
 /// ```
-/// use lindstedt_fit::record::{ReadOptions, read};
+/// use lindstedt_fit::fit::record::{ReadOptions, read};
 ///
 /// let text = "t (ms), angle [deg]\n0, 90\n10, 45\n20,\n30, -45\n";
 /// let records = read(text, &ReadOptions::default())?;
 /// assert_eq!(records[0].record.times, [0.0, 0.01, 0.03]);
 /// assert!(records[0].record.is_angle && (records[0].record.values[1] - 0.7854).abs() < 1e-4);
 /// assert_eq!(records[0].missing, [4]);
-/// # Ok::<(), lindstedt_fit::record::ReadError>(())
+/// # Ok::<(), lindstedt_fit::fit::record::ReadError>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<ReadRecord>, ReadError> {
     let table = Table::new(text)?;
@@ -195,12 +195,12 @@ pub struct Column {
 /// [`ReadError`].
 ///
 /// ```
-/// use lindstedt_fit::record::read_columns;
+/// use lindstedt_fit::fit::record::read_columns;
 ///
 /// let columns = read_columns("A, f (Hz)\n2, 1.5\n1, 1.6\n", &[], 3)?;
 /// assert_eq!((columns.len(), columns[1].name.as_str()), (2, "f (Hz)"));
 /// assert_eq!(columns[0].values, [2.0, 1.0]);
-/// # Ok::<(), lindstedt_fit::record::ReadError>(())
+/// # Ok::<(), lindstedt_fit::fit::record::ReadError>(())
 /// ```
 pub fn read_columns(text: &str, wanted: &[String], most: usize) -> Result<Vec<Column>, ReadError> {
     let table = Table::new(text)?;

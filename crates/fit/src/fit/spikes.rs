@@ -9,7 +9,7 @@
 //! one. The worst of neighbouring candidates is taken out first, and the search is repeated without it.
 //! (F. R. Hampel, *J. Am. Stat. Assoc.* 69 (1974) 383.)
 
-use crate::polynomial::median;
+use crate::fit::polynomial::median;
 
 /// The distance of a sample from the cubic through its four neighbours, and the factor by which independent noise is larger in it.
 fn distance(time: &[f64], value: &[f64]) -> [f64; 2] {

@@ -8,9 +8,9 @@
 
 use thiserror::Error;
 
-use crate::polynomial::{LocalPolynomial, median, regression};
+use crate::fit::polynomial::{LocalPolynomial, median, regression};
 
-pub use crate::spikes::local_noise;
+pub use crate::fit::spikes::local_noise;
 
 /// A turning point of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,14 +85,14 @@ impl Swings {
     /// [`SwingsError`].
     ///
     /// ```
-    /// use lindstedt_fit::turning_points::Swings;
+    /// use lindstedt_fit::fit::turning_points::Swings;
     ///
     /// let times: Vec<f64> = (0..2000).map(|index| 0.01 * f64::from(index)).collect();
     /// let values: Vec<f64> = times.iter().map(|t| 0.2 + (3.0 * t).cos()).collect();
     /// let swings = Swings::find(&times, &values)?;
     /// assert!((swings.half_period - std::f64::consts::PI / 3.0).abs() < 1e-6);
     /// assert!((swings.points[3].value + 0.8).abs() < 1e-4);
-    /// # Ok::<(), lindstedt_fit::turning_points::SwingsError>(())
+    /// # Ok::<(), lindstedt_fit::fit::turning_points::SwingsError>(())
     /// ```
     pub fn find(times: &[f64], values: &[f64]) -> Result<Self, SwingsError> {
         const PASSES: usize = 3;

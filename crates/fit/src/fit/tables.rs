@@ -10,11 +10,11 @@
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-use crate::answer::Estimate;
-use crate::backbone::BackbonePoint;
-use crate::closed_forms::{Numbers, guess};
-use crate::laws::{Law, Loss, Spring};
-use crate::least_squares::{Covariance, Minimum, minimise};
+use crate::fit::answer::Estimate;
+use crate::fit::backbone::BackbonePoint;
+use crate::fit::closed_forms::{Numbers, guess};
+use crate::fit::laws::{Law, Loss, Spring};
+use crate::fit::least_squares::{Covariance, Minimum, minimise};
 
 /// One row of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,8 +94,8 @@ impl TableError {
 /// [`TableError`].
 ///
 /// ```
-/// use lindstedt_fit::laws::Spring;
-/// use lindstedt_fit::tables::{TableRow, fit_table};
+/// use lindstedt_fit::fit::laws::Spring;
+/// use lindstedt_fit::fit::tables::{TableRow, fit_table};
 ///
 /// // The first approximation of Duffing's equation, omega^2 = 4 + 3/4 A^2, with zeta = 0.01.
 /// let rows: Vec<TableRow> = (1..20)
@@ -104,7 +104,7 @@ impl TableError {
 ///     .collect();
 /// let answer = fit_table(&rows, false)?;
 /// assert_eq!(answer.springs[0].law.parts.map(|parts| parts.0), Some(Spring::Duffing));
-/// # Ok::<(), lindstedt_fit::tables::TableError>(())
+/// # Ok::<(), lindstedt_fit::fit::tables::TableError>(())
 /// ```
 pub fn fit_table(rows: &[TableRow], is_angle: bool) -> Result<TableAnswer, TableError> {
     const FEWEST: usize = 5;

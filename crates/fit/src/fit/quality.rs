@@ -1,9 +1,9 @@
 //! The quality of a record: sampling, gaps, quantisation, saturation, the part that is a free decay.
 
-use crate::polynomial::median;
-use crate::record::Record;
-use crate::spikes::{local_noise, spikes};
-use crate::turning_points::{Swings, SwingsError};
+use crate::fit::polynomial::median;
+use crate::fit::record::Record;
+use crate::fit::spikes::{local_noise, spikes};
+use crate::fit::turning_points::{Swings, SwingsError};
 
 /// What a record is like, before any law.
 #[derive(Clone, Debug, PartialEq)]

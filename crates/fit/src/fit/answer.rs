@@ -12,18 +12,18 @@
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-use crate::closed_forms::{MapFit, fit_maps};
-use crate::equation_error::{initial_state, parameters as equation_error_parameters};
-use crate::fitted_record::{FittedRecord, weigh};
-use crate::laws::{LOCAL_NAMES, Law, LawError, Loss, Spring};
-use crate::least_squares::Covariance;
-use crate::motion::{MotionSolver, Quantity};
+use crate::fit::closed_forms::{MapFit, fit_maps};
+use crate::fit::equation_error::{initial_state, parameters as equation_error_parameters};
+use crate::fit::fitted_record::{FittedRecord, weigh};
+use crate::fit::laws::{LOCAL_NAMES, Law, LawError, Loss, Spring};
+use crate::fit::least_squares::Covariance;
+use crate::fit::motion::{MotionSolver, Quantity};
+use crate::fit::polynomial::median;
+use crate::fit::record::Record;
+use crate::fit::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, misfit, motion, values_of};
+use crate::fit::turning_points::{Swings, SwingsError};
+use crate::fit::whiteness::{Whiteness, robust_covariance};
 use crate::parallel::par_map;
-use crate::polynomial::median;
-use crate::record::Record;
-use crate::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, misfit, motion, values_of};
-use crate::turning_points::{Swings, SwingsError};
-use crate::whiteness::{Whiteness, robust_covariance};
 
 /// What to fit, and how.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -180,8 +180,8 @@ impl FitError {
 /// [`FitError`].
 ///
 /// ```
-/// use lindstedt_fit::answer::{FitOptions, fit};
-/// use lindstedt_fit::record::Record;
+/// use lindstedt_fit::fit::answer::{FitOptions, fit};
+/// use lindstedt_fit::fit::record::Record;
 ///
 /// // x'' + 0.04 x' + 4 x = 0 from two amplitudes, with a ripple in place of noise.
 /// let times: Vec<f64> = (0..600).map(|index| 0.05 * f64::from(index)).collect();

@@ -9,13 +9,13 @@
 //! after it `v = a+ (t - t*)`. If the accelerations on both sides lead back, the motion sticks. The steps
 //! are Taylor steps over many samples, one run for each half swing where the law depends on the sign of `v`.
 //!
-//! Powers with an unknown exponent are rounded near zero, by a share of the largest value of each half swing: [`powers`](crate::powers).
+//! Powers with an unknown exponent are rounded near zero, by a share of the largest value of each half swing: [`powers`](crate::fit::powers).
 
 use std::collections::BTreeMap;
 
 use crate::expr::{CompiledList, Expr, ExprError, Function, Node};
-use crate::laws::{Law, LawError};
-use crate::powers::{Base, PowerTerm, by_parameter, by_variable, replace_powers, written_out};
+use crate::fit::laws::{Law, LawError};
+use crate::fit::powers::{Base, PowerTerm, by_parameter, by_variable, replace_powers, written_out};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 use crate::system::{Event, PathEnd, Solver, System, SystemOptions};
 

@@ -6,13 +6,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::expr::CompiledList;
-use crate::laws::Law;
-use crate::least_squares::minimise;
-use crate::motion::Quantity;
-use crate::polynomial::LocalPolynomial;
-use crate::sample_fit::Samples;
+use crate::fit::laws::Law;
+use crate::fit::least_squares::minimise;
+use crate::fit::motion::Quantity;
+use crate::fit::polynomial::LocalPolynomial;
+use crate::fit::sample_fit::Samples;
+use crate::fit::turning_points::Swings;
 use crate::symbol::Symbol;
-use crate::turning_points::Swings;
 
 /// Coordinate, velocity and acceleration at a time.
 type State = [f64; 3];

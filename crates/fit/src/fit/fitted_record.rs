@@ -1,14 +1,14 @@
 //! A record made ready for a fit: its quality, its turning points, its samples.
 
-use crate::answer::FitError;
-use crate::backbone::{BackbonePoint, backbone};
-use crate::integration::oscillating_integral;
-use crate::motion::Quantity;
-use crate::polynomial::median;
-use crate::quality::{Quality, part, quality};
-use crate::record::Record;
-use crate::sample_fit::Samples;
-use crate::turning_points::Swings;
+use crate::fit::answer::FitError;
+use crate::fit::backbone::{BackbonePoint, backbone};
+use crate::fit::integration::oscillating_integral;
+use crate::fit::motion::Quantity;
+use crate::fit::polynomial::median;
+use crate::fit::quality::{Quality, part, quality};
+use crate::fit::record::Record;
+use crate::fit::sample_fit::Samples;
+use crate::fit::turning_points::Swings;
 
 /// A record of a fit, with what was found in it before any law.
 #[derive(Clone, Debug)]

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use crate::fit::closed_forms::{MapFit, fit_maps};
 use crate::fit::equation_error::{initial_state, parameters as equation_error_parameters};
-use crate::fit::fitted_record::{FittedRecord, weigh};
+use crate::fit::fitted_record::{CountedPart, FittedRecord, weigh};
 use crate::fit::laws::{LOCAL_NAMES, Law, LawError, Loss, Spring};
 use crate::fit::least_squares::Covariance;
 use crate::fit::motion::{MotionSolver, Quantity};
@@ -202,7 +202,7 @@ pub fn fit(
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
     let all = records.as_ref();
-    let records = prepare(all, false, options)?;
+    let records = prepare(all, CountedPart::Decay, options)?;
     records.iter().try_for_each(FittedRecord::refuse_growth)?;
     let swings: Vec<&Swings> = records.iter().map(|own| &own.swings).collect();
     let laws = Law::list(all.iter().all(|record| record.is_angle));
@@ -271,7 +271,8 @@ pub fn fit_laws(
     options: &FitOptions,
 ) -> Result<Answer, FitError> {
     let is_driven = laws.iter().any(|(law, _)| law.is_driven());
-    let records = prepare(records.as_ref(), is_driven, options)?;
+    let counted = if is_driven { CountedPart::All } else { CountedPart::AfterRelease };
+    let records = prepare(records.as_ref(), counted, options)?;
     let swings: Vec<&Swings> = records.iter().map(|own| &own.swings).collect();
     let samples: Vec<&Samples> = records.iter().map(|own| &own.samples).collect();
     let own = par_map(laws, |(law, start)| -> Result<Option<SampleFit>, FitError> {
@@ -314,11 +315,11 @@ fn nearest_starts(
 
 fn prepare(
     records: &[Record],
-    is_driven: bool,
+    counted: CountedPart,
     options: &FitOptions,
 ) -> Result<Vec<FittedRecord>, FitError> {
     let own =
-        records.iter().map(|record| FittedRecord::new(record, is_driven, options.keep_outliers));
+        records.iter().map(|record| FittedRecord::new(record, counted, options.keep_outliers));
     let mut records = own.collect::<Result<Vec<_>, _>>()?;
     if records.is_empty() {
         return Err(FitError::NoRecord);

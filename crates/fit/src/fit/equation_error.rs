@@ -21,9 +21,15 @@ type State = [f64; 3];
 fn local_state(samples: &Samples, swings: &Swings, time: f64) -> Option<State> {
     const SHARE: f64 = 0.35;
     const DEGREE: usize = 4;
-    let width = SHARE * swings.half_period;
-    let from = samples.times.partition_point(|own| *own < time - width);
-    let to = samples.times.partition_point(|own| *own <= time + width);
+    /// The samples on either side where those of a share of the swing are fewer: two more than the polynomial needs.
+    const FEWEST: usize = 3;
+    let times = &samples.times;
+    let place = times.partition_point(|own| *own < time);
+    let beside = |place: usize| times.get(place).map_or(0.0, |own| (own - time).abs());
+    let few = beside(place.saturating_sub(FEWEST)).max(beside(place + FEWEST));
+    let width = (SHARE * swings.half_period).max(few);
+    let from = times.partition_point(|own| *own < time - width);
+    let to = times.partition_point(|own| *own <= time + width);
     let (times, values) = (&samples.times[from..to], &samples.values[from..to]);
     let fit = LocalPolynomial::fit(times, values, time, width, DEGREE)?;
     let centre = swings.centre_at(time, 0.0);

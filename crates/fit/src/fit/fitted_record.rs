@@ -27,15 +27,26 @@ pub struct FittedRecord {
     indices: Vec<usize>,
 }
 
+/// The part of a record that counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CountedPart {
+    /// The free decay from its largest swing on.
+    Decay,
+    /// What follows a hold, whether it grows or decays.
+    AfterRelease,
+    /// All of it.
+    All,
+}
+
 impl FittedRecord {
-    /// Prepares a record. All of it counts if it is driven, otherwise what is a free decay; with outliers, its spikes are among the
+    /// Prepares a record. What counts is its free decay, of an equation of one's own all after the release, and all of a driven motion; with outliers, its spikes are among the
     /// samples too, but not among what turning points are found from.
     ///
     /// # Errors
     /// [`FitError`] if it does not swing or is saturated.
     pub(crate) fn new(
         record: &Record,
-        is_driven: bool,
+        counted: CountedPart,
         keep_outliers: bool,
     ) -> Result<Self, FitError> {
         /// The share of saturated samples above which a record is refused.
@@ -43,9 +54,11 @@ impl FittedRecord {
         /// The number of points of the backbone.
         const POINTS: usize = 12;
         let mut quality = quality(record)?;
-        if is_driven {
-            quality.start = 0;
-        }
+        quality.start = match counted {
+            CountedPart::Decay => quality.start,
+            CountedPart::AfterRelease => quality.release,
+            CountedPart::All => 0,
+        };
         let (saturated, total) = (quality.saturated.len(), record.times.len());
         if saturated as f64 > MOST * total as f64 {
             return Err(FitError::Saturated { saturated, total });

@@ -20,6 +20,8 @@ pub struct Quality {
     pub saturated: Vec<usize>,
     /// Single samples far from the curve through their neighbours: their indices.
     pub spikes: Vec<usize>,
+    /// The first sample after a hold: that of the record where nothing is held.
+    pub release: usize,
     /// The first sample of the free decay.
     pub start: usize,
 }
@@ -46,10 +48,10 @@ pub fn quality(record: &Record) -> Result<Quality, SwingsError> {
     let swings = Swings::find(&clean.times, &clean.values)?;
     let saturated = saturated(&clean, &swings, quantum.unwrap_or(0.0));
     let saturated = saturated.into_iter().map(|place| kept[place]).collect();
-    let start = match start(&clean, &swings, noise) {
-        0 => 0,
-        place => kept[place],
-    };
+    let release = release(&clean, &swings, noise);
+    let start = start(&clean, &swings, release);
+    // The first sample may be a spike.
+    let [release, start] = [release, start].map(|place| if place == 0 { 0 } else { kept[place] });
     Ok(Quality {
         step,
         noise,
@@ -57,6 +59,7 @@ pub fn quality(record: &Record) -> Result<Quality, SwingsError> {
         gaps,
         saturated,
         spikes,
+        release,
         start,
     })
 }
@@ -111,27 +114,34 @@ fn saturated(record: &Record, swings: &Swings, quantum: f64) -> Vec<usize> {
     found
 }
 
-/// The first sample of the free decay: after a hold before the release, and at the largest turning point if those before it are smaller.
-fn start(record: &Record, swings: &Swings, noise: f64) -> usize {
-    const HELD: f64 = 6.0;
+/// The first sample of the free decay: after the release, and at the largest turning point if those before it are smaller. What grows
+/// for more than half of its swings is no decay, and is left whole.
+fn start(record: &Record, swings: &Swings, release: usize) -> usize {
     const SMALLER: f64 = 0.9;
-    let Record { times, values, .. } = record;
     let amplitudes = swings.amplitudes();
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);
     let peak = amplitudes.iter().position(|own| *own >= 0.97 * largest).unwrap_or(0);
-    let mut start = 0;
-    if amplitudes[..peak].iter().any(|own| *own < SMALLER * largest) {
-        start = times.partition_point(|time| *time < swings.points[peak].time);
+    let grows = amplitudes[..peak].iter().any(|own| *own < SMALLER * largest);
+    match grows && 2 * peak <= amplitudes.len() {
+        true => release.max(record.times.partition_point(|time| *time < swings.points[peak].time)),
+        false => release,
     }
+}
+
+/// The first sample after a hold.
+fn release(record: &Record, swings: &Swings, noise: f64) -> usize {
+    const HELD: f64 = 6.0;
+    let Record { times, values, .. } = record;
+    let largest = swings.amplitudes().into_iter().fold(0.0, f64::max);
     // A body that is held shows its noise alone.
     let level = values.first().copied().unwrap_or(0.0);
     let moved =
         values.iter().position(|value| (value - level).abs() > HELD * noise + 1e-3 * largest);
     let moved = moved.unwrap_or(0);
-    if times[moved] - times[0] > 0.5 * swings.half_period {
-        start = start.max(moved);
+    match times[moved] - times[0] > 0.5 * swings.half_period {
+        true => moved,
+        false => 0,
     }
-    start
 }
 
 impl Quality {

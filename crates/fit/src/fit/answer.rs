@@ -18,6 +18,7 @@ use crate::fit::fitted_record::{CountedPart, FittedRecord, weigh};
 use crate::fit::laws::{LOCAL_NAMES, Law, LawError, Loss, Spring};
 use crate::fit::least_squares::Covariance;
 use crate::fit::motion::{MotionSolver, Quantity};
+use crate::fit::nested::refit_wider;
 use crate::fit::polynomial::median;
 use crate::fit::record::Record;
 use crate::fit::sample_fit::{LOCAL, SampleFit, Samples, fit_samples, misfit, motion, values_of};
@@ -257,6 +258,7 @@ pub fn fit(
             _ => break,
         }
     }
+    refit_wider(&mut fits, &samples);
     Ok(Answer { excluded, ..finish(fits, records, options)? })
 }
 

@@ -19,6 +19,7 @@
 //! - `record`: records from text: [`record::read`]
 //! - `quality`: gaps, steps, saturation, where a decay begins
 //! - `equation_error`: a start of the parameters from accelerations
+//! - `nested`: laws within laws, which fit no better
 //! - `fitted_record`: a record made ready for a fit
 //! - `answer`: the laws of records, ordered, with what is excluded: [`answer::fit`]
 //! - `impacts`: restitution from times of impacts: [`impacts::fit_impacts`]
@@ -35,6 +36,7 @@ mod integration;
 pub mod laws;
 mod least_squares;
 pub mod motion;
+mod nested;
 mod polynomial;
 mod powers;
 pub mod quality;

@@ -19,6 +19,7 @@ use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
+pub(super) use candidate::mode_branch;
 pub use candidate::{certify_mode, certify_mode_motion};
 
 /// The definition of the amplitude of a mode.
@@ -68,7 +69,7 @@ pub struct ModeCertificate {
 }
 
 /// The largest number of coordinates.
-const MOST_COORDINATES: usize = 40;
+pub(super) const MOST_COORDINATES: usize = 40;
 
 /// The largest number of unknowns of a block.
 const MOST_UNKNOWNS: usize = HIGHEST_HARMONIC + 1;
@@ -123,6 +124,7 @@ impl ModeCertificate {
         ConservativeProblem {
             forces: self.forces.iter().collect(),
             coordinates: self.coordinates.clone(),
+            parameter: None,
             condition,
             odd: self.odd,
             motions: self.motions(),

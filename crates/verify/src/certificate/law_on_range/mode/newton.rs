@@ -74,10 +74,12 @@ impl ModeSolver {
     /// The motion at an amplitude; `None` where the iteration does not end.
     pub(super) fn motion(&self, amplitude: f64, near: &ScaledMotion) -> Option<ScaledMotion> {
         let mut found: Option<ScaledMotion> = None;
-        for last in LAST {
-            if last * self.count > MOST_UNKNOWNS {
-                break;
-            }
+        // As many harmonics as the motion nearby needed are needed again.
+        let known = near.cosines.iter().map(Vec::len).max().unwrap_or(0);
+        let possible = LAST.into_iter().filter(|last| last * self.count <= MOST_UNKNOWNS);
+        let possible: Vec<usize> = possible.collect();
+        let enough = possible.iter().position(|last| *last + 1 >= known);
+        for &last in &possible[enough.unwrap_or(possible.len().saturating_sub(1))..] {
             let from = found.as_ref().unwrap_or(near);
             let motion = self.with_harmonics(amplitude, from, last)?;
             let is_small =

@@ -23,11 +23,13 @@ mod newton;
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use super::super::HIGHEST_HARMONIC;
-use super::super::candidate::{INVERSE_BITS, inverse, units};
+use super::super::candidate::{INVERSE_BITS, inverse, odd_below, units};
 use super::super::force::is_odd;
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::super::law;
-use super::super::modes::{MOST_COORDINATES, ModeAmplitude, mode_branch};
+use super::super::modes::{
+    MOST_COORDINATES, ModeAmplitude, last_harmonic_of_largest_block, mode_branch,
+};
 use super::super::radii_polynomial::NotProved;
 use super::super::theorem::{
     ApproximateMotion, Condition, ConservativeProblem, MotionsOnDisc, NearMotion,
@@ -234,9 +236,13 @@ impl ScaledEquations {
             if !at_zero.is_zero() {
                 return Err(LawNotProved::NotCentred(force.to_string()));
             }
-            let scaled = over_amplitude(force, branch, &amplitude)?;
-            if begins_at_rest && scaled.substitute(variable, &Expr::zero()).is_err() {
-                return Err(LawNotProved::FromRest(force.to_string()));
+            let mut scaled = over_amplitude(force, branch, &amplitude)?;
+            let has_limit = |force: &Expr| force.substitute(variable, &Expr::zero()).is_ok();
+            if begins_at_rest && !has_limit(&scaled) {
+                scaled = scaled.expand()?;
+                if !has_limit(&scaled) {
+                    return Err(LawNotProved::FromRest(force.to_string()));
+                }
             }
             forces.push(scaled);
         }
@@ -331,7 +337,8 @@ impl ScaledEquations {
         const SMALL: f64 = 0.1;
         const LEAST: usize = 3;
         let last = (motion.mu * motion.stiffness / SMALL).sqrt().ceil();
-        last.to_usize().unwrap_or(LEAST).clamp(LEAST, HIGHEST_HARMONIC / 2) | 1
+        let most = last_harmonic_of_largest_block(self.coordinates.len(), self.odd);
+        odd_below(last.to_usize().unwrap_or(LEAST).max(LEAST) | 1, most)
     }
 
     /// `1/omega` between two amplitudes and the motion at the upper one; `joins` says whether the motions of

@@ -238,7 +238,7 @@ impl ModeCertificate {
 }
 
 /// The last harmonic of the largest block of so many coordinates.
-const fn last_harmonic_of_largest_block(coordinates: usize, odd: bool) -> usize {
+pub(super) const fn last_harmonic_of_largest_block(coordinates: usize, odd: bool) -> usize {
     let each = (MOST_UNKNOWNS - 1) / coordinates;
     let last = if odd { 2 * each - 1 } else { each - 1 };
     if last < HIGHEST_HARMONIC { last } else { HIGHEST_HARMONIC - 1 }

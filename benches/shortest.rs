@@ -2,7 +2,7 @@
 //! `cargo bench --workspace -- shortest`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use lindstedt::certificate::{LawCertificate, LawQuantity, StartOfLaw, check_law};
+use lindstedt::certificate::{LawCertificate, LawQuantity, MotionsOfLaw, StartOfLaw, check_law};
 use lindstedt::shortest::{LawProblem, SearchOptions, search};
 use lindstedt::{Oscillator, Supervision};
 
@@ -34,10 +34,12 @@ fn proofs(criterion: &mut Criterion) {
     ] {
         let fraction = |text: &str| text.parse().expect("a fraction");
         let certificate = LawCertificate {
-            force: "sin(x)".parse().expect("an expression"),
-            mass: None,
+            motions: MotionsOfLaw::Coordinate {
+                force: "sin(x)".parse().expect("an expression"),
+                mass: None,
+                start: StartOfLaw::Variable,
+            },
             variable: "A".into(),
-            start: StartOfLaw::Variable,
             quantity: LawQuantity::Frequency,
             law: law.parse().expect("an expression"),
             from: fraction("0"),

@@ -26,6 +26,7 @@ SECONDS = 120                               # a file may come from anybody
 MOTION, MODE, CYCLE, DRIVEN = "x''+f(x)=0", "q''+f(q)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
 CYCLES, ALL_DRIVEN = "q''+g(q)*q'+h(q)=0", "q''+g(q)*q'+h(q,c,s)=0"
 LAW, CONTACT = "x''+f(x,p)=0", "x''+f(x,x')=0"
+LAW_OF_MODE = "a*v''+mu*f(a*v)=0"
 FUNCTIONS = ("sqrt", "sin", "cos", "exp", "log")    # of a law; a force has three of them
 smallest = ONE >> 150                       # harmonics below this at the end of a series are a part of its tail
 begun = time.monotonic()
@@ -1854,6 +1855,7 @@ def check(text):
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1", "another schema")
     if z.get("ode") in (LAW, CONTACT):
         return check_law(z)
+    demand(z.get("ode") != LAW_OF_MODE, "the law of a normal mode on a range is beyond this program: lindstedt check proves it again")
     demand(z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")

@@ -1,7 +1,9 @@
 //! The shortest frequency law within an error on a range, and the front of length against error.
 
 use super::{Block, Document, size_in_percent};
-use crate::certificate::{LawCertificate, LawError, LawQuantity, StartOfLaw, restitution};
+use crate::certificate::{
+    LawCertificate, LawError, LawQuantity, ModeAmplitude, MotionsOfLaw, StartOfLaw, restitution,
+};
 use crate::decimal::{decimal, significant};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
@@ -204,33 +206,58 @@ pub fn shortest<'a>(report: &'a ShortestReport<'a>) -> Document<'a> {
     Document { sections }
 }
 
-/// The document of a certificate of a law that was checked.
-pub fn law_certificate<'a>(certificate: &LawCertificate, error: &LawError) -> Document<'a> {
-    let start = match &certificate.start {
-        StartOfLaw::Variable => certificate.variable.to_string(),
+/// The motion of a certificate of a law in words.
+fn motion_of_law(certificate: &LawCertificate) -> String {
+    let variable = certificate.variable;
+    let (force, mass, start) = match &certificate.motions {
+        MotionsOfLaw::Coordinate { force, mass, start } => (force, mass, start),
+        MotionsOfLaw::Mode(branch) => {
+            let rates = branch.coordinates.iter().zip(&branch.forces);
+            let equations: Vec<String> =
+                rates.map(|(name, force)| format!("{name}'' + {force} = 0")).collect();
+            let measure = match &branch.measure {
+                ModeAmplitude::Start(coordinate) => {
+                    let name = branch.coordinates.get(*coordinate);
+                    format!("the start of {}", name.map_or_else(String::new, ToString::to_string))
+                }
+                ModeAmplitude::FirstHarmonic(_) => "the amplitude of the first harmonic".to_owned(),
+            };
+            let frequency = to_f64(&branch.mu).sqrt().recip();
+            return format!(
+                "{}, the branch of normal modes with {FREQUENCY} near {} at {variable} = {}, {variable} {measure}",
+                equations.join("; "),
+                significant(frequency, 6),
+                certificate.from
+            );
+        }
+    };
+    let start = match start {
+        StartOfLaw::Variable => variable.to_string(),
         StartOfLaw::Fixed(start) => start.to_string(),
     };
+    let motion = match certificate.quantity == LawQuantity::ContactTime {
+        true => format!("touched with x' = {start}, {} the restitution", restitution()),
+        false => format!("from rest at x(0) = {start}"),
+    };
+    match mass {
+        Some(mass) => {
+            format!("M*x'' + (dM/dx)*x'^2/2 + f = 0, M = {mass}, f = {force}, {motion}")
+        }
+        None => format!("x'' + f = 0, f = {force}, {motion}"),
+    }
+}
+
+/// The document of a certificate of a law that was checked.
+pub fn law_certificate<'a>(certificate: &LawCertificate, error: &LawError) -> Document<'a> {
     let range = match &certificate.to {
         Some(to) => format!("{} <= {} <= {to}", certificate.from, certificate.variable),
         None => format!("{} >= {}", certificate.variable, certificate.from),
     };
     let upper = certificate.claim.each_ref().map(|end| 100.0 * to_f64(end))[1];
     let is_contact = certificate.quantity == LawQuantity::ContactTime;
-    let motion = match is_contact {
-        true => format!("touched with x' = {start}, {} the restitution", restitution()),
-        false => format!("from rest at x(0) = {start}"),
-    };
+    let motion = motion_of_law(certificate);
     let facts = vec![
-        (
-            "motion",
-            match &certificate.mass {
-                Some(mass) => format!(
-                    "M*x'' + (dM/dx)*x'^2/2 + f = 0, M = {mass}, f = {}, {motion}",
-                    certificate.force
-                ),
-                None => format!("x'' + f = 0, f = {}, {motion}", certificate.force),
-            },
-        ),
+        ("motion", motion),
         ("law", format!("{} = {}", certificate.quantity.name(), certificate.law)),
         ("range", range),
         (

@@ -124,6 +124,24 @@ fn laws_of_contacts_and_of_modes() {
     std::fs::write(&file, certificate.replace("x''+f(x,x')=0", "x''+f(x,p)=0")).expect("a file");
     let output = run(&["check", name]);
     assert!(String::from_utf8_lossy(&output.stderr).contains("`ode` should hold"));
+    // So is that of a mode.
+    let mode = ["shortest", PAIR, "--mode", "1", "--range", "a=0:1", "--longest", "6"];
+    let certificate = printed(&[&mode[..], &["--certificate", "--format", "json"]].concat());
+    std::fs::write(&file, &certificate).expect("a file");
+    let text = printed(&["check", name]);
+    assert!(text.contains("the branch of normal modes with omega near 1 at a = 0"), "{text}");
+    assert!(text.contains("for every a of the range"), "{text}");
+    assert_eq!(printed(&["check", name, "--format", "json"]), certificate);
+    for (from, to, words) in [
+        ("\"mu\": \"1\"", "\"mu\": \"0.3\"", "is not that of the branch"),
+        ("\"start_of\": null", "\"start_of\": \"x\"", "`mode` should hold"),
+    ] {
+        let changed = certificate.replace(from, to);
+        assert!(changed != certificate, "{certificate}");
+        std::fs::write(&file, changed).expect("a file");
+        let errors = String::from_utf8_lossy(&run(&["check", name]).stderr).into_owned();
+        assert!(errors.contains(words), "{errors}");
+    }
     let _ = std::fs::remove_file(&file);
 }
 

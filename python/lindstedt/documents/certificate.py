@@ -549,20 +549,59 @@ CoupledCertificateDocument.CONSTANTS = {'nu': '1'}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class ModeOfLawDocument(Document):
+    """The motions of a nonlinear normal mode, `q'' + f(q) = 0` with `q = a v(omega t)`, on a range of
+    its amplitude a. Every velocity is zero at t = 0.
+
+    Attributes:
+        coordinates: The names of the coordinates.
+        f: The acceleration of each coordinate with its sign changed, an expression in the
+            coordinates: the mass matrix is inverted already.
+        start_of: The name of the coordinate whose start the amplitude is; null where it is that
+            of the first harmonic.
+        first_harmonic_of: The factor of each coordinate in the sum whose first harmonic has the
+            amplitude, an expression of numbers; null where it is the start of a coordinate.
+        mu: 1/omega^2 at the lower end of the range, to some digits: with `c` it tells which mode
+            it is.
+        c: The cosine coefficients of v of each coordinate there, that of the constant first: of
+            the motion of the law mu and c differ from these by less than 2^-20 in all.
+    """
+
+    coordinates: tuple[str, ...]
+    f: tuple[str, ...]
+    start_of: str | None
+    first_harmonic_of: tuple[str, ...] | None
+    mu: str
+    c: tuple[tuple[str, ...], ...]
+
+
+ModeOfLawDocument.FIELDS = (
+    ("coordinates", "coordinates", tuple),
+    ("f", "f", tuple),
+    ("start_of", "start_of", None),
+    ("first_harmonic_of", "first_harmonic_of", tuple),
+    ("mu", "mu", None),
+    ("c", "c", several(tuple)),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class LawCertificateDocument(Answer):
-    """A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, or a law
-    of the duration of contacts, and how far it is off. All numbers are text: integers,
-    fractions such as `14/5`, decimals such as `0.0011`.
+    """A frequency law of `x'' + f(x; p) = 0` on a range of the amplitude or of a parameter, a law of
+    the duration of contacts, or one of a nonlinear normal mode on a range of its amplitude,
+    and how far it is off. All numbers are text: integers, fractions such as `14/5`, decimals
+    such as `0.0011`.
 
     Attributes:
         schema: The kind of document.
         ode: The equation that f belongs to.
         f: The force, an expression in x, zero at x = 0, and in the variable where that is a
-            parameter; of a contact `x^n*(1 + c*x')` with numbers.
+            parameter; of a contact `x^n*(1 + c*x')` with numbers. Null for a mode.
         mass: The mass m, an expression as f is; null where it is one.
+        mode: The mode; null for motions of one coordinate.
         variable: The name of the variable.
         start: x(0), with x'(0) = 0: `variable` where the variable is the amplitude, else a
-            positive number; of a contact x'(0), `variable`.
+            positive number; of a contact x'(0), and of a mode its amplitude, `variable`.
         quantity: The quantity of the law: `omega`, `omega^2`, `T/(2*pi)`, or `T/T_0`, the
             duration of a contact over that without damping.
         law: The law, an expression in the variable; of a contact in its restitution e as well.
@@ -573,9 +612,10 @@ class LawCertificateDocument(Answer):
     """
 
     schema: Literal["lindstedt/certificate/1"]
-    ode: Literal["x''+f(x,p)=0", "m*x''+(dm/dx)*x'^2/2+f(x,p)=0", "x''+f(x,x')=0"]
-    f: str
+    ode: Literal["x''+f(x,p)=0", "m*x''+(dm/dx)*x'^2/2+f(x,p)=0", "x''+f(x,x')=0", "a*v''+mu*f(a*v)=0"]
+    f: str | None
     mass: str | None
+    mode: ModeOfLawDocument | None
     variable: str
     start: str
     quantity: Literal["omega", "omega^2", "T/(2*pi)", "T/T_0"]
@@ -591,6 +631,7 @@ LawCertificateDocument.FIELDS = (
     ("ode", "ode", None),
     ("f", "f", None),
     ("mass", "mass", None),
+    ("mode", "mode", ModeOfLawDocument.from_json),
     ("variable", "variable", None),
     ("start", "start", None),
     ("quantity", "quantity", None),
@@ -600,6 +641,7 @@ LawCertificateDocument.FIELDS = (
     ("worst", "worst", None),
     ("error", "error", tuple),
 )
+LawCertificateDocument.OPTIONAL = frozenset(['mode'])
 
 
 #: Numbers from which a motion can be proved, and how far a formula for it is off: a conservative

@@ -80,7 +80,9 @@ pub use impact::{ImpactDocument, impact};
 pub use impact_certificate::{ImpactCertificateDocument, impact_certificate};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};
 pub use lagrangian::{LagrangianDocument, lagrangian};
-pub use law_certificate::{EQUATIONS_ON_A_RANGE, LawCertificateDocument, law_certificate};
+pub use law_certificate::{
+    EQUATIONS_ON_A_RANGE, LawCertificateDocument, ModeOfLawDocument, law_certificate,
+};
 pub use materials::{MaterialsDocument, materials};
 pub use mode_certificate::{EQUATIONS_OF_MODES, ModeCertificateDocument, mode_certificate};
 pub use modes::{ModesDocument, modes};

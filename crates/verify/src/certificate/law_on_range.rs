@@ -31,12 +31,13 @@
 mod contact;
 mod inverse_frequency;
 mod jet;
+mod mode;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
 use super::force::NoValue;
 use super::fourier_series::WORKING;
-use super::{CheckError, coordinate};
+use super::{CheckError, NotCertified, coordinate};
 use crate::decimal::decimal;
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
@@ -47,8 +48,9 @@ use crate::interrupt::Supervision;
 use crate::symbol::Symbol;
 use contact::ContactMean;
 pub use contact::HuntCrossleyForce;
-use inverse_frequency::{ForceOnRange, PiecePolynomial, TruthPiece};
+use inverse_frequency::{ForceOnRange, PiecePolynomial, Scale, TruthPiece};
 use jet::{Jet, ScaledJet, Variable, law_along, widened};
+pub use mode::ModeBranch;
 
 /// The quantity that a law gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,19 +104,31 @@ pub enum StartOfLaw {
     Fixed(Rational),
 }
 
+/// The motions that a law is about, one for each value of its variable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionsOfLaw {
+    /// Motions of one coordinate.
+    Coordinate {
+        /// `f` of `x'' + f = 0`, in the symbol [`x`](coordinate) and the variable; of a contact
+        /// `x^n (1 + c x')`, with numbers.
+        force: Expr,
+        /// The mass M of `M x'' + (dM/dx) x'^2/2 + f = 0` where it depends on the position.
+        mass: Option<Expr>,
+        /// The start of the motion.
+        start: StartOfLaw,
+    },
+    /// A nonlinear normal mode, whose amplitude is the variable.
+    Mode(ModeBranch),
+}
+
 /// A law on a range, and what is claimed of its error. The numbers may be anything: [`check_law`]
 /// trusts none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawCertificate {
-    /// `f` of `x'' + f = 0`, in the symbol [`x`](coordinate) and the variable; of a contact
-    /// `x^n (1 + c x')`, with numbers.
-    pub force: Expr,
-    /// The mass M of `M x'' + (dM/dx) x'^2/2 + f = 0` where it depends on the position.
-    pub mass: Option<Expr>,
+    /// The motions.
+    pub motions: MotionsOfLaw,
     /// The amplitude or the parameter on which the law depends; of a contact the speed at the touch.
     pub variable: Symbol,
-    /// The start of the motion.
-    pub start: StartOfLaw,
     /// The quantity.
     pub quantity: LawQuantity,
     /// The law as an expression in the variable; of a contact in its [`restitution`] as well.
@@ -169,9 +183,20 @@ pub enum LawNotProved {
     /// The motion is a limit cycle.
     #[error("a proof on a range is of motions that conserve energy, not of a limit cycle")]
     LimitCycle,
-    /// The motion is one of several coordinates.
-    #[error("a proof on a range is of one coordinate, not of a mode of several")]
-    Mode,
+    /// No branch of the mode is proved to go through this amplitude.
+    #[error("no single motion of the mode is proved at the amplitude {0}")]
+    NoMode(String),
+    /// The motion at the lower end of the range is not that which names the branch.
+    #[error("the motion at the lower end of the range is not that of the branch")]
+    AnotherMode,
+    /// A force that is no polynomial, on a range that begins at rest.
+    #[error(
+        "a proof of a mode from rest is of polynomial forces, not of {0}: begin the range above zero"
+    )]
+    FromRest(String),
+    /// The approximate motions of the mode are not found.
+    #[error("the motion of the mode at the lower end of the range is not found: {0}")]
+    NoBranch(Box<NotCertified>),
     /// At this place the error is neither proved to be within the claim nor beyond it.
     #[error("at {0} the error is not proved to be within its bound")]
     Open(String),
@@ -193,14 +218,16 @@ impl From<NoValue> for LawNotProved {
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
-/// use lindstedt::certificate::{LawCertificate, LawQuantity, StartOfLaw, check_law};
+/// use lindstedt::certificate::{LawCertificate, LawQuantity, MotionsOfLaw, StartOfLaw, check_law};
 /// use lindstedt::exact::ratio;
 ///
 /// let mut law = LawCertificate {
-///     force: "sin(x)".parse()?,
-///     mass: None,
+///     motions: MotionsOfLaw::Coordinate {
+///         force: "sin(x)".parse()?,
+///         mass: None,
+///         start: StartOfLaw::Variable,
+///     },
 ///     variable: "A".into(),
-///     start: StartOfLaw::Variable,
 ///     quantity: LawQuantity::Period,
 ///     law: "4/(1 + sqrt(cos(A/2)))^2".parse()?,
 ///     from: ratio(0, 1),
@@ -227,56 +254,73 @@ pub fn check_law(certificate: &LawCertificate) -> Result<LawError, CheckError> {
 }
 
 impl LawCertificate {
+    /// Checks that letters and ends belong together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
-        let is_known = |expression: &Expr, letters: &[Symbol]| {
-            expression.symbols().iter().all(|name| letters.contains(name))
-        };
         let ends = match &self.to {
             Some(to) => self.from < *to && self.worst <= *to,
             None => true,
         };
-        let depends = |mass: &Expr| mass.contains(self.variable);
-        let is_moving = self.mass.as_ref().is_some_and(depends);
         let is_contact = self.quantity == LawQuantity::ContactTime;
-        let depends_on_variable = self.force.contains(self.variable);
-        let [of_force, of_law] = match is_contact {
-            true => [coordinate().derivative(), restitution()],
-            false => [self.variable; 2],
-        };
-        let start = match &self.start {
-            StartOfLaw::Variable => self.to.is_some() && !depends_on_variable,
-            StartOfLaw::Fixed(start) => start.is_positive() && !is_contact,
-        };
+        let of_law = if is_contact { restitution() } else { self.variable };
         let demands = [
             (
                 ends && !self.from.is_negative() && self.worst >= self.from,
                 "an empty range, or a worst place outside of it",
             ),
+            (
+                is_known(&self.law, &[self.variable, of_law]),
+                "a law with letters that have no value",
+            ),
+        ];
+        if let Some((_, reason)) = demands.into_iter().find(|(holds, _)| !holds) {
+            return Err(reason);
+        }
+        match &self.motions {
+            MotionsOfLaw::Coordinate { force, mass, start } => {
+                self.well_formed_coordinate(force, mass.as_ref(), start)
+            }
+            MotionsOfLaw::Mode(_) if is_contact => Err("a contact of several coordinates"),
+            MotionsOfLaw::Mode(_) if self.to.is_none() => Err("an amplitude that goes to infinity"),
+            MotionsOfLaw::Mode(branch) => branch.well_formed(self.variable),
+        }
+    }
+
+    /// Checks the same of a motion of one coordinate.
+    fn well_formed_coordinate(
+        &self,
+        force: &Expr,
+        mass: Option<&Expr>,
+        start: &StartOfLaw,
+    ) -> Result<(), &'static str> {
+        let is_moving = mass.is_some_and(|mass| mass.contains(self.variable));
+        let is_contact = self.quantity == LawQuantity::ContactTime;
+        let of_force = if is_contact { coordinate().derivative() } else { self.variable };
+        let start_fits = match start {
+            StartOfLaw::Variable => self.to.is_some() && !force.contains(self.variable),
+            StartOfLaw::Fixed(start) => start.is_positive() && !is_contact,
+        };
+        let demands = [
             (self.variable != coordinate(), "a variable that is the coordinate"),
             (
                 !is_contact || self.variable != restitution(),
                 "a variable with the letter of the restitution",
             ),
             (
-                is_known(&self.force, &[coordinate(), self.variable, of_force]),
+                is_known(force, &[coordinate(), self.variable, of_force]),
                 "a force with letters that have no value",
             ),
             (
-                self.mass.as_ref().is_none_or(|mass| {
+                mass.is_none_or(|mass| {
                     is_known(mass, &[coordinate(), self.variable]) && !is_contact
                 }),
                 "a mass with letters that have no value, or a contact with one",
             ),
             (
-                !is_moving || self.start != StartOfLaw::Variable && self.to.is_some(),
+                !is_moving || *start != StartOfLaw::Variable && self.to.is_some(),
                 "a mass that depends on the amplitude, or on a parameter that goes to infinity",
             ),
             (
-                is_known(&self.law, &[self.variable, of_law]),
-                "a law with letters that have no value",
-            ),
-            (
-                start,
+                start_fits,
                 "a start that is not positive, or an amplitude that goes to infinity or is a parameter",
             ),
         ];
@@ -287,11 +331,16 @@ impl LawCertificate {
     }
 }
 
+/// Whether an expression has no other letters than these.
+fn is_known(expression: &Expr, letters: &[Symbol]) -> bool {
+    expression.symbols().iter().all(|name| letters.contains(name))
+}
+
 /// The true frequency on a whole range, enclosed.
 pub struct TrueFrequency {
+    /// The force of a motion of one coordinate.
+    force: Option<ForceOnRange>,
     /// In the variable, and in r = 1/p.
-    near: ForceOnRange,
-    far: Option<ForceOnRange>,
     near_pieces: Vec<TruthPiece>,
     far_pieces: Vec<TruthPiece>,
 }
@@ -308,70 +357,97 @@ impl TrueFrequency {
         certificate: &LawCertificate,
         supervision: Supervision,
     ) -> Result<Self, LawNotProved> {
-        let LawCertificate { force, variable, start, .. } = certificate;
         certificate.well_formed().map_err(LawNotProved::Malformed)?;
-        if certificate.quantity == LawQuantity::ContactTime {
-            return Self::of_contact(certificate, supervision);
+        match &certificate.motions {
+            MotionsOfLaw::Coordinate { force, .. }
+                if certificate.quantity == LawQuantity::ContactTime =>
+            {
+                Self::of_contact(certificate, force, supervision)
+            }
+            MotionsOfLaw::Coordinate { force, mass, start } => {
+                Self::of_coordinate(certificate, force, mass.as_ref(), start, supervision)
+            }
+            MotionsOfLaw::Mode(branch) => {
+                let infinite = || LawNotProved::Malformed("an amplitude that goes to infinity");
+                let (from, to) = (&certificate.from, certificate.to.as_ref().ok_or_else(infinite)?);
+                let near_pieces = branch.pieces(certificate.variable, from, to, supervision)?;
+                Ok(Self { force: None, near_pieces, far_pieces: vec![] })
+            }
         }
+    }
+
+    /// The frequency of a motion of one coordinate.
+    fn of_coordinate(
+        certificate: &LawCertificate,
+        force: &Expr,
+        mass: Option<&Expr>,
+        start: &StartOfLaw,
+        supervision: Supervision,
+    ) -> Result<Self, LawNotProved> {
+        let variable = certificate.variable;
         let at_zero = force.substitute(coordinate(), &Expr::zero())?.expand()?;
         if !at_zero.is_zero() {
             return Err(LawNotProved::NotCentred(force.to_string()));
         }
-        let mass = certificate.mass.as_ref();
-        let near = ForceOnRange::new(start, *variable, force.clone(), 0, false)?.with_mass(mass);
+        let near = ForceOnRange::new(start, variable, force.clone(), Scale::OWN)?.with_mass(mass);
         let (from, one) = (&certificate.from, Rational::one());
-        let (near_pieces, far, far_pieces) = match &certificate.to {
-            Some(to) => (near.pieces(from, to, supervision)?, None, vec![]),
+        let (near_pieces, far_pieces) = match &certificate.to {
+            Some(to) => (near.pieces(from, to, supervision)?, vec![]),
             None => {
-                let far = Self::far(certificate)?.with_mass(mass);
+                let far = Self::far(variable, force, start)?.with_mass(mass);
                 let pieces = far.pieces(&Rational::zero(), &from.max(&one).recip(), supervision)?;
                 let near_pieces = match *from < one {
                     true => near.pieces(from, &one, supervision)?,
                     false => vec![],
                 };
-                (near_pieces, Some(far), pieces)
+                (near_pieces, pieces)
             }
         };
-        Ok(Self { near, far, near_pieces, far_pieces })
+        Ok(Self { force: Some(near), near_pieces, far_pieces })
     }
 
     /// T/T_0 and the restitution of the contact of a certificate.
     fn of_contact(
         certificate: &LawCertificate,
+        force: &Expr,
         supervision: Supervision,
     ) -> Result<Self, LawNotProved> {
-        let no_contact = || LawNotProved::NoContact(certificate.force.to_string());
-        let contact = HuntCrossleyForce::of(&certificate.force, coordinate())?;
+        let no_contact = || LawNotProved::NoContact(force.to_string());
+        let contact = HuntCrossleyForce::of(force, coordinate())?;
         let contact = contact.ok_or_else(no_contact)?;
         let damping = contact.damping.as_number().ok_or_else(no_contact)?;
         let mean = ContactMean::new(&contact.exponent, damping).ok_or_else(no_contact)?;
         let near = ForceOnRange::of_contact(mean, certificate.variable)?;
         let to = certificate.to.as_ref().ok_or_else(no_contact)?;
         let near_pieces = near.pieces(&certificate.from, to, supervision)?;
-        Ok(Self { near, far: None, near_pieces, far_pieces: vec![] })
+        Ok(Self { force: Some(near), near_pieces, far_pieces: vec![] })
     }
 
     /// `1/omega` at a place of a bounded range, or T/T_0 and the restitution, to the digits of a double.
     pub fn at(&self, place: f64) -> Option<[f64; 2]> {
         let exact = from_f64(place)?;
-        let distance = |piece: &TruthPiece| (&exact - &piece.middle).abs() / &piece.half;
-        let piece = self.near_pieces.iter().min_by_key(|piece| distance(piece))?;
+        let piece = self.piece_at(&exact)?;
         let e = WORKING.fraction(&((&exact - &piece.middle) / &piece.half));
         let value = |own: &PiecePolynomial| WORKING.nearest(&own.at(&e, &piece.half).value);
         let restitution = piece.restitution.as_ref().map_or(f64::NAN, value);
         Some([value(&piece.truth), restitution])
     }
 
+    /// The piece of a bounded range that a place lies in.
+    fn piece_at(&self, place: &Rational) -> Option<&TruthPiece> {
+        let distance = |piece: &TruthPiece| (place - &piece.middle).abs() / &piece.half;
+        self.near_pieces.iter().min_by_key(|piece| distance(piece))
+    }
+
     /// The force in `r = 1/p`, times the power of r with which it has a value at zero.
-    fn far(certificate: &LawCertificate) -> Result<ForceOnRange, LawNotProved> {
-        let name = certificate.variable;
+    fn far(name: Symbol, force: &Expr, start: &StartOfLaw) -> Result<ForceOnRange, LawNotProved> {
         let variable = Expr::from(name);
         let inverse = Expr::divide(&Expr::one(), &variable)?;
-        let force = certificate.force.substitute(name, &inverse)?;
+        let force = force.substitute(name, &inverse)?;
         for power in 0..=MOST_GROWTH {
             let scaled = (&variable.integer_power(i64::from(power))? * &force).expand()?;
             if scaled.substitute(name, &Expr::zero()).is_ok_and(|limit| !limit.is_zero()) {
-                return ForceOnRange::new(&certificate.start, name, scaled, power, true);
+                return ForceOnRange::new(start, name, scaled, Scale { power, is_far: true });
             }
         }
         Err(LawNotProved::Growth(name))
@@ -388,11 +464,8 @@ impl TrueFrequency {
     ) -> Result<f64, LawNotProved> {
         let bound = not_above(&certificate.claim[1]);
         let mut largest = 0.0_f64;
-        let near = self.near_pieces.iter().map(|piece| (&self.near, piece));
-        let far =
-            self.far.iter().flat_map(|far| self.far_pieces.iter().map(move |piece| (far, piece)));
-        for (force, piece) in near.chain(far) {
-            largest = largest.max(piece.largest_error(force, certificate, bound, supervision)?);
+        for piece in self.near_pieces.iter().chain(&self.far_pieces) {
+            largest = largest.max(piece.largest_error(certificate, bound, supervision)?);
         }
         Ok(largest)
     }
@@ -404,17 +477,25 @@ impl TrueFrequency {
     pub fn least_error(&self, certificate: &LawCertificate) -> Result<f64, LawNotProved> {
         let no_value = || LawNotProved::NoValue(certificate.law.to_string());
         let place = WORKING.fraction(&certificate.worst);
-        let begins_at_rest = certificate.start == StartOfLaw::Variable && place.is_zero();
-        let truth = match begins_at_rest {
-            true => self.near.at_rest()?,
-            false => self.near.truth(&place)?,
+        let truth = match (&self.force, &certificate.motions) {
+            (Some(force), MotionsOfLaw::Coordinate { start: StartOfLaw::Variable, .. })
+                if place.is_zero() =>
+            {
+                force.at_rest()?
+            }
+            (Some(force), _) => force.truth(&place)?,
+            (None, _) => {
+                let piece = self.piece_at(&certificate.worst).ok_or_else(no_value)?;
+                let e = WORKING.fraction(&((&certificate.worst - &piece.middle) / &piece.half));
+                vec![piece.truth.within(&e, &piece.half).value]
+            }
         };
         let mut truth = truth.into_iter().map(Jet::constant);
         let mut variable = Variable::at(&certificate.worst);
         let (truth, e) = (truth.next().ok_or_else(no_value)?, truth.next());
         variable.restitution = e;
         let quotient =
-            quotient(certificate, &self.near, &truth, &variable)?.ok_or_else(no_value)?;
+            quotient(certificate, Scale::OWN, &truth, &variable)?.ok_or_else(no_value)?;
         let error = WORKING.difference(&quotient.value, &WORKING.integer(1));
         Ok(WORKING.distance_from_zero(&error).max(0.0))
     }
@@ -432,14 +513,14 @@ fn not_above(value: &Rational) -> f64 {
 /// `law/truth` from `1/omega` on an interval of the variable; `None` where it has no value.
 fn quotient(
     certificate: &LawCertificate,
-    force: &ForceOnRange,
+    scale: Scale,
     inverse_frequency: &Jet,
     variable: &Variable,
 ) -> Result<Option<Jet>, LawNotProved> {
-    let law = law_along(&certificate.law, certificate.variable, variable, force.is_far)?;
+    let law = law_along(&certificate.law, certificate.variable, variable, scale.is_far)?;
     let power = certificate.quantity.power();
     // q = law (1/omega)^n, with (1/omega) = r^(d/2) I.
-    let exponent = Rational::new((i64::from(force.power) * i64::from(power)).into(), 2.into());
+    let exponent = Rational::new((i64::from(scale.power) * i64::from(power)).into(), 2.into());
     let whole = Rational::from_integer(power.into());
     let Some(truth) = inverse_frequency.to_power(&whole) else { return Ok(None) };
     let scaled = ScaledJet { power: &law.power + exponent, jet: law.jet.times(&truth) };
@@ -454,7 +535,6 @@ impl TruthPiece {
     /// bound.
     fn largest_error(
         &self,
-        force: &ForceOnRange,
         certificate: &LawCertificate,
         bound: f64,
         supervision: Supervision,
@@ -470,13 +550,13 @@ impl TruthPiece {
             if tried % 256 == 0 && supervision.interrupt.is_requested() {
                 return Err(LawNotProved::Stopped);
             }
-            match self.error_between(force, certificate, [&low, &high]) {
+            match self.error_between(certificate, [&low, &high]) {
                 Ok(error) if error <= bound => largest = largest.max(error),
                 Err(error @ LawNotProved::Growth(_)) => return Err(error),
                 Err(error) if depth == DEEPEST || tried > MOST => return Err(error),
                 _ if depth == DEEPEST || tried > MOST => {
                     let place = to_f64(&(&self.middle + &self.half * low));
-                    let place = if force.is_far { 1.0 / place } else { place };
+                    let place = if self.scale.is_far { 1.0 / place } else { place };
                     return Err(LawNotProved::Open(decimal(place)));
                 }
                 _ => {
@@ -493,7 +573,6 @@ impl TruthPiece {
     /// the whole interval.
     fn error_between(
         &self,
-        force: &ForceOnRange,
         certificate: &LawCertificate,
         [low, high]: [&Rational; 2],
     ) -> Result<f64, LawNotProved> {
@@ -502,11 +581,8 @@ impl TruthPiece {
         let of = |mut variable: Variable, e: &Ball| {
             let truth = self.truth.at(e, &self.half);
             // The restitution is some number within the remainder of its polynomial.
-            variable.restitution = self.restitution.as_ref().map(|own| {
-                let polynomial = own.at(e, &self.half);
-                Jet { value: widened(&polynomial.value, own.remainder), ..polynomial }
-            });
-            quotient(certificate, force, &truth, &variable)
+            variable.restitution = self.restitution.as_ref().map(|own| own.within(e, &self.half));
+            quotient(certificate, self.scale, &truth, &variable)
         };
         let no_value = || LawNotProved::NoValue(certificate.law.to_string());
         let spread = Bound::of_fraction(&((high - low) / Integer::from(2)));

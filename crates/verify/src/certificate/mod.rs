@@ -46,8 +46,8 @@ pub use damped::{
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use law_on_range::{
-    HuntCrossleyForce, LawCertificate, LawError, LawNotProved, LawQuantity, StartOfLaw,
-    TrueFrequency, check_law, restitution,
+    HuntCrossleyForce, LawCertificate, LawError, LawNotProved, LawQuantity, ModeBranch,
+    MotionsOfLaw, StartOfLaw, TrueFrequency, check_law, restitution,
 };
 pub use modes::{ModeAmplitude, ModeCertificate, certify_mode, certify_mode_motion, check_mode};
 pub use radii_polynomial::{NotProved, Proof};
@@ -215,6 +215,7 @@ impl Certificate {
         ConservativeProblem {
             forces: vec![&self.force],
             coordinates: vec![coordinate()],
+            parameter: None,
             condition: Condition::Start { coordinate: 0, place: WORKING.fraction(&self.start) },
             odd: self.odd,
             motions: vec![self.motion()],

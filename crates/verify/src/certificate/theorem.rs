@@ -34,6 +34,8 @@
 //! Rigorous numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of n^3
 //! products of short integers, n the number of harmonics in the block times that of coordinates.
 
+mod on_disc;
+
 use num_traits::Signed as _;
 
 use super::HIGHEST_HARMONIC;
@@ -46,11 +48,13 @@ use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
+pub(super) use on_disc::{ApproximateMotion, MotionsOnDisc, NearMotion};
 
 /// Columns beyond which those of all further harmonics are bounded together.
 const MOST_COLUMNS: usize = 20 * HIGHEST_HARMONIC;
 
 /// The definition of the amplitude of a motion that begins at rest.
+#[derive(Clone)]
 pub(super) enum Condition {
     /// A coordinate starts at this place.
     Start { coordinate: usize, place: Ball },
@@ -59,11 +63,14 @@ pub(super) enum Condition {
 }
 
 /// A certificate in the form that the theorem takes, of one coordinate or several.
+#[derive(Clone)]
 pub(super) struct ConservativeProblem<'a> {
     /// f, one for each coordinate.
     pub(super) forces: Vec<&'a Expr>,
     /// The symbols of the coordinates.
     pub(super) coordinates: Vec<Symbol>,
+    /// A letter of the forces beside the coordinates, and the numbers that it stands for.
+    pub(super) parameter: Option<(Symbol, Ball)>,
     /// The definition of the amplitude.
     pub(super) condition: Condition,
     /// Whether the motion has odd harmonics alone.
@@ -116,8 +123,12 @@ impl ConservativeProblem<'_> {
         expression: &Expr,
         motions: &[FourierSeries],
     ) -> Result<FourierSeries, NoValue> {
-        let letters: Vec<(Symbol, &FourierSeries)> =
+        let mut letters: Vec<(Symbol, &FourierSeries)> =
             self.coordinates.iter().copied().zip(motions).collect();
+        let constant =
+            |(name, value): &(Symbol, Ball)| (*name, FourierSeries::constant(value.clone()));
+        let parameter = self.parameter.as_ref().map(constant);
+        letters.extend(parameter.iter().map(|(name, value)| (*name, value)));
         along_all(expression, &letters)
     }
 

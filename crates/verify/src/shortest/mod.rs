@@ -24,7 +24,9 @@ use std::collections::BTreeMap;
 
 use num_traits::{One as _, Zero as _};
 
-use crate::certificate::{LawCertificate, LawError, LawNotProved, LawQuantity, TrueFrequency};
+use crate::certificate::{
+    LawCertificate, LawError, LawNotProved, LawQuantity, MotionsOfLaw, TrueFrequency,
+};
 use crate::decimal::neighbours;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
@@ -296,10 +298,12 @@ pub fn search(
         true => problem.usual_atoms(),
         false => options.atoms.clone(),
     };
-    let enclosed = || {
-        let certificate = certificate(&problem, options.quantity, &atoms, None)?;
-        TrueFrequency::new(&certificate, supervision)
+    let motions = problem.of_certificate();
+    let certificate = |candidate: Option<&Candidate>| {
+        let motions = motions.clone()?;
+        certificate((&problem, motions), options.quantity, &atoms, candidate)
     };
+    let enclosed = || TrueFrequency::new(&certificate(None)?, supervision);
     // A contact is known by its enclosure alone; a frequency is enclosed once there are laws.
     let of_contact = match problem.motion {
         LawMotion::Contact { .. } => Some(enclosed().map_err(|error| match error {
@@ -316,10 +320,10 @@ pub fn search(
     let (found, is_partial) = laws(&data, &question, supervision);
     let truth = of_contact.map_or_else(enclosed, Ok);
     let proofs = par_map(&found, |candidate| {
-        truth.as_ref().map_err(LawNotProved::clone).and_then(|truth| {
-            let certificate = certificate(&problem, options.quantity, &atoms, Some(candidate))?;
-            proved(truth, certificate, supervision)
-        })
+        truth
+            .as_ref()
+            .map_err(LawNotProved::clone)
+            .and_then(|truth| proved(truth, certificate(Some(candidate))?, supervision))
     });
     let laws = found.into_iter().zip(proofs).map(|(candidate, proof)| {
         let Candidate { formula, length, error, worst } = candidate;
@@ -492,12 +496,11 @@ fn best(mut found: Vec<Candidate>) -> Vec<Candidate> {
 
 /// The certificate of a law before it is proved; of the truth alone where there is none.
 fn certificate(
-    problem: &LawProblem,
+    (problem, motions): (&LawProblem, MotionsOfLaw),
     quantity: LawQuantity,
     atoms: &[Atom],
     candidate: Option<&Candidate>,
 ) -> Result<LawCertificate, LawNotProved> {
-    let (force, mass, start) = problem.of_certificate()?;
     let law = match candidate {
         None => Expr::one(),
         Some(candidate) => {
@@ -516,10 +519,8 @@ fn certificate(
     let bound = candidate
         .map_or_else(Rational::one, |candidate| rounded_error(candidate.error.max(LEAST_CLAIM)));
     Ok(LawCertificate {
-        force,
-        mass,
+        motions,
         variable: problem.variable,
-        start,
         quantity,
         law,
         from: problem.from.clone(),

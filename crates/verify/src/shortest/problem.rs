@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 
 use num_traits::{One as _, Signed as _, Zero as _};
 
-use crate::certificate::{LawNotProved, StartOfLaw, TrueFrequency, coordinate, restitution};
+use crate::certificate::{
+    LawNotProved, ModeBranch, MotionsOfLaw, StartOfLaw, TrueFrequency, coordinate, restitution,
+};
 use crate::decimal::decimal;
 use crate::exact::Rational;
 use crate::exact::rational::{from_f64, to_f64};
@@ -355,12 +357,12 @@ impl LawProblem {
         })
     }
 
-    /// The force and the mass of a certificate of the law in the coordinate [`x`](coordinate), measured from
-    /// the equilibrium, and the start of the motion.
+    /// The motions of a certificate of the law, those of one coordinate in the coordinate
+    /// [`x`](coordinate), measured from the equilibrium.
     ///
     /// # Errors
     /// Motions of which no law is proved.
-    pub(super) fn of_certificate(&self) -> Result<(Expr, Option<Expr>, StartOfLaw), LawNotProved> {
+    pub(super) fn of_certificate(&self) -> Result<MotionsOfLaw, LawNotProved> {
         match &self.motion {
             LawMotion::Free { start: None, .. } => Err(LawNotProved::LimitCycle),
             LawMotion::Free { oscillator, start: Some(start), solution } => {
@@ -370,10 +372,17 @@ impl LawProblem {
                     Some([mass, force]) => (Some(centred(&mass)?), force),
                     None => (None, oscillator.force.clone()),
                 };
-                Ok((centred(&force)?, mass, start.clone()))
+                let (force, start) = (centred(&force)?, start.clone());
+                Ok(MotionsOfLaw::Coordinate { force, mass, start })
             }
-            LawMotion::Contact { force, .. } => Ok((force.clone(), None, StartOfLaw::Variable)),
-            LawMotion::Mode { .. } => Err(LawNotProved::Mode),
+            LawMotion::Contact { force, .. } => Ok(MotionsOfLaw::Coordinate {
+                force: force.clone(),
+                mass: None,
+                start: StartOfLaw::Variable,
+            }),
+            LawMotion::Mode { system, mode } => {
+                Ok(MotionsOfLaw::Mode(ModeBranch::new(system, mode, &self.from)?))
+            }
         }
     }
 

@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::Zero as _;
+use num_traits::{One as _, Zero as _};
 
 use super::super::coordinate;
 use super::super::force::{along, along_all, is_odd};
@@ -46,18 +46,31 @@ pub(super) struct ForceOnRange {
     curvature: Expr,
     /// The second derivative by the position.
     bend: Expr,
-    /// The power d of r with which `r^d f` has a value at r = 0; zero in the variable itself.
-    pub(super) power: u32,
-    /// Whether the variable is r.
-    pub(super) is_far: bool,
+    /// The variable of its pieces.
+    scale: Scale,
     /// The mass, where that depends on the position.
     mass: Option<Expr>,
     /// The contact whose time the motion gives; `None` for the frequency.
     contact: Option<ContactMean>,
 }
 
+/// The variable of a piece: the variable itself, or r.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Scale {
+    /// The power d of r with which `r^d f` has a value at r = 0; zero in the variable itself.
+    pub(super) power: u32,
+    /// Whether the variable is r.
+    pub(super) is_far: bool,
+}
+
+impl Scale {
+    /// The variable itself.
+    pub(super) const OWN: Self = Self { power: 0, is_far: false };
+}
+
 /// `1/omega`, or T/T_0 and the restitution, on a part of the range.
 pub(super) struct TruthPiece {
+    pub(super) scale: Scale,
     pub(super) middle: Rational,
     pub(super) half: Rational,
     pub(super) truth: PiecePolynomial,
@@ -74,6 +87,19 @@ pub(super) struct PiecePolynomial {
 }
 
 impl PiecePolynomial {
+    /// The polynomial through the middles of values at nodes.
+    pub(super) fn through(nodes: &[Rational], values: Vec<Ball>, remainder: Bound) -> Self {
+        let exactly = |ball: Ball| Ball { radius: Bound::ZERO, ..ball };
+        let values = values.into_iter().map(exactly).collect();
+        Self { coefficients: interpolated(nodes, values), remainder }
+    }
+
+    /// All numbers of the ball that a value may be.
+    pub(super) fn within(&self, e: &Ball, half: &Rational) -> Jet {
+        let own = self.at(e, half);
+        Jet { value: widened(&own.value, self.remainder), ..own }
+    }
+
     /// The polynomial and its derivative by the variable, on a piece of this half width.
     pub(super) fn at(&self, e: &Ball, half: &Rational) -> Jet {
         let (mut value, mut slope) = (Ball::zero(), Ball::zero());
@@ -90,7 +116,7 @@ impl PiecePolynomial {
 /// Number of places at which `1/omega` is computed on a piece, and the ratio of the radius of the disc
 /// on which it is bounded to half of its width.
 const NODES: usize = 16;
-const WIDER: u32 = 4;
+pub(super) const WIDER: u32 = 4;
 
 /// The least part of the range that a piece may be, as a power of two.
 const THINNEST: u32 = 14;
@@ -120,8 +146,7 @@ impl ForceOnRange {
         start: &StartOfLaw,
         variable: Symbol,
         force: Expr,
-        power: u32,
-        is_far: bool,
+        scale: Scale,
     ) -> Result<Self, LawNotProved> {
         let by_place = force.differentiate(coordinate())?;
         let bend = by_place.differentiate(coordinate())?;
@@ -142,8 +167,7 @@ impl ForceOnRange {
             slope,
             curvature,
             bend,
-            power,
-            is_far,
+            scale,
             mass,
             contact,
         })
@@ -156,7 +180,7 @@ impl ForceOnRange {
 
     /// The swing whose mean is the time of a contact.
     pub(super) fn of_contact(contact: ContactMean, variable: Symbol) -> Result<Self, LawNotProved> {
-        let swing = Self::new(&StartOfLaw::Variable, variable, contact::force()?, 0, false)?;
+        let swing = Self::new(&StartOfLaw::Variable, variable, contact::force()?, Scale::OWN)?;
         Ok(Self { contact: Some(contact), ..swing })
     }
 
@@ -213,19 +237,16 @@ impl ForceOnRange {
         let place = |node: &Rational| WORKING.fraction(&(&middle + &half * node));
         let values = par_map(nodes, |node| self.truth(&place(node)));
         let values = values.into_iter().collect::<Result<Vec<Vec<Ball>>, _>>()?;
-        // |w| on [-1, 1] in units of h, and the distance of the circle from the points in the same.
-        let outside = f64::from(WIDER - 1);
-        let apart = (0..NODES).fold(largest_product, |bound, _| bound.over(outside));
-        let apart = Bound::exactly(f64::from(WIDER)).over(outside) * apart;
         let quantity = |number: usize, largest: &Bound| {
             let values = values.iter().filter_map(|all| all.get(number).cloned()).collect();
             let coefficients = interpolated(nodes, values);
-            PiecePolynomial { coefficients, remainder: *largest * apart }
+            let remainder = interpolation_error(*largest, largest_product);
+            PiecePolynomial { coefficients, remainder }
         };
         let mut quantities = largest.iter().enumerate().map(|(i, bound)| quantity(i, bound));
         let none = || LawNotProved::NoValue("1/omega".to_owned());
         let truth = quantities.next().ok_or_else(none)?;
-        Ok(TruthPiece { middle, half, truth, restitution: quantities.next() })
+        Ok(TruthPiece { scale: self.scale, middle, half, truth, restitution: quantities.next() })
     }
 
     /// x(0) with the variable in a ball, and its derivative by the variable.
@@ -564,7 +585,7 @@ fn root_of_mass(mass: &FourierSeries) -> Result<FourierSeries, LawNotProved> {
 }
 
 /// Fractions near the points of Chebyshev between -1 and 1.
-fn nodes() -> Vec<Rational> {
+pub(super) fn nodes() -> Vec<Rational> {
     let node = |i: usize| {
         let angle = std::f64::consts::PI * (i as f64 + 0.5) / NODES as f64;
         Rational::new(((angle.cos() * 65536.0).round() as i64).into(), 65536.into())
@@ -574,7 +595,7 @@ fn nodes() -> Vec<Rational> {
 
 /// A bound of `prod |e - e_j|` for e between -1 and 1: the largest value at points `1/N` apart, where
 /// the distances from the next one add at most that to each factor.
-fn largest_product(nodes: &[Rational]) -> Bound {
+pub(super) fn largest_product(nodes: &[Rational]) -> Bound {
     const POINTS: i64 = 4096;
     let product = |point: i64| -> Bound {
         let place = Rational::new(point.into(), POINTS.into());
@@ -583,6 +604,38 @@ fn largest_product(nodes: &[Rational]) -> Bound {
         factors.fold(Bound::exactly(1.0), |product, factor| product * factor)
     };
     (-POINTS..=POINTS).map(product).fold(Bound::ZERO, Bound::max)
+}
+
+/// A bound of the distance of a function from the polynomial through its values at the nodes, from one of its
+/// size on the disc and of the product of the distances from the nodes in units of h.
+pub(super) fn interpolation_error(largest: Bound, largest_product: Bound) -> Bound {
+    let outside = f64::from(WIDER - 1);
+    let apart = (0..NODES).fold(largest_product, |bound, _| bound.over(outside));
+    Bound::exactly(f64::from(WIDER)).over(outside) * apart * largest
+}
+
+/// A bound of the sum of the sizes of Lagrange's polynomials between -1 and 1, as that of the product is
+/// found.
+pub(super) fn lebesgue_constant(nodes: &[Rational]) -> Bound {
+    const POINTS: i64 = 2048;
+    let apart = |place: &Rational, node: &Rational| Bound::of_fraction(&(place - node));
+    let own = |node: &Rational| -> Bound {
+        let others = nodes.iter().filter(|other| *other != node);
+        let product = others.fold(Rational::one(), |product, other| product * (node - other));
+        Bound::exactly(1.0).over(WORKING.distance_from_zero(&WORKING.fraction(&product)))
+    };
+    let weights: Vec<Bound> = nodes.iter().map(own).collect();
+    let step = Bound::of_fraction(&Rational::new(1.into(), (2 * POINTS).into()));
+    let sum = |point: i64| -> Bound {
+        let place = Rational::new(point.into(), POINTS.into());
+        let factors: Vec<Bound> = nodes.iter().map(|node| apart(&place, node) + step).collect();
+        let polynomial = |own: usize| {
+            let others = factors.iter().enumerate().filter(|(other, _)| *other != own);
+            others.fold(weights[own], |product, (_, factor)| product * *factor)
+        };
+        (0..nodes.len()).map(polynomial).sum()
+    };
+    (-POINTS..=POINTS).map(sum).fold(Bound::ZERO, Bound::max)
 }
 
 /// The coefficients of the polynomial with these values at the nodes, by Newton's divided differences.

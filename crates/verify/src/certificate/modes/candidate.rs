@@ -15,9 +15,11 @@ use super::super::formula::{JudgedFormula, LettersOfLaw};
 use super::super::fourier_series::WORKING;
 use super::super::radii_polynomial::NotProved;
 use super::super::theorem::{correction, prove};
-use super::super::{Certified, HIGHEST_HARMONIC, law};
+use super::super::{Certified, HIGHEST_HARMONIC, ModeBranch, law};
 use super::{ModeAmplitude, ModeCertificate, last_harmonic_of_largest_block};
+use crate::decimal::rounded_to;
 use crate::exact::ball::Balls;
+use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::interrupt::Interrupt;
@@ -74,20 +76,13 @@ fn certified_mode(
     })?;
     let values: BTreeMap<Symbol, Expr> =
         values.iter().map(|(name, value)| (name, value.clone())).collect();
-    let (coordinates, forces) = equations(system, &values)?;
+    let (coordinates, forces) = equations(system, &values, true)?;
     let mut odd = true;
     for force in &forces {
         odd &= is_odd(force, &coordinates)?;
     }
     let (coefficients, odd) = harmonics(&judged, odd);
-    let measure = match mode.amplitude {
-        AmplitudeConvention::Initial => ModeAmplitude::Start(mode.along),
-        AmplitudeConvention::FirstHarmonic => {
-            let factors = mode.linear.modal.iter();
-            let factors = factors.map(|factor| with_numbers(mode, factor, &values));
-            ModeAmplitude::FirstHarmonic(factors.collect::<Result<_, ExprError>>()?)
-        }
-    };
+    let measure = measure(mode, &values)?;
     let formula = match with_formula {
         true => Some(formula(mode, &judged, at)?),
         false => None,
@@ -125,11 +120,84 @@ fn certified_mode(
     }
 }
 
+/// The branch of a mode on a range of amplitudes that begins at this one, of a system with numbers for all
+/// parameters.
+///
+/// # Errors
+/// [`NotCertified`].
+pub(in super::super) fn mode_branch(
+    system: &FreeSystem,
+    mode: &NonlinearMode,
+    from: &Rational,
+) -> Result<ModeBranch, NotCertified> {
+    /// Digits of the motion that names the branch.
+    const DIGITS: usize = 12;
+    const ANY_TOLERANCE: f64 = 1.0;
+    let _letters = system.letters.in_force();
+    let nothing = BTreeMap::new();
+    let (coordinates, forces) = equations(system, &nothing, false)?;
+    let measure = measure(mode, &nothing)?;
+    let rounded = |value: f64| rounded_to(value, DIGITS);
+    if from.is_zero() {
+        // The linear mode.
+        let number = |polynomial: &Polynomial| {
+            let value = law::number(&with_numbers(mode, polynomial, &nothing)?);
+            let value = value.ok_or(NotCertified::Motion(NoNumbers::NotReal))?;
+            Ok::<f64, NotCertified>(WORKING.nearest(&value))
+        };
+        let shape = mode.linear.shape.iter().map(number).collect::<Result<Vec<f64>, _>>()?;
+        let size = match &measure {
+            ModeAmplitude::Start(coordinate) => shape.get(*coordinate).copied().unwrap_or(1.0),
+            ModeAmplitude::FirstHarmonic(factors) => {
+                let parts = factors.iter().zip(&shape).filter_map(|(factor, part)| {
+                    Some(WORKING.nearest(&law::number(factor)?) * part)
+                });
+                parts.sum()
+            }
+        };
+        let list = |part: &f64| vec![Rational::zero(), rounded(part / size)];
+        let coefficients = shape.iter().map(list).collect();
+        let mu = rounded(number(&mode.linear.square)?.recip());
+        return Ok(ModeBranch { coordinates, forces, measure, mu, coefficients });
+    }
+    let mut at = Values::default();
+    // A number is a value, and the name is given once.
+    let _ = at.insert(mode.amplitude.symbol(), Expr::number(from.clone()));
+    let judged = judge_mode(system, mode, &at, ANY_TOLERANCE, Interrupt::default())?;
+    let mut odd = true;
+    for force in &forces {
+        odd &= is_odd(force, &coordinates)?;
+    }
+    let (coefficients, _) = harmonics(&judged, odd);
+    let size = to_f64(from);
+    let balls = Balls { bits: BITS };
+    let number = |units: &Integer| rounded(balls.nearest(&balls.dyadic(units, BITS)) / size);
+    let coefficients = coefficients.iter().map(|list| list.iter().map(number).collect()).collect();
+    let mu = rounded(judged.true_frequency.powi(-2));
+    Ok(ModeBranch { coordinates, forces, measure, mu, coefficients })
+}
+
+/// The definition of the amplitude of a mode, with these values in it.
+fn measure(
+    mode: &NonlinearMode,
+    values: &BTreeMap<Symbol, Expr>,
+) -> Result<ModeAmplitude, ExprError> {
+    Ok(match mode.amplitude {
+        AmplitudeConvention::Initial => ModeAmplitude::Start(mode.along),
+        AmplitudeConvention::FirstHarmonic => {
+            let factors = mode.linear.modal.iter();
+            let factors = factors.map(|factor| with_numbers(mode, factor, values));
+            ModeAmplitude::FirstHarmonic(factors.collect::<Result<_, ExprError>>()?)
+        }
+    })
+}
+
 /// The coordinates, and f of `q'' + f(q) = 0` with numbers: the accelerations by the equations, for
-/// which the mass matrix was inverted exactly.
+/// which the mass matrix was inverted exactly; polynomials written out, or as they were given.
 fn equations(
     system: &FreeSystem,
     values: &BTreeMap<Symbol, Expr>,
+    is_written_out: bool,
 ) -> Result<(Vec<Symbol>, Vec<Expr>), NotCertified> {
     let names = &system.equations.coordinates;
     let coordinates: Vec<Symbol> = names.iter().map(|name| Symbol::new(name.written())).collect();
@@ -141,8 +209,12 @@ fn equations(
         let place = rates.states.iter().position(|state| *state == velocity);
         let rate = place.and_then(|place| rates.right.get(place)).cloned();
         let force = -rate.unwrap_or_else(Expr::zero).substitute_all(values)?;
-        let force = written_out(force, names)?;
-        if names.iter().any(|name| force.contains(name.derivative())) {
+        let moves = |force: &Expr| names.iter().any(|name| force.contains(name.derivative()));
+        let force = match is_written_out || moves(&force) {
+            true => written_out(force, names)?,
+            false => force,
+        };
+        if moves(&force) {
             return Err(NotCertified::NotOfPosition {
                 coordinate: name.to_string(),
                 force: force.to_string(),

@@ -19,6 +19,7 @@ use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
+pub(super) use candidate::mode_branch;
 pub use candidate::{certify_mode, certify_mode_motion};
 
 /// The definition of the amplitude of a mode.
@@ -68,7 +69,7 @@ pub struct ModeCertificate {
 }
 
 /// The largest number of coordinates.
-const MOST_COORDINATES: usize = 40;
+pub(super) const MOST_COORDINATES: usize = 40;
 
 /// The largest number of unknowns of a block.
 const MOST_UNKNOWNS: usize = HIGHEST_HARMONIC + 1;
@@ -123,6 +124,7 @@ impl ModeCertificate {
         ConservativeProblem {
             forces: self.forces.iter().collect(),
             coordinates: self.coordinates.clone(),
+            parameter: None,
             condition,
             odd: self.odd,
             motions: self.motions(),
@@ -236,7 +238,7 @@ impl ModeCertificate {
 }
 
 /// The last harmonic of the largest block of so many coordinates.
-const fn last_harmonic_of_largest_block(coordinates: usize, odd: bool) -> usize {
+pub(super) const fn last_harmonic_of_largest_block(coordinates: usize, odd: bool) -> usize {
     let each = (MOST_UNKNOWNS - 1) / coordinates;
     let last = if odd { 2 * each - 1 } else { each - 1 };
     if last < HIGHEST_HARMONIC { last } else { HIGHEST_HARMONIC - 1 }

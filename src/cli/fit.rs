@@ -152,9 +152,11 @@ impl FitArguments {
                 "--start: it is of the letters of an equation: write the equation as well"
                     .to_owned(),
             )),
-            Some((option, ..)) => Err(Failure::Usage(format!(
-                "{option}: it has no effect on a measurement of this kind"
-            ))),
+            Some((option, ..)) => {
+                let kind = self.data.to_possible_value();
+                let kind = kind.as_ref().map_or("decay", |kind| kind.get_name());
+                Err(Failure::Usage(format!("{option}: it has no effect with --data {kind}")))
+            }
             None => Ok(()),
         }
     }

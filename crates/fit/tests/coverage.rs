@@ -7,8 +7,9 @@ mod synthetic;
 
 use std::collections::BTreeMap;
 
-use lindstedt_fit::fit::answer::{FitOptions, fit};
-use lindstedt_fit::fit::laws::{Loss, Spring};
+use lindstedt_fit::fit::answer::{FitOptions, fit, fit_laws};
+use lindstedt_fit::fit::laws::{Law, Loss, Spring};
+use lindstedt_fit::fit::record::Record;
 use synthetic::{LONG, Length, SHORT, synthetic};
 
 /// What a run over many records found.
@@ -137,7 +138,7 @@ fn errors_are_true_over_some_short_records() {
 }
 
 /// The example of a pendulum with viscous damping and dry friction, 60 s at 200 Hz with 0.3 degrees of noise.
-fn pendulum(seed: u64) -> lindstedt_fit::fit::record::Record {
+fn pendulum(seed: u64) -> Record {
     use rand::SeedableRng;
     let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let times: Vec<f64> = (0..12_000).map(|index| f64::from(index) / 200.0).collect();
@@ -146,12 +147,7 @@ fn pendulum(seed: u64) -> lindstedt_fit::fit::record::Record {
     let motion = synthetic::motion(spring, loss, &truth, [1.4, 0.0], &times);
     let noise = 0.3_f64.to_radians();
     let values = motion.iter().map(|x| x + noise * synthetic::normal(&mut generator));
-    lindstedt_fit::fit::record::Record {
-        values: values.collect(),
-        times,
-        is_angle: true,
-        ..Default::default()
-    }
+    Record { values: values.collect(), times, is_angle: true, ..Record::default() }
 }
 
 #[test]
@@ -173,8 +169,6 @@ fn a_pendulum_with_viscous_damping_and_dry_friction_is_told_apart() {
 
 #[test]
 fn laws_of_one_s_own_and_other_quantities_are_fitted() {
-    use lindstedt_fit::fit::answer::fit_laws;
-    use lindstedt_fit::fit::laws::Law;
     use lindstedt_fit::fit::motion::{MotionSolver, Quantity};
     use rand::SeedableRng;
 
@@ -193,12 +187,7 @@ fn laws_of_one_s_own_and_other_quantities_are_fitted() {
             .iter()
             .map(|own| own + 0.3 * size + 3e-3 * size * synthetic::normal(&mut generator))
             .collect();
-        let record = lindstedt_fit::fit::record::Record {
-            times: times.clone(),
-            values,
-            quantity,
-            is_angle: false,
-        };
+        let record = Record { times: times.clone(), values, quantity, is_angle: false };
         // From its accelerations, or from a start.
         let start: Vec<f64> = truth.iter().map(|own| 0.95 * own).collect();
         let start = (quantity != Quantity::Displacement).then_some(start);
@@ -224,12 +213,125 @@ fn laws_of_one_s_own_and_other_quantities_are_fitted() {
 
 #[test]
 fn outliers_are_left_out_and_named() {
-    let mut made = synthetic(11, SHORT).record;
-    let size = made.values.iter().fold(0.0_f64, |size, own| size.max(own.abs()));
-    let wrong: Vec<usize> = (20..made.values.len()).step_by(97).collect();
-    for index in &wrong {
-        made.values[*index] += size;
+    let made = synthetic(11, SHORT);
+    let clean = fit(&made.record, &FitOptions::default()).unwrap();
+    assert!(clean.records[0].outliers.is_empty());
+    let mut record = made.record;
+    let size = record.values.iter().fold(0.0_f64, |size, own| size.max(own.abs()));
+    let wrong: Vec<usize> = (20..record.values.len()).step_by(97).collect();
+    for (place, index) in wrong.iter().enumerate() {
+        record.values[*index] += if place % 2 == 0 { size } else { -1.5 * size };
     }
-    let answer = fit(&made, &FitOptions::default()).unwrap();
+    let answer = fit(&record, &FitOptions::default()).unwrap();
     assert_eq!(answer.records[0].outliers, wrong);
+    assert_eq!(answer.laws[0].law.parts, Some((made.spring, made.loss)));
+    for (name, value) in &made.truth {
+        let own = answer.laws[0].estimate(name).unwrap();
+        assert!((own.value - value).abs() < 3.0 * own.error, "{name}: {own:?} {value}");
+    }
+    // With all samples the scatter is that of the spikes.
+    let all = FitOptions { keep_outliers: true, ..FitOptions::default() };
+    let kept = fit(&record, &all).unwrap();
+    assert!(kept.records[0].outliers.is_empty() && kept.noise > 10.0 * answer.noise);
+}
+
+#[test]
+fn several_records_share_their_law() {
+    use rand::SeedableRng;
+    let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    let truth = [("w", 4.0), ("beta", 0.9), ("zeta", 0.012)];
+    // Two amplitudes, one of them with an offset, later times, and more noise.
+    let mut record = |size: f64, first: f64, offset: f64, noise: f64| {
+        let times: Vec<f64> = (0..500).map(|index| first + 0.04 * f64::from(index)).collect();
+        let motion = synthetic::motion(Spring::Duffing, Loss::Viscous, &truth, [size, 0.0], &times);
+        let values = motion.iter().map(|x| x + offset + noise * synthetic::normal(&mut generator));
+        Record { values: values.collect(), times, ..Record::default() }
+    };
+    let records = [record(1.5, 0.0, 0.0, 0.01), record(0.6, 100.0, -3.0, 0.03)];
+    let both = fit(&records, &FitOptions::default()).unwrap();
+    let alone = fit(&records[0], &FitOptions::default()).unwrap();
+    let best = &both.laws[0];
+    assert_eq!(best.law.parts, Some((Spring::Duffing, Loss::Viscous)));
+    assert!(best.chi_square > 0.8 && best.chi_square < 1.2 && best.converged);
+    let of_second = [("x0_2", 0.6), ("v0_2", 0.0), ("offset_2", -3.0), ("drift_2", 0.0)];
+    for (name, value) in truth.iter().chain(&of_second) {
+        let own = best.estimate(name).unwrap();
+        assert!((own.value - value).abs() < 3.5 * own.error, "{name}: {own:?} {value}");
+        if let Some(alone) = alone.laws[0].estimate(name) {
+            assert!(own.error < alone.error, "{name}: {own:?} {alone:?}");
+        }
+    }
+    // The noise of each record is its own.
+    let ratio = both.records[0].samples.weight / both.records[1].samples.weight;
+    assert!((ratio - 3.0).abs() < 0.6, "{ratio}");
+    let exact =
+        synthetic::motion(Spring::Duffing, Loss::Viscous, &truth, [0.6, 0.0], &[100.0, 123.0]);
+    let [value, error] = both.predict(best, 1, &[123.0]).unwrap()[0];
+    assert!((value + 3.0 - exact[1]).abs() < 4.0 * error, "{value} {error} {exact:?}");
+    assert!(both.predict(best, 2, &[123.0]).is_none());
+}
+
+/// A record of an equation of motion, by Runge-Kutta, with noise of this size.
+fn record_of(
+    acceleration: impl Fn(f64, f64, f64) -> f64,
+    start: [f64; 3],
+    step: f64,
+    count: u32,
+    noise: f64,
+) -> Record {
+    use lindstedt_fit::numeric::ode::{IntegrationOptions, State, integrate};
+    use rand::SeedableRng;
+    let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(9);
+    let [t, x, v] = start;
+    let times: Vec<f64> = (0..count).map(|index| t + step * f64::from(index)).collect();
+    let options = IntegrationOptions::with_tolerance(1e-11);
+    let last = times[times.len() - 1];
+    let path = integrate(acceleration, State { t, x, v }, last, &[], &options).unwrap();
+    let values = times.iter().map(|time| path.phase_point_at(*time).unwrap().0);
+    let values = values.map(|x| x + noise * synthetic::normal(&mut generator)).collect();
+    Record { times, values, ..Record::default() }
+}
+
+/// Fits an equation from 0.9 of its parameters, and holds the estimates against them.
+fn is_recovered(record: &Record, equation: &str, truth: &[(&str, f64)], starts: &[(&str, f64)]) {
+    let law = Law::parse(equation).unwrap();
+    let find =
+        |list: &[(&str, f64)], name: &str| list.iter().find(|own| own.0 == name).map(|own| own.1);
+    let start = law.parameters.iter().map(|name| {
+        find(starts, name.name()).unwrap_or_else(|| 0.9 * find(truth, name.name()).unwrap())
+    });
+    let laws = [(law.clone(), Some(start.collect()))];
+    let answer = fit_laws(record, &laws, &FitOptions::default()).unwrap();
+    let best = &answer.laws[0];
+    assert!(answer.records[0].outliers.is_empty(), "{:?}", answer.records[0].outliers);
+    assert!(best.converged && best.whiteness.is_white(), "{equation}: {:?}", best.estimates);
+    for (name, value) in truth {
+        let own = best.estimate(name).unwrap();
+        assert!((own.value - value).abs() < 3.5 * own.error, "{name}: {own:?} {value}");
+        assert!(own.error < 0.2 * value.abs(), "{name}: {own:?}");
+    }
+}
+
+#[test]
+fn a_contact_at_a_barrier_is_recovered() {
+    let [c, stiffness, d, lambda] = [0.02, 30.0, 0.3, 0.25];
+    let acceleration = |_: f64, x: f64, v: f64| {
+        let depth = (x - d).max(0.0);
+        -c * v - x - stiffness * depth.powf(1.5) * (1.0 + lambda * v)
+    };
+    let record = record_of(acceleration, [2.0, -1.0, 0.2], 0.05, 1200, 3e-3);
+    let equation = "x'' + c*x' + x + K*max(x - d, 0)^(3/2)*(1 + lambda*x') = 0";
+    let truth = [("c", c), ("K", stiffness), ("d", d), ("lambda", lambda)];
+    is_recovered(&record, equation, &truth, &[]);
+}
+
+#[test]
+fn a_driven_oscillator_is_recovered_in_the_time_of_its_record() {
+    let [c, k, b, force, rate] = [0.1, 1.0, 0.3, 0.5, 1.3];
+    let acceleration =
+        |t: f64, x: f64, v: f64| force * (rate * t).cos() - c * v - k * x - b * x.powi(3);
+    let record = record_of(acceleration, [3.0, 0.4, 0.0], 0.06, 1200, 5e-3);
+    let truth = [("c", c), ("k", k), ("b", b), ("F", force), ("Omega", rate)];
+    let equation = "x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)";
+    is_recovered(&record, equation, &truth, &[("Omega", 1.29)]);
 }

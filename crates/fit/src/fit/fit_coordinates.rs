@@ -82,7 +82,7 @@ impl FitCoordinates {
     }
 
     /// The coordinates of these parameters; `None` if the frequency at the amplitude S is not real.
-    pub fn from_law(self, values: &[f64]) -> Option<Vec<f64>> {
+    pub fn inner(self, values: &[f64]) -> Option<Vec<f64>> {
         let Some((spring, loss)) = self.parts else { return Some(values.to_vec()) };
         let [size, speed] = self.sizes;
         let mut inner = values.to_vec();
@@ -145,7 +145,7 @@ mod tests {
             let values: Vec<f64> =
                 (0..law.parameters.len() + 4).map(|index| 1.2 - 0.1 * index as f64).collect();
             let coordinates = FitCoordinates::new(&law, &[&samples]);
-            let Some(inner) = coordinates.from_law(&values) else {
+            let Some(inner) = coordinates.inner(&values) else {
                 assert_eq!(law.parts.unwrap().0, Spring::Quadratic);
                 continue;
             };

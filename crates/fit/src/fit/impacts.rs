@@ -155,7 +155,9 @@ pub fn fit_impacts(
     if !is_positive(gravity) || !noise.is_none_or(is_positive) {
         return Err(ImpactsError::NotPositive);
     }
-    if let Some(place) = times.windows(2).position(|pair| !(pair[1] > pair[0])) {
+    if let Some(place) =
+        times.windows(2).position(|pair| pair[1].is_nan() || pair[0].is_nan() || pair[1] <= pair[0])
+    {
         return Err(ImpactsError::Order(place + 2));
     }
     let flights: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();

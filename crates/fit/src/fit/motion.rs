@@ -44,6 +44,10 @@ pub struct MotionSolver {
 #[derive(Clone, Debug)]
 struct Side {
     solver: Solver,
+    /// The system that it solves, for other places of its corners.
+    equations: (Vec<Symbol>, Vec<Expr>),
+    events: Vec<Event>,
+    options: SystemOptions,
     /// The acceleration and its derivatives by x, v and the parameters, as functions of x, v, t, the
     /// parameters and the coefficients of powers.
     acceleration: CompiledList,
@@ -151,7 +155,7 @@ impl MotionSolver {
         self.set_powers(&mut arguments, coefficients, [largest, largest / scale]);
         let mut run = Run { scratch: vec![], values: vec![0.0; count] };
         let mut is_upward = start[1] > 0.0;
-        let mut solvers: Option<Vec<Solver>> = None;
+        let mut solvers: Vec<Option<Solver>> = vec![None; self.sides.len()];
         for swing in 0..MOST_HALF_SWINGS {
             self.set_point(&mut arguments, &state, time);
             if swing > 0 || start[1] == 0.0 {
@@ -177,7 +181,7 @@ impl MotionSolver {
                 state[count] = 0.0;
             }
             let side = self.side(is_upward);
-            if !self.powers.is_empty() || solvers.is_none() {
+            if !self.powers.is_empty() {
                 // As for a harmonic motion, where the scale is 1/w: X^2 = x^2 + (v/w)^2, V^2 = v^2 + (a/w)^2.
                 let (x, v) = (state[0], state[count]);
                 let acceleration = run.acceleration(&self.sides[side], &arguments);
@@ -186,10 +190,13 @@ impl MotionSolver {
                 self.set_powers(&mut arguments, coefficients, [largest, fastest]);
                 numbers
                     .extend(symbols.iter().copied().zip(arguments[coefficients..].iter().copied()));
-                let own = self.sides.iter().map(|side| side.solver.with_numbers(&numbers));
-                solvers = Some(own.collect::<Option<_>>()?);
+                solvers[side] = None;
             }
-            let path = solvers.as_ref()?[side].solve([time, last], &state).ok()?;
+            let solver = match &mut solvers[side] {
+                Some(known) => known,
+                place => place.insert(self.sides[side].solver_with(&numbers)?),
+            };
+            let path = solver.solve([time, last], &state).ok()?;
             let mut kept = vec![];
             let from = columns[0].len();
             path.sample(&times[next..], &mut kept, &mut columns);
@@ -299,7 +306,8 @@ impl Side {
         let speed = fresh("v", &[taken, &z, &u].concat());
         // The velocity in the powers is written out first by its own name.
         let finished = |expr: &Expr| -> Result<Expr, ExprError> {
-            written_out(expr, powers)?.substitute(velocity, &Expr::from(speed))
+            with_contact_roots(&written_out(expr, powers)?)?
+                .substitute(velocity, &Expr::from(speed))
         };
         let renamed = finished(acceleration)?;
         let by_x = finished(&by_variable(acceleration, powers, (coordinate, Base::Coordinate))?)?;
@@ -342,8 +350,40 @@ impl Side {
         let arguments = [&[coordinate, speed, time], names.as_slice()].concat();
         let acceleration =
             CompiledList::new(&values, &arguments).map_err(|_| ExprError::TooManyTerms(0))?;
-        Ok(Self { solver: system.solver(&events, &options), acceleration })
+        let solver = system.solver(&events, &options);
+        Ok(Self { solver, equations: (states, rights), events, options, acceleration })
     }
+
+    /// The solver with these numbers. Other places of corners, such as barriers, need other recurrences.
+    fn solver_with(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Solver> {
+        let anew = || {
+            let (states, rights) = &self.equations;
+            let system = System::new(states, Symbol::new("t"), rights, numbers).ok()?;
+            Some(system.solver(&self.events, &self.options))
+        };
+        self.solver.with_numbers(numbers).or_else(anew)
+    }
+}
+
+/// Writes `max(y, 0)^e` as `(y^2)^(e/2) H(y)` if e is not a whole number: in this form it is integrated through y = 0, as at the beginning and the
+/// end of a contact.
+fn with_contact_roots(expr: &Expr) -> Result<Expr, ExprError> {
+    let depth = |node: &Expr| -> Option<(Expr, Expr)> {
+        let Node::Power(base, exponent) = node.node() else { return None };
+        let Node::Function(Function::Maximum, arguments) = base.node() else { return None };
+        let is_whole = exponent.as_number().is_some_and(|number| number.is_integer());
+        let zero = arguments.iter().position(|own| own.is_zero()).filter(|_| !is_whole)?;
+        Some((arguments.get(1 - zero.min(1))?.clone(), exponent.clone()))
+    };
+    expr.fold(|node, children: &[Expr]| match (depth(node), node.node()) {
+        (Some((depth, exponent)), _) => {
+            let half = Expr::divide(&exponent, &Expr::from(2))?;
+            let side = Expr::function(Function::Step, vec![depth.clone()])?;
+            Ok(Expr::power(&depth.integer_power(2)?, &half)? * side)
+        }
+        (None, Node::Number(_) | Node::Symbol(_) | Node::Pi) => Ok(node.clone()),
+        _ => node.with_children(children),
+    })
 }
 
 /// Writes `abs(v)` and `sgn(v)` for one sign of the velocity.

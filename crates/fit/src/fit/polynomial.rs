@@ -65,7 +65,7 @@ impl LocalPolynomial {
                 return None;
             }
             time -= (value / slope).clamp(-0.3 * self.width, 0.3 * self.width);
-            if !((time - self.centre).abs() <= self.width) {
+            if !time.is_finite() || (time - self.centre).abs() > self.width {
                 return None;
             }
         }

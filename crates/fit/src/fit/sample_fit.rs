@@ -78,7 +78,7 @@ pub fn fit_samples(
         let (residuals, jacobian) = linearised(solver, records, &values, counts)?;
         Some((residuals, jacobian * coordinates.slopes(inner)?))
     };
-    let start = &coordinates.from_law(start)?;
+    let start = &coordinates.inner(start)?;
     let totals: Vec<usize> = records.iter().map(|samples| samples.values.len()).collect();
     let variance: f64 = records.iter().map(|samples| samples.square_about_mean()).sum();
     let first = evaluate(start, &totals);

@@ -9,7 +9,7 @@
 //! after it `v = a+ (t - t*)`. If the accelerations on both sides lead back, the motion sticks. The steps
 //! are Taylor steps over many samples, one run for each half swing where the law depends on the sign of `v`.
 //!
-//! Powers with an unknown exponent are rounded near zero, by a share of the largest value of each half swing: [`powers`](crate::fit::powers).
+//! Powers with an unknown exponent are rounded near zero, by a share of the largest value of each half swing: the module `powers`.
 
 use std::collections::BTreeMap;
 

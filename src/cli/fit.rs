@@ -59,6 +59,10 @@ pub struct FitArguments {
     /// Keep the samples that lie far from the law
     #[arg(long)]
     keep_outliers: bool,
+    /// With csv and pictures: the law beyond the record, until this time of the file, with its standard
+    /// error
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    until: Option<f64>,
     /// The gravity under which a ball bounces
     #[arg(long, value_parser = super::positive, default_value_t = 9.81, allow_hyphen_values = true)]
     gravity: f64,
@@ -110,7 +114,11 @@ fn run(arguments: &FitArguments) -> Result<Outcome, Failure> {
     match arguments.data {
         Kind::Decay => {
             let (records, answer) = decay(arguments, &text)?;
-            answered(&FitReport::Decay { records: &records, answer: &answer }, &arguments.common)
+            let until = arguments.until;
+            answered(
+                &FitReport::Decay { records: &records, answer: &answer, until },
+                &arguments.common,
+            )
         }
         Kind::Backbone => {
             let (rows, answer) = backbone(arguments, &text)?;
@@ -144,6 +152,7 @@ impl FitArguments {
             ("--time", self.time.is_some(), is_decay),
             ("--start", !self.start.is_empty(), is_decay && !self.equation.is_empty()),
             ("--keep-outliers", self.keep_outliers, is_decay),
+            ("--until", self.until.is_some(), is_decay),
             ("--angle", self.angle, self.data != Kind::Impacts),
             ("--noise", self.noise.is_some(), self.data != Kind::Backbone),
         ];

@@ -7,6 +7,7 @@ use super::figure::{Curve, CurveStyle, FigureError, Points, curve, figure, panel
 use crate::decimal::significant;
 use crate::fit::answer::{Answer, LawFit};
 use crate::fit::backbone::BackbonePoint;
+use crate::fit::fitted_record::FittedRecord;
 use crate::fit::impacts::MeasuredRestitution;
 use crate::fit::tables::{TableAnswer, TableRow};
 use crate::report::FitReport;
@@ -20,7 +21,7 @@ pub fn picture(report: &FitReport) -> Result<String, FigureError> {
     let laws = report.laws();
     let name = laws.first().map_or(String::new(), |law| law.name.clone());
     match report {
-        FitReport::Decay { answer, .. } => of_decay(answer, &name),
+        FitReport::Decay { answer, until, .. } => of_decay(answer, &name, *until),
         FitReport::Backbone { rows, answer } => of_backbone(rows, answer, &name),
         FitReport::Impacts(answer) => {
             let measured: Points =
@@ -74,27 +75,37 @@ fn of_backbone(rows: &[TableRow], answer: &TableAnswer, name: &str) -> Result<St
 /// The times at which the law is drawn over a record.
 const DRAWN: usize = 2000;
 
-fn of_decay(answer: &Answer, name: &str) -> Result<String, FigureError> {
+fn of_decay(answer: &Answer, name: &str, until: Option<f64>) -> Result<String, FigureError> {
     let best = answer.best().ok_or_else(|| FigureError::Empty("the record".to_owned()))?;
     let records = &answer.records;
     let (mut measured, mut fitted, mut left) = (vec![], vec![], vec![]);
+    let mut bands: Vec<Points> = vec![];
     for (place, record) in records.iter().enumerate() {
         let samples = &record.samples;
         let (Some(first), Some(last)) = (samples.times.first(), samples.times.last()) else {
             continue;
         };
+        let end = until.map_or(*last, |until| until.max(*last));
         let times: Vec<f64> =
-            (0..=DRAWN).map(|i| first + (last - first) * i as f64 / DRAWN as f64).collect();
+            (0..=DRAWN).map(|i| first + (end - first) * i as f64 / DRAWN as f64).collect();
         let law = answer.predict(best, place, &times).unwrap_or_default();
-        fitted.push(times.into_iter().zip(law.iter().map(|[value, _]| *value)).collect::<Points>());
-        left.extend(
-            samples.times.iter().copied().zip(answer.residuals(best, place).iter().copied()),
-        );
+        let both = || times.iter().zip(&law);
+        fitted.push(both().map(|(time, [value, _])| (*time, *value)).collect::<Points>());
+        for sigmas in [-3.0, 3.0] {
+            let beyond = both().filter(|(time, _)| **time > *last);
+            bands.push(
+                beyond.map(|(time, [value, error])| (*time, value + sigmas * error)).collect(),
+            );
+        }
+        let residuals = answer.residuals(best, place).iter().copied();
+        left.extend(samples.times.iter().copied().zip(residuals));
         measured.extend(samples.times.iter().copied().zip(samples.values.iter().copied()));
     }
     let mut curves = vec![curve("measured", &measured, CurveStyle::POINTS)];
     let drawn = fitted.iter().filter(|points| points.len() > 1);
     curves.extend(drawn.map(|points| curve("law", points, CurveStyle::SECOND_FORMULA)));
+    let drawn = bands.iter().filter(|points| points.len() > 1);
+    curves.extend(drawn.map(|points| curve("three standard errors", points, CurveStyle::BACKBONE)));
     let record = panel("Record", ["time", "displacement"], curves, vec![]);
     let residuals = vec![curve("residuals", &left, CurveStyle::DOTS)];
     let residuals = panel("Residuals", ["time", "measured less law"], residuals, vec![]);
@@ -140,21 +151,22 @@ fn of_decay(answer: &Answer, name: &str) -> Result<String, FigureError> {
 /// their numbers.
 pub fn csv(report: &FitReport) -> String {
     match report {
-        FitReport::Decay { answer, .. } => {
+        FitReport::Decay { answer, until, .. } => {
             let names = ["record", "time", "measured", "law", "standard_error", "residual"];
             let mut text = csv::line(names);
             let Some(best) = answer.best() else { return text };
             for (record, found) in answer.records.iter().enumerate() {
                 let samples = &found.samples;
-                let law = answer.predict(best, record, &samples.times).unwrap_or_default();
+                let times: Vec<f64> =
+                    samples.times.iter().copied().chain(beyond(found, *until)).collect();
+                let law = answer.predict(best, record, &times).unwrap_or_default();
                 let left = answer.residuals(best, record);
-                for (place, (time, value)) in samples.times.iter().zip(&samples.values).enumerate()
-                {
+                for (place, time) in times.iter().enumerate() {
                     let own = law.get(place);
                     text += &csv::line([
                         (record + 1).to_string(),
                         time.to_string(),
-                        value.to_string(),
+                        csv::cell(samples.values.get(place)),
                         csv::cell(own.map(|[value, _]| value)),
                         csv::cell(own.map(|[_, error]| error)),
                         csv::cell(left.get(place)),
@@ -182,6 +194,16 @@ pub fn csv(report: &FitReport) -> String {
             text
         }
     }
+}
+
+/// Times beyond a record, as far apart as its samples, until this one.
+fn beyond(record: &FittedRecord, until: Option<f64>) -> impl Iterator<Item = f64> {
+    /// The largest number of times beyond a record.
+    const MOST: usize = 1_000_000;
+    let last = record.samples.times.last().copied().unwrap_or(0.0);
+    let step = record.quality.step;
+    let times = (1..=MOST).map(move |place| last + step * place as f64);
+    times.take_while(move |time| until.is_some_and(|until| *time <= until + 1e-9 * step))
 }
 
 /// The best law of a record as a problem file, which `simulate` and `derive` read; `None` of tables and

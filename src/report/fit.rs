@@ -17,6 +17,8 @@ pub enum FitReport<'a> {
         records: &'a [ReadRecord],
         /// The laws.
         answer: &'a Answer,
+        /// The time until which the law is followed beyond a record.
+        until: Option<f64>,
     },
     /// A table of frequency, and perhaps damping, against amplitude.
     Backbone {
@@ -179,7 +181,7 @@ fn estimates<'a>(own: &[Estimate]) -> Block<'a> {
 pub fn fit<'a>(report: &FitReport) -> Document<'a> {
     let laws = report.laws();
     let mut sections = vec![match report {
-        FitReport::Decay { records, answer } => of_records(records, answer),
+        FitReport::Decay { records, answer, .. } => of_records(records, answer),
         FitReport::Backbone { rows, .. } => of_rows(rows),
         FitReport::Impacts(answer) => vec![Block::Heading(format!(
             "{} impacts, their times good to {}",

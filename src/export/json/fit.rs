@@ -156,7 +156,7 @@ pub fn fit(report: &FitReport) -> FitDocument {
     });
     let (mut records, mut backbone, mut impacts) = (vec![], vec![], vec![]);
     let data = match report {
-        FitReport::Decay { records: read, answer } => {
+        FitReport::Decay { records: read, answer, .. } => {
             let found = &answer.records;
             records = read
                 .iter()

@@ -234,6 +234,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("fit", fitted.to_vec(), vec!["--start", "c=1"]),
         ("fit", fitted.to_vec(), vec!["--noise", "0.1"]),
         ("fit", vec![IMPACTS, "--data", "impacts"], vec!["--keep-outliers"]),
+        ("fit", [&fitted[..], &["--format", "csv"]].concat(), vec!["--until", "100"]),
         ("fit", vec![IMPACTS, "--data", "impacts"], vec!["--gravity", "1.62"]),
         ("fit", fitted.to_vec(), vec!["--format", "csv"]),
         ("fit", fitted.to_vec(), vec!["--format", "latex"]),

@@ -7,8 +7,10 @@ use crate::certificate::{
 use crate::decimal::{decimal, significant};
 use crate::exact::Rational;
 use crate::exact::rational::to_f64;
+use crate::expr::Expr;
 use crate::shortest::{Front, LawMotion, ShortLaw};
 use crate::solution::AmplitudeConvention;
+use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 use crate::verify::Verdict;
 
@@ -213,8 +215,14 @@ fn motion_of_law(certificate: &LawCertificate) -> String {
         MotionsOfLaw::Coordinate { force, mass, start } => (force, mass, start),
         MotionsOfLaw::Mode(branch) => {
             let rates = branch.coordinates.iter().zip(&branch.forces);
-            let equations: Vec<String> =
-                rates.map(|(name, force)| format!("{name}'' + {force} = 0")).collect();
+            let equation = |(name, force): (&Symbol, &Expr)| {
+                let force = force.to_string();
+                match force.strip_prefix('-') {
+                    Some(rest) => format!("{name}'' - {rest} = 0"),
+                    None => format!("{name}'' + {force} = 0"),
+                }
+            };
+            let equations: Vec<String> = rates.map(equation).collect();
             let measure = match &branch.measure {
                 ModeAmplitude::Start(coordinate) => {
                     let name = branch.coordinates.get(*coordinate);

@@ -129,7 +129,7 @@ fn laws_of_contacts_and_of_modes() {
     let certificate = printed(&[&mode[..], &["--certificate", "--format", "json"]].concat());
     std::fs::write(&file, &certificate).expect("a file");
     let text = printed(&["check", name]);
-    assert!(text.contains("the branch of normal modes with omega near 1 at a = 0"), "{text}");
+    assert!(text.contains("the branch of normal modes with omega near 1"), "{text}");
     assert!(text.contains("for every a of the range"), "{text}");
     assert_eq!(printed(&["check", name, "--format", "json"]), certificate);
     for (from, to, words) in [

@@ -262,18 +262,8 @@ impl LawCertificate {
         };
         let is_contact = self.quantity == LawQuantity::ContactTime;
         let of_law = if is_contact { restitution() } else { self.variable };
-        let demands = [
-            (
-                ends && !self.from.is_negative() && self.worst >= self.from,
-                "an empty range, or a worst place outside of it",
-            ),
-            (
-                is_known(&self.law, &[self.variable, of_law]),
-                "a law with letters that have no value",
-            ),
-        ];
-        if let Some((_, reason)) = demands.into_iter().find(|(holds, _)| !holds) {
-            return Err(reason);
+        if !ends || self.from.is_negative() || self.worst < self.from {
+            return Err("an empty range, or a worst place outside of it");
         }
         match &self.motions {
             MotionsOfLaw::Coordinate { force, mass, start } => {
@@ -282,6 +272,10 @@ impl LawCertificate {
             MotionsOfLaw::Mode(_) if is_contact => Err("a contact of several coordinates"),
             MotionsOfLaw::Mode(_) if self.to.is_none() => Err("an amplitude that goes to infinity"),
             MotionsOfLaw::Mode(branch) => branch.well_formed(self.variable),
+        }?;
+        match is_known(&self.law, &[self.variable, of_law]) {
+            true => Ok(()),
+            false => Err("a law with letters that have no value"),
         }
     }
 

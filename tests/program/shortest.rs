@@ -109,7 +109,7 @@ const CONTACT: [&str; 8] = [
 fn laws_of_contacts_and_of_modes() {
     in_snapshots(|| {
         insta::assert_snapshot!("shortest-contact", printed(&CONTACT));
-        let mode = ["shortest", PAIR, "--mode", "2", "--range", "a=0:2", "--longest", "8"];
+        let mode = ["shortest", PAIR, "--mode", "2", "--range", "a=0:1", "--longest", "8"];
         insta::assert_snapshot!("shortest-mode", printed(&mode));
     });
     let code = printed(&[&CONTACT[..], &["--format", "python"]].concat());

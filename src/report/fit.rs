@@ -44,7 +44,7 @@ pub struct FittedLaw {
     pub chi_squared: Option<f64>,
     /// The criterion of Akaike.
     pub aic: Option<f64>,
-    /// What excludes it; `None` for the best law, and for one that the measurement does not exclude.
+    /// The reason that excludes it; `None` for the best law, and for one that the measurement does not exclude.
     pub excluded: Option<String>,
 }
 
@@ -398,7 +398,7 @@ fn of_rows<'a>(rows: &[TableRow]) -> Vec<Block<'a>> {
     )])]
 }
 
-/// What is to be said of the best law of a decay.
+/// The remarks on the best law of a decay.
 fn of_best<'a>(fit: &LawFit) -> Vec<Block<'a>> {
     let white = match fit.whiteness.is_white() {
         true => "white, as noise is".to_owned(),

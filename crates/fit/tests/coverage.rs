@@ -12,7 +12,7 @@ use lindstedt_fit::fit::laws::{Law, Loss, Spring};
 use lindstedt_fit::fit::record::Record;
 use synthetic::{LONG, Length, SHORT, synthetic};
 
-/// What a run over many records found.
+/// The findings of a run over many records.
 #[derive(Default)]
 struct Tally {
     records: usize,

@@ -90,8 +90,8 @@ class FittedLaw(Document):
         chi_squared: Chi-square per degree of freedom; null where the law was not fitted to the
             samples.
         aic: The criterion of Akaike; null where there is none.
-        excluded: What excludes the law; null for the best one, and for one that the measurement
-            does not exclude.
+        excluded: The reason that excludes the law; null for the best one, and for one that the
+            measurement does not exclude.
     """
 
     name: str
@@ -114,7 +114,7 @@ FittedLaw.FIELDS = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BestLaw(Document):
-    """What is said of the best law of a record.
+    """The best law of a record in detail.
 
     Attributes:
         is_white: Whether the residuals are white.

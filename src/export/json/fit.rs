@@ -88,11 +88,11 @@ pub struct FittedLawDocument {
     pub chi_squared: Option<f64>,
     /// The criterion of Akaike; null where there is none.
     pub aic: Option<f64>,
-    /// What excludes the law; null for the best one, and for one that the measurement does not exclude.
+    /// The reason that excludes the law; null for the best one, and for one that the measurement does not exclude.
     pub excluded: Option<String>,
 }
 
-/// What is said of the best law of a record.
+/// The best law of a record in detail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "BestLaw"))]
 pub struct BestLawDocument {

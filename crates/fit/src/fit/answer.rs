@@ -26,7 +26,7 @@ use crate::fit::turning_points::{Swings, SwingsError};
 use crate::fit::whiteness::{Whiteness, robust_covariance};
 use crate::parallel::par_map;
 
-/// What to fit, and how.
+/// Options of a fit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitOptions {
     /// The standard deviation of the noise, if it is known; otherwise it is found from the residuals.
@@ -65,7 +65,7 @@ pub struct LawFit {
     pub bic: f64,
     /// The increase of chi-square over that of the best law, in units of the noise.
     pub excess: f64,
-    /// By how many times the misfit exceeds what noise explains: the excess for each parameter that the best law has more.
+    /// The factor by which the misfit exceeds what noise explains: the excess for each parameter that the best law has more.
     pub exclusion: f64,
     /// Whether the residuals are white.
     pub whiteness: Whiteness,
@@ -90,8 +90,7 @@ impl LawFit {
     }
 }
 
-/// How much worse than the best law by its turning points a law must be to count as excluded: a factor of chi-square, and a number
-/// beside it.
+/// The excess of chi-square from which on a law is excluded by its turning points: a factor of that of the best law, and a number beside it.
 const FAR: [f64; 2] = [5.0, 100.0];
 
 /// A law that the turning points exclude.
@@ -101,11 +100,11 @@ pub struct ExcludedLaw {
     pub law: Law,
     /// Its parameters by their names, as fitted to the turning points.
     pub values: Vec<(String, f64)>,
-    /// By how many times its chi-square exceeds that of the best law.
+    /// The ratio of its chi-square to that of the best law.
     pub ratio: f64,
 }
 
-/// What one record or several say.
+/// The answer for one record or several.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The laws that were fitted to the samples, the best first.
@@ -116,7 +115,7 @@ pub struct Answer {
     pub records: Vec<FittedRecord>,
     /// The standard deviation of the noise, as given or found from the residuals of the best law.
     pub noise: f64,
-    /// Over how many samples the residuals of the best law are correlated: 1 if they are white.
+    /// The number of samples over which the residuals of the best law are correlated: 1 if they are white.
     pub correlation_length: f64,
 }
 
@@ -158,7 +157,7 @@ pub enum FitError {
 }
 
 impl FitError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> String {
         match self {
             Self::Swings(error) => error.help().to_owned(),
@@ -263,7 +262,7 @@ pub fn fit(
 }
 
 /// Fits laws of one's own to one record or several, each from a start of its parameters; without one it is found from the accelerations.
-/// Where a law contains the time, it is that of each record.
+/// The time in a law is that of each record.
 ///
 /// # Errors
 /// [`FitError`].
@@ -566,7 +565,7 @@ impl Answer {
         law.residuals.get(from..from + length).unwrap_or_default()
     }
 
-    /// What the record excludes, one line for each law but the best.
+    /// The laws but the best one, each with what the record says against it, a line each.
     pub fn exclusions(&self) -> Vec<String> {
         const ALIKE: f64 = 9.0;
         let near = self.laws.iter().skip(1).map(|law| match law.excess < ALIKE {

@@ -32,7 +32,7 @@ pub struct FittedRecord {
 pub(crate) enum CountedPart {
     /// The free decay from its largest swing on.
     Decay,
-    /// What follows a hold, whether it grows or decays.
+    /// The part after a hold, whether it grows or decays.
     AfterRelease,
     /// All of it.
     All,

@@ -16,10 +16,10 @@ use crate::fit::answer::Estimate;
 use crate::fit::least_squares::{Covariance, minimise};
 use crate::fit::polynomial::median;
 
-/// How the coefficient of restitution depends on the speed.
+/// The dependence of the coefficient of restitution on the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RestitutionLaw {
-    /// The same at every speed: the parameter is `e`.
+    /// A constant: the parameter is `e`.
     Constant,
     /// A contact of Hunt and Crossley: the parameter is `lambda`, in units of a reciprocal speed.
     HuntCrossley,
@@ -73,7 +73,7 @@ pub struct MeasuredRestitution {
     pub error: f64,
 }
 
-/// What times of impacts say.
+/// The answer for times of impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactAnswer {
     /// The laws, the best first.
@@ -106,7 +106,7 @@ pub enum ImpactsError {
 }
 
 impl ImpactsError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> &'static str {
         match self {
             Self::TooFew(_) => "drop the body from higher, so that it bounces more often",

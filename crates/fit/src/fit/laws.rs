@@ -14,7 +14,7 @@ use crate::expr::{Equation, Expr, parse_equation};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::symbol::Symbol;
 
-/// What is fitted to each record beside the parameters: its initial coordinate and velocity, the offset in its middle and the
+/// The names of what is fitted to each record beside the parameters: its initial coordinate and velocity, the offset in its middle and the
 /// drift of that per unit of time.
 pub(crate) const LOCAL_NAMES: [&str; 4] = ["x0", "v0", "offset", "drift"];
 
@@ -176,7 +176,7 @@ pub enum LawError {
 }
 
 impl LawError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> &'static str {
         match self {
             Self::Equation(_) => "write one equation such as `x'' + c*x' + k*x = 0`",

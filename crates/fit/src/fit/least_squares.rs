@@ -81,7 +81,7 @@ pub fn minimise(
 ) -> Option<Minimum> {
     /// The decrease of chi-square that no longer matters.
     const DECREASE: f64 = 1e-5;
-    /// By how much residuals exceed those of the start where the law has no motion.
+    /// The factor by which residuals exceed those of the start where the law has no motion.
     const REFUSED: f64 = 1e3;
     let (residuals, jacobian) = evaluate(start)?;
     let size = residuals.norm() / (residuals.len() as f64).sqrt();
@@ -102,7 +102,7 @@ pub fn minimise(
 }
 
 impl Minimum {
-    /// By how much an undamped step would still reduce chi-square, in units of the variance of the residuals: the square of its
+    /// The amount by which an undamped step would still reduce chi-square, in units of the variance of the residuals: the square of its
     /// length in standard errors.
     pub fn distance(&self) -> f64 {
         let (count, width) = self.jacobian.shape();

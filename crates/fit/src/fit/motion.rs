@@ -53,7 +53,7 @@ struct Side {
     acceleration: CompiledList,
 }
 
-/// What of the motion is observed.
+/// The observed quantity of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quantity {
     /// The coordinate: a displacement or an angle.

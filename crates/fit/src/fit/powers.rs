@@ -32,7 +32,7 @@ const ROUNDING: f64 = 0.15;
 /// The half width of the difference from which the derivative by the exponent is taken.
 const STEP: f64 = 1e-4;
 
-/// Which variable a power is of.
+/// The variable of a power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// The coordinate.
@@ -59,7 +59,7 @@ pub struct PowerTerm {
     value: CompiledFunction,
     /// The symbols of f, f_y and f_m in the acceleration.
     places: [Symbol; 3],
-    /// What they stand for.
+    /// Their meaning.
     expressions: [Expr; 3],
     /// s, m, A_j, R_j and D_j.
     symbols: Vec<Symbol>,

@@ -5,7 +5,7 @@ use crate::fit::record::Record;
 use crate::fit::spikes::{local_noise, spikes};
 use crate::fit::turning_points::{Swings, SwingsError};
 
-/// What a record is like, before any law.
+/// The quality of a record, before any law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
     /// The usual time between samples.

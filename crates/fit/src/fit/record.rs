@@ -15,7 +15,7 @@ pub struct Record {
     pub times: Vec<f64>,
     /// The observed values.
     pub values: Vec<f64>,
-    /// What was observed.
+    /// The observed quantity.
     pub quantity: Quantity,
     /// Whether the values are angles in radians.
     pub is_angle: bool,
@@ -28,14 +28,14 @@ impl AsRef<[Self]> for Record {
     }
 }
 
-/// Which columns to read, and what they hold.
+/// The columns to read, and their content.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// The column of time, by its name or its number from 1; otherwise the one called `t` or `time`, or the first.
     pub time: Option<String>,
     /// The columns of values, each a record; otherwise the first that is not the time.
     pub values: Vec<String>,
-    /// What was observed.
+    /// The observed quantity.
     pub quantity: Quantity,
     /// Whether the values are angles; also if the head names degrees or radians.
     pub is_angle: bool,
@@ -112,7 +112,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> &'static str {
         match self {
             Self::Empty => "write a line for each sample: time, value",

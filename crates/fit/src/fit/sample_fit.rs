@@ -22,7 +22,7 @@ pub struct Samples {
     pub times: Vec<f64>,
     /// The observed values.
     pub values: Vec<f64>,
-    /// What was observed.
+    /// The observed quantity.
     pub quantity: Quantity,
     /// The mean duration of a half swing.
     pub half_period: f64,

@@ -40,7 +40,7 @@ pub struct TableFit {
     pub bic: f64,
 }
 
-/// What a table says.
+/// The answer for a table.
 #[derive(Clone, Debug)]
 pub struct TableAnswer {
     /// The springs, each without a loss, the best first.
@@ -75,7 +75,7 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> &'static str {
         match self {
             Self::TooFew(_) => "add rows at further amplitudes",

@@ -63,7 +63,7 @@ pub enum SwingsError {
 }
 
 impl SwingsError {
-    /// What to do.
+    /// A way forward.
     pub fn help(&self) -> &'static str {
         match self {
             Self::TooFew { .. } => {

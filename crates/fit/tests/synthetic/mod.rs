@@ -112,7 +112,7 @@ pub fn motion(
     values
 }
 
-/// How long a record is: the ranges of its cycles and of the samples of each.
+/// The length of a record: the ranges of its cycles and of the samples of each.
 #[derive(Clone, Copy)]
 pub struct Length {
     pub cycles: [f64; 2],

@@ -141,7 +141,7 @@ pub enum NoNumbers {
 }
 
 impl NoNumbers {
-    /// That the frequency of an answer is not positive, of the law that it is given by.
+    /// The reason that the frequency of an answer is not positive, of the law that it is given by.
     pub fn not_positive(solution: &Solution) -> Self {
         match law_name(solution) {
             "omega" => Self::NotPositive,

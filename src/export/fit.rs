@@ -224,8 +224,11 @@ pub fn problem(report: &FitReport) -> Option<String> {
     let _ = writeln!(text, "equation = \"{}\"\n\n[values]", law.equation);
     let of_motion = report.best().map_or(law.estimates.len(), |fit| fit.law.parameters.len());
     for own in &law.estimates[..of_motion.min(law.estimates.len())] {
-        let error = significant(own.error, 2);
-        let _ = writeln!(text, "{} = {} # +- {error}", own.name, own.value);
+        let error = match own.error.is_finite() {
+            true => format!("+- {}", significant(own.error, 2)),
+            false => "left open by the record".to_owned(),
+        };
+        let _ = writeln!(text, "{} = {} # {error}", own.name, own.value);
     }
     Some(text)
 }

@@ -335,3 +335,19 @@ fn a_driven_oscillator_is_recovered_in_the_time_of_its_record() {
     let equation = "x'' + c*x' + k*x + b*x^3 = F*cos(Omega*t)";
     is_recovered(&record, equation, &truth, &[("Omega", 1.29)]);
 }
+
+#[test]
+fn values_that_a_record_leaves_open_have_no_error() {
+    // The mass is a factor of the whole equation.
+    let record = record_of(|_, x, v| -0.1 * v - 4.0 * x, [0.0, 1.0, 0.0], 0.05, 800, 0.003);
+    let law = Law::parse("m*x'' + c*x' + k*x = 0").unwrap();
+    let answer = fit_laws(&record, &[(law, None)], &FitOptions::default()).unwrap();
+    let best = &answer.laws[0];
+    assert!(best.estimate("k").unwrap().error.is_infinite(), "{:?}", best.estimates);
+    assert!(best.estimate("m").unwrap().error.is_infinite());
+    assert!(best.estimate("x0").unwrap().error < 0.002);
+    assert_eq!(best.flat.len(), 1);
+    assert!(best.flat[0].contains("k by 1.000"), "{:?}", best.flat);
+    let ratio = best.estimate("k").unwrap().value / best.estimate("m").unwrap().value;
+    assert!((ratio - 4.0).abs() < 0.01, "{ratio}");
+}

@@ -65,7 +65,8 @@ class Estimate(Document):
 
     Attributes:
         value: The value.
-        standard_error: The standard error; null where it is not known.
+        standard_error: The standard error; null where it is not known, or the measurement leaves
+            the value open.
     """
 
     value: float | None

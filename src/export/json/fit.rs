@@ -69,7 +69,7 @@ pub struct RecordDocument {
 pub struct EstimateDocument {
     /// The value.
     pub value: Option<f64>,
-    /// The standard error; null where it is not known.
+    /// The standard error; null where it is not known, or the measurement leaves the value open.
     pub standard_error: Option<f64>,
 }
 

@@ -42,7 +42,7 @@ pub struct Estimate {
     pub name: String,
     /// The value.
     pub value: f64,
-    /// The standard error.
+    /// The standard error; infinite where the measurement leaves the value open.
     pub error: f64,
 }
 
@@ -53,7 +53,7 @@ pub struct LawFit {
     pub law: Law,
     /// The parameters, then `x0`, `v0`, `offset` at the middle of the record and `drift` per unit of time; for further records `x0_2` and so on.
     pub estimates: Vec<Estimate>,
-    /// The correlations of the estimates.
+    /// The correlations of the estimates; those of parameters that the record leaves open are zero.
     pub correlations: DMatrix<f64>,
     /// The sum of the squares of the residuals.
     pub residual_square: f64,
@@ -481,7 +481,12 @@ fn law_fit(
     });
     let names: Vec<String> = names.chain(own).collect();
     let estimates = names.iter().zip(&fit.values).enumerate().map(|(index, (name, value))| {
-        let error = covariance[(index, index)].max(0.0).sqrt();
+        // A parameter that the record leaves open has no error to speak of.
+        let is_open = inverse.flat.iter().any(|direction| is_part_of(direction, index));
+        let error = match is_open {
+            true => f64::INFINITY,
+            false => covariance[(index, index)].max(0.0).sqrt(),
+        };
         Estimate { name: name.clone(), value: *value, error }
     });
     let estimates: Vec<Estimate> = estimates.collect();
@@ -509,13 +514,21 @@ fn law_fit(
     }
 }
 
-/// A direction of the parameters along which the fit does not change, in words.
-fn in_words(direction: &[f64], names: &[String]) -> String {
+/// Whether a parameter changes along a direction to speak of.
+fn is_part_of(direction: &[f64], index: usize) -> bool {
     const SMALL: f64 = 1e-3;
     let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
-    let parts = direction.iter().zip(names).filter(|(part, _)| part.abs() > SMALL * largest);
+    direction[index].abs() > SMALL * largest
+}
+
+/// A direction of the parameters along which the fit does not change, in words.
+fn in_words(direction: &[f64], names: &[String]) -> String {
+    let largest = direction.iter().copied().max_by(|one, other| one.abs().total_cmp(&other.abs()));
+    let largest = largest.unwrap_or(1.0);
+    let parts = direction.iter().zip(names).enumerate();
+    let parts = parts.filter(|(index, _)| is_part_of(direction, *index));
     let parts: Vec<String> =
-        parts.map(|(part, name)| format!("{name} by {:.3}", part / largest)).collect();
+        parts.map(|(_, (part, name))| format!("{name} by {:.3}", part / largest)).collect();
     format!("the fit does not change if one changes {}", parts.join(", "))
 }
 

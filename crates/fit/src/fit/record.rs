@@ -80,7 +80,9 @@ pub enum ReadError {
         text: String,
     },
     /// A line has too few cells.
-    #[error("line {line}: there are {found} cells, but the column `{column}` is number {needed}")]
+    #[error(
+        "line {line}: the column `{column}` is number {needed}, but the cells end at number {found}"
+    )]
     Short {
         /// The line.
         line: usize,
@@ -259,9 +261,18 @@ impl<'a> Table<'a> {
         let is_head = |row: &(usize, Vec<&str>)| {
             row.1.iter().all(|cell| number(cell, has_decimal_comma).is_none())
         };
-        let mut names = vec![];
+        let mut names: Vec<String> = vec![];
         if rows.first().is_some_and(is_head) {
-            names = rows.remove(0).1.iter().map(|name| name.trim_matches('"').to_owned()).collect();
+            for name in rows.remove(0).1.iter().map(|name| name.trim_matches('"')) {
+                // Between blanks a unit in brackets belongs to the name before it.
+                match names.last_mut() {
+                    Some(before) if separator.is_none() && name.starts_with(['(', '[']) => {
+                        *before += " ";
+                        *before += name;
+                    }
+                    _ => names.push(name.to_owned()),
+                }
+            }
         }
         let Some((_, row)) = rows.first() else { return Err(ReadError::Empty) };
         let width = row.len().max(names.len());
@@ -378,8 +389,13 @@ mod tests {
     #[test]
     fn formats_of_tables_are_recognised() {
         let usual = ReadOptions::default();
-        for text in ["0,1\n1,2\n", "0\t1\n1\t2", "# made by hand\n0 1\n\n1  2\n", "0;1,0\n1;2,0\n"]
-        {
+        for text in [
+            "0,1\n1,2\n",
+            "0\t1\n1\t2",
+            "# made by hand\n0 1\n\n1  2\n",
+            "0;1,0\n1;2,0\n",
+            "t (s) x [m]\n0 1\n1 2\n",
+        ] {
             let found = read(text, &usual).unwrap();
             assert_eq!(found[0].record.values, [1.0, 2.0], "{text}");
         }

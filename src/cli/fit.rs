@@ -172,7 +172,11 @@ impl FitArguments {
 }
 
 fn unread(error: &ReadError) -> Failure {
-    Failure::refused(error, Some(error.help().to_owned())).of_kind(error)
+    let others = match error {
+        ReadError::OneColumn { .. } => "; times of impacts alone take --data impacts",
+        _ => "",
+    };
+    Failure::refused(error, Some(format!("{}{others}", error.help()))).of_kind(error)
 }
 
 fn unfitted(error: &FitError) -> Failure {

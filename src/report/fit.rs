@@ -347,8 +347,9 @@ fn of_record<'a>(read: &ReadRecord, found: &FittedRecord, noise: f64) -> Block<'
         (
             "swings",
             format!(
-                "{} turning points, amplitude from {} to {}",
+                "{} turning points, {} crossings, amplitude from {} to {}",
                 found.swings.points.len(),
+                found.crossings.len(),
                 significant(from, 4),
                 significant(to, 4)
             ),

@@ -10,6 +10,7 @@ use crate::fit::answer::Estimate;
 use crate::fit::backbone::BackbonePoint;
 use crate::fit::fitted_record::FittedRecord;
 use crate::fit::record::ReadRecord;
+use crate::fit::turning_points::TurningPoint;
 use crate::report::FitReport;
 
 /// The laws of a measurement, and what it says without a law.
@@ -57,10 +58,24 @@ pub struct RecordDocument {
     pub missing: Vec<usize>,
     /// The lines with a time that repeats the one before.
     pub repeated: Vec<usize>,
+    /// The turning points.
+    pub turning_points: Vec<TurningPointDocument>,
+    /// The times at which the record crosses its centre.
+    pub crossings: Vec<EstimateDocument>,
     /// The lines on flat tops.
     pub saturated: Vec<usize>,
     /// The lines of the samples that were left out since they lie far from their neighbours or from the best law.
     pub outliers: Vec<usize>,
+}
+
+/// A turning point, with the offset of the record in it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "TurningPoint"))]
+pub struct TurningPointDocument {
+    /// The time.
+    pub time: EstimateDocument,
+    /// The value.
+    pub value: EstimateDocument,
 }
 
 /// A value with its standard error.
@@ -216,8 +231,21 @@ fn of_record(read: &ReadRecord, found: &FittedRecord, noise: f64) -> RecordDocum
         gaps: lines(&mut quality.gaps.iter().map(|(place, _)| *place)),
         missing: read.missing.clone(),
         repeated: read.repeated.clone(),
+        turning_points: found.swings.points.iter().map(of_turning_point).collect(),
+        crossings: found
+            .crossings
+            .iter()
+            .map(|own| EstimateDocument::new(own.time, own.time_error))
+            .collect(),
         saturated: lines(&mut quality.saturated.iter().copied()),
         outliers: lines(&mut found.outliers.iter().copied()),
+    }
+}
+
+fn of_turning_point(point: &TurningPoint) -> TurningPointDocument {
+    TurningPointDocument {
+        time: EstimateDocument::new(point.time, point.time_error),
+        value: EstimateDocument::new(point.value, point.value_error),
     }
 }
 

@@ -73,7 +73,7 @@ pub use damped_certificate::{
 };
 pub use fit::{
     BackbonePointDocument, BestLawDocument, EstimateDocument, FitDocument, FittedLawDocument,
-    RecordDocument, RestitutionDocument, fit,
+    RecordDocument, RestitutionDocument, TurningPointDocument, fit,
 };
 pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};

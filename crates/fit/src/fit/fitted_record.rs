@@ -8,7 +8,7 @@ use crate::fit::polynomial::median;
 use crate::fit::quality::{Quality, part, quality};
 use crate::fit::record::Record;
 use crate::fit::sample_fit::Samples;
-use crate::fit::turning_points::Swings;
+use crate::fit::turning_points::{Crossing, Swings};
 
 /// A record of a fit, with what was found in it before any law.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct FittedRecord {
     pub backbone: Vec<BackbonePoint>,
     /// The turning points.
     pub swings: Swings,
+    /// The crossings of the centre.
+    pub crossings: Vec<Crossing>,
     /// The samples that were left out since they lie far from their neighbours or from the best law, by their index in the record.
     pub outliers: Vec<usize>,
     /// The samples that were fitted.
@@ -67,11 +69,15 @@ impl FittedRecord {
         let observed = Swings::find(&times, &values)?;
         let period = 2.0 * observed.half_period;
         let integral = |values: &[f64]| oscillating_integral(&times, values, period);
-        let swings = match quantity {
-            Quantity::Displacement => observed.clone(),
-            Quantity::Velocity => Swings::find(&times, &integral(&values))?,
-            Quantity::Acceleration => Swings::find(&times, &integral(&integral(&values)))?,
+        let (swings, displacements) = match quantity {
+            Quantity::Displacement => (observed.clone(), values),
+            Quantity::Velocity | Quantity::Acceleration => {
+                let once = integral(&values);
+                let own = if quantity == Quantity::Velocity { once } else { integral(&once) };
+                (Swings::find(&times, &own)?, own)
+            }
         };
+        let crossings = swings.crossings(&times, &displacements);
         let indices = quality.indices(total, keep_outliers);
         let Record { times, values, .. } = part(record, &indices);
         let [level, drift, _] = observed.centre;
@@ -87,7 +93,7 @@ impl FittedRecord {
         let spikes = quality.spikes.iter().filter(|index| **index >= quality.start).copied();
         let outliers = if keep_outliers { vec![] } else { spikes.collect() };
         let backbone = backbone(&swings, POINTS);
-        Ok(Self { quality, backbone, swings, outliers, samples, indices })
+        Ok(Self { quality, backbone, swings, crossings, outliers, samples, indices })
     }
 
     /// Leaves out samples, given by their place among the samples in increasing order.

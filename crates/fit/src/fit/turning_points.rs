@@ -29,6 +29,17 @@ pub struct TurningPoint {
     pub half_swings: usize,
 }
 
+/// A crossing of the centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The time.
+    pub time: f64,
+    /// The standard error of the time.
+    pub time_error: f64,
+    /// Whether the record grows there.
+    pub is_upwards: bool,
+}
+
 /// The turning points of a record, and what was found on the way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swings {
@@ -134,6 +145,39 @@ impl Swings {
                 0.5 * (value(index) - neighbours).abs()
             })
             .collect()
+    }
+
+    /// The crossings of the centre between neighbouring turning points of this record: zeros of cubics, or lines where samples are
+    /// few, through a half of the time between them.
+    pub fn crossings(&self, times: &[f64], values: &[f64]) -> Vec<Crossing> {
+        const DEGREES: [(usize, usize); 2] = [(3, 6), (1, 4)];
+        let amplitudes = self.amplitudes();
+        let pairs = self.points.windows(2).zip(amplitudes.windows(2));
+        let crossing = |(pair, sizes): (&[TurningPoint], &[f64])| {
+            let [before, after] = [pair[0], pair[1]];
+            if after.half_swings != before.half_swings + 1 {
+                return None;
+            }
+            let amplitude = 0.5 * (sizes[0] + sizes[1]);
+            let width = 0.25 * (after.time - before.time);
+            let mut guess = 0.5 * (before.time + after.time);
+            let mut error = None;
+            // The crossing of a swing with friction, or of one that is not even, lies beside the middle.
+            for _ in 0..2 {
+                let from = times.partition_point(|time| *time < guess - width);
+                let to = times.partition_point(|time| *time <= guess + width);
+                let (degree, _) = DEGREES.into_iter().find(|(_, fewest)| to - from >= *fewest)?;
+                let centred: Vec<f64> = (from..to)
+                    .map(|index| values[index] - self.centre_at(times[index], amplitude))
+                    .collect();
+                let fit = LocalPolynomial::fit(&times[from..to], &centred, guess, width, degree)?;
+                let zero = fit.zero(0)?;
+                (guess, error) = (zero.0, Some(zero.1));
+            }
+            let time_error = error? * self.noise;
+            Some(Crossing { time: guess, time_error, is_upwards: after.is_maximum })
+        };
+        pairs.filter_map(crossing).collect()
     }
 
     /// The centre of the swings at a time with this amplitude.
@@ -301,6 +345,23 @@ fn vertex(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn crossings_lie_where_the_record_passes_its_centre() {
+        let times: Vec<f64> = (0..2000).map(|index| 0.02 * f64::from(index)).collect();
+        let ripple = |t: f64| 1e-3 * (1e4 * t * t).sin();
+        let values: Vec<f64> =
+            times.iter().map(|t| 0.5 + (-0.02 * t).exp() * (2.0 * t).sin() + ripple(*t)).collect();
+        let swings = Swings::find(&times, &values).unwrap();
+        let crossings = swings.crossings(&times, &values);
+        assert_eq!(crossings.len() + 1, swings.points.len());
+        for (place, own) in crossings.iter().enumerate() {
+            // The first turning point is a maximum: the first crossing leads down.
+            let exact = std::f64::consts::FRAC_PI_2 * (place + 1) as f64;
+            assert!((own.time - exact).abs() < 5.0 * own.time_error + 1e-4, "{own:?} {exact}");
+            assert!(own.time_error < 1e-3 && own.is_upwards == (place % 2 == 1), "{own:?}");
+        }
+    }
 
     #[test]
     fn a_gap_is_counted_and_a_short_record_refused() {

@@ -229,10 +229,10 @@ pub fn fit<'a>(report: &FitReport) -> Document<'a> {
                 })
                 .collect();
             let head = [
-                ("amplitude", "A"),
-                ("omega", r"\omega"),
+                ("amplitude", "amplitude"),
+                ("omega", r"$\omega$"),
                 ("error", "error"),
-                ("zeta", r"\zeta"),
+                ("zeta", r"$\zeta$"),
                 ("error", "error"),
             ];
             // A driven motion has the frequency of its drive.
@@ -279,7 +279,7 @@ fn others<'a>(report: &FitReport, laws: &[FittedLaw]) -> Vec<Vec<Block<'a>>> {
                 Block::table(
                     [
                         Heading::from("law"),
-                        Heading::from(("chi^2/n", r"\chi^2/n")),
+                        Heading::from(("chi^2/n", r"$\chi^2/n$")),
                         Heading::from("AIC"),
                         Heading::from("misfit"),
                     ],

@@ -254,18 +254,18 @@ mod tests {
             .collect();
         let power = |n: i32| -> Vec<f64> { places.iter().map(|t| t.powi(n)).collect() };
         let powers: Vec<Vec<f64>> = (0..4).map(power).collect();
-        let cases: [(usize, usize, fn(f64) -> f64, f64); 4] = [
-            (2, 1, f64::exp, 2.603_778_479_076_246_4e-3),
-            (3, 2, f64::exp, 2.700_222_439_003_551e-6),
-            (3, 3, f64::exp, 6.767_168_345_400_847e-8),
-            (4, 2, |t| (1.0 + t).sqrt(), 2.588_367_842_664_019e-8),
-        ];
-        for (above, below, function, least) in cases {
-            let target: Vec<f64> = places.iter().copied().map(function).collect();
+        let exponential: Vec<f64> = places.iter().map(|t| t.exp()).collect();
+        let root: Vec<f64> = places.iter().map(|t| (1.0 + t).sqrt()).collect();
+        for (above, below, target, least) in [
+            (2, 1, &exponential, 2.603_778_479_076_246_4e-3),
+            (3, 2, &exponential, 2.700_222_439_003_551e-6),
+            (3, 3, &exponential, 6.767_168_345_400_847e-8),
+            (4, 2, &root, 2.588_367_842_664_019e-8),
+        ] {
             let sums = QuotientOfSums {
                 numerator: powers[..above].iter().map(Vec::as_slice).collect(),
                 denominator: powers[1..=below].iter().map(Vec::as_slice).collect(),
-                target: &target,
+                target,
                 power: 1.0,
                 tie: None,
             };

@@ -10,56 +10,6 @@ from .._document import Document, mapped, several
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Record(Document):
-    """A record before any law.
-
-    Attributes:
-        name: The name of its column.
-        samples: The number of samples.
-        is_angle: Whether the values are angles, in radians.
-        step: The usual time between samples.
-        noise: The standard deviation of the noise.
-        quantum: The step between values where they are quantised; null otherwise.
-        start: The line at which the free decay begins.
-        gaps: The lines before gaps in time.
-        missing: The lines without a value.
-        repeated: The lines with a time that repeats the one before.
-        saturated: The lines on flat tops.
-        outliers: The lines of the samples that were left out since they lie far from their
-            neighbours or from the best law.
-    """
-
-    name: str
-    samples: int
-    is_angle: bool
-    step: float
-    noise: float
-    quantum: float | None
-    start: int | None
-    gaps: tuple[int, ...]
-    missing: tuple[int, ...]
-    repeated: tuple[int, ...]
-    saturated: tuple[int, ...]
-    outliers: tuple[int, ...]
-
-
-Record.FIELDS = (
-    ("name", "name", None),
-    ("samples", "samples", None),
-    ("is_angle", "is_angle", None),
-    ("step", "step", None),
-    ("noise", "noise", None),
-    ("quantum", "quantum", None),
-    ("start", "start", None),
-    ("gaps", "gaps", tuple),
-    ("missing", "missing", tuple),
-    ("repeated", "repeated", tuple),
-    ("saturated", "saturated", tuple),
-    ("outliers", "outliers", tuple),
-)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class Estimate(Document):
     """A value with its standard error.
 
@@ -76,6 +26,81 @@ class Estimate(Document):
 Estimate.FIELDS = (
     ("value", "value", None),
     ("standard_error", "standard_error", None),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TurningPoint(Document):
+    """A turning point, with the offset of the record in it.
+
+    Attributes:
+        time: The time.
+        value: The value.
+    """
+
+    time: Estimate
+    value: Estimate
+
+
+TurningPoint.FIELDS = (
+    ("time", "time", Estimate.from_json),
+    ("value", "value", Estimate.from_json),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Record(Document):
+    """A record before any law.
+
+    Attributes:
+        name: The name of its column.
+        samples: The number of samples.
+        is_angle: Whether the values are angles, in radians.
+        step: The usual time between samples.
+        noise: The standard deviation of the noise.
+        quantum: The step between values where they are quantised; null otherwise.
+        start: The line at which the free decay begins.
+        gaps: The lines before gaps in time.
+        missing: The lines without a value.
+        repeated: The lines with a time that repeats the one before.
+        turning_points: The turning points.
+        crossings: The times at which the record crosses its centre.
+        saturated: The lines on flat tops.
+        outliers: The lines of the samples that were left out since they lie far from their
+            neighbours or from the best law.
+    """
+
+    name: str
+    samples: int
+    is_angle: bool
+    step: float
+    noise: float
+    quantum: float | None
+    start: int | None
+    gaps: tuple[int, ...]
+    missing: tuple[int, ...]
+    repeated: tuple[int, ...]
+    turning_points: tuple[TurningPoint, ...]
+    crossings: tuple[Estimate, ...]
+    saturated: tuple[int, ...]
+    outliers: tuple[int, ...]
+
+
+Record.FIELDS = (
+    ("name", "name", None),
+    ("samples", "samples", None),
+    ("is_angle", "is_angle", None),
+    ("step", "step", None),
+    ("noise", "noise", None),
+    ("quantum", "quantum", None),
+    ("start", "start", None),
+    ("gaps", "gaps", tuple),
+    ("missing", "missing", tuple),
+    ("repeated", "repeated", tuple),
+    ("turning_points", "turning_points", several(TurningPoint.from_json)),
+    ("crossings", "crossings", several(Estimate.from_json)),
+    ("saturated", "saturated", tuple),
+    ("outliers", "outliers", tuple),
 )
 
 

@@ -229,7 +229,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("fit", fitted.to_vec(), vec!["--data", "impacts"]),
         ("fit", fitted.to_vec(), vec!["--time", "y"]),
         ("fit", fitted.to_vec(), vec!["--column", "y"]),
-        ("fit", fitted.to_vec(), vec!["--quantity", "velocity"]),
+        ("fit", [&fitted[..], &["--start", "c=0.04,k=4"]].concat(), vec!["--quantity", "velocity"]),
         ("fit", fitted.to_vec(), vec!["--angle"]),
         ("fit", fitted.to_vec(), vec!["--start", "c=1"]),
         ("fit", fitted.to_vec(), vec!["--noise", "0.1"]),

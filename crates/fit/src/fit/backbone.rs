@@ -81,7 +81,13 @@ fn point(
     let weight = |(point, amplitude): (&crate::fit::turning_points::TurningPoint, &f64)| {
         (amplitude / (0.6124 * point.value_error)).powi(2)
     };
-    let weights: Vec<f64> = points.iter().zip(own).map(weight).collect();
+    let mut weights: Vec<f64> = points.iter().zip(own).map(weight).collect();
+    // The first and the last turning point of a record have one neighbour, and no amplitude without bias.
+    for (place, weight) in weights.iter_mut().enumerate() {
+        if [0, swings.points.len() - 1].contains(&(start + place)) {
+            *weight = 0.0;
+        }
+    }
     let (decay, covariance) = regression(&[one, times], &logarithms, &weights)?;
     let covariance: DMatrix<f64> = covariance;
     let amplitude = decay[0].exp();

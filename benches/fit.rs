@@ -1,4 +1,4 @@
-//! What a measurement says, for records of three lengths: the work is proportional to the samples.
+//! The laws of a measurement, for records of three lengths: the work is proportional to the samples.
 //!
 //! `cargo bench --workspace -- fit`.
 

@@ -458,29 +458,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    #[ignore = "prints times"]
-    fn time_of_a_motion() {
-        let times: Vec<f64> = (0..12_000).map(|index| 0.03 * f64::from(index)).collect();
-        for law in Law::list(true) {
-            let begin = std::time::Instant::now();
-            let solver = MotionSolver::new(&law).unwrap();
-            let prepared = begin.elapsed();
-            let mut all = values(&law);
-            all.iter_mut().zip(&law.parameters).for_each(|(value, name)| {
-                if ["zeta", "alpha", "c", "d", "q", "r"].contains(&name.name()) {
-                    *value *= 0.2
-                }
-            });
-            let begin = std::time::Instant::now();
-            let motion = solver.sample(&all, [0.9, 0.1], &times, 2.4, Quantity::Displacement);
-            eprintln!(
-                "{:50} {prepared:?} {:?} {:?}",
-                law.name,
-                begin.elapsed(),
-                motion.map(|m| m.rest)
-            );
-        }
-    }
 }

@@ -5,7 +5,7 @@
 //! viscous damping:    alpha = 0,  or r = 2 zeta w, p = 1          dry friction: zeta = 0          quadratic damping: r = q, p = 2
 //! ```
 //!
-//! Where a fit of the wider law has a larger sum of squares, its search ended in another minimum: it begins anew from the narrower law.
+//! A fit of the wider law with a larger sum of squares ended in another minimum, and begins anew from the narrower law.
 
 use crate::fit::laws::{Law, Loss, Spring};
 use crate::fit::motion::MotionSolver;

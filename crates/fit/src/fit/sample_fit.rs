@@ -6,7 +6,7 @@
 //!
 //! Several records share the parameters; each has its own start, offset and drift, and its residuals count by its noise.
 //!
-//! Where the motion of the start is out of step with the record, the fit grows: an eighth of the record, a quarter, a half, all of it.
+//! A fit whose start is out of step with the record grows: a sixteenth of the record, an eighth, a quarter, a half, all of it.
 
 use nalgebra::{DMatrix, DVector};
 

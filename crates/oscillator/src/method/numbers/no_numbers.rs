@@ -80,7 +80,7 @@ pub enum NoNumbers {
         significant(*amplitude, 6)
     )]
     CrossWellBalanceEnds {
-        /// Where it was taken up.
+        /// The amplitude at which it was taken up.
         from: f64,
         /// The last amplitude reached.
         amplitude: f64,

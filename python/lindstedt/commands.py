@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .impacts import Impact
     from .law import Law
     from .laws import Shortest
+    from .measurements import Fit
     from .motions import Motion, MotionSweep, Primary, PrimarySweep, Simulation, Sweep
     from .normal_modes import Modes
     from .slow import SlowEquations

@@ -9,6 +9,7 @@
 
 mod candidate;
 mod coupled;
+mod problem;
 mod stability;
 mod theorem;
 mod waves;
@@ -27,8 +28,8 @@ use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
 pub use coupled::{CoupledCertificate, certify_coupled, check_coupled};
+use problem::{DampedProblem, waves_of_drive};
 pub use stability::{ClaimedStability, Multipliers, Stability};
-use theorem::DampedProblem;
 
 /// The drive of a motion, whose period is a whole number of drive periods.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -159,7 +160,7 @@ impl DampedCertificate {
     /// Checks that sizes, letters and numbers fit together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
         let drive = self.drive.as_ref();
-        let waves = drive.map(|_| theorem::waves_of_drive()).into_iter().flatten();
+        let waves = drive.map(|_| waves_of_drive()).into_iter().flatten();
         let letters: Vec<Symbol> = waves.chain([coordinate()]).collect();
         let fits = Sizes {
             bits: [self.bits, self.inverse_bits],
@@ -254,7 +255,7 @@ impl DampedCertificate {
     /// of odd harmonics has by itself.
     fn mirrors(&self) -> Result<[bool; 2], ExprError> {
         let problem = self.problem();
-        let [cosine, sine] = theorem::waves_of_drive();
+        let [cosine, sine] = waves_of_drive();
         let turned = |letters: &[Symbol]| problem.is_mirror_image(letters);
         Ok(match &self.drive {
             None => [false, !self.odd && turned(&[coordinate()])?],
@@ -341,7 +342,7 @@ impl Drive {
     fn in_time(&self, force: &Expr) -> Expr {
         let phase = &Expr::number(self.frequency.clone()) * &Expr::symbol("t");
         let waves = [phase.cos(), phase.sin()].into_iter().flatten();
-        let values = theorem::waves_of_drive().into_iter().zip(waves).collect();
+        let values = waves_of_drive().into_iter().zip(waves).collect();
         // If the substitution has no value, the force is shown as it is checked.
         force.substitute_all(&values).unwrap_or_else(|_| force.clone())
     }

@@ -59,7 +59,7 @@ use num_traits::Signed as _;
 use super::super::CheckError;
 use super::super::formula::{Enclosure, SizeBounds, hold_both, waves};
 use super::super::fourier_series::{FourierSeries, WORKING};
-use super::theorem::{DampedProblem, SeriesMatrix};
+use super::problem::{DampedProblem, SeriesMatrix};
 use crate::decimal::neighbours;
 use crate::exact::Rational;
 use crate::exact::ball::{Ball, Balls};

@@ -11,7 +11,7 @@ use super::super::force::along_all;
 use super::super::fourier_series::{FourierSeries, WORKING};
 use super::super::law;
 use super::Drive;
-use super::theorem::waves_of_drive;
+use super::problem::waves_of_drive;
 use crate::exact::ball::Ball;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, Function, Node};

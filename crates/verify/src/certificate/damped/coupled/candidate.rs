@@ -16,7 +16,8 @@ use super::super::super::candidate::{
 use super::super::super::radii_polynomial::NotProved;
 use super::super::super::{Certified, HIGHEST_HARMONIC};
 use super::super::candidate::{is_linear_in, phase_of, phase_shifted, subtract_step};
-use super::super::theorem::{correction, derivative_of_block, prove, waves_of_drive};
+use super::super::problem::waves_of_drive;
+use super::super::theorem::{correction, derivative_of_block, prove};
 use super::super::waves::{common_frequency, in_waves};
 use super::super::{ClaimedStability, Drive};
 use super::{CoupledCertificate, last_harmonic_of_largest_block};

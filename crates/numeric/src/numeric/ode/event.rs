@@ -21,6 +21,8 @@ pub struct Event<'a, S = State> {
     pub(super) function: Box<dyn Fn(&S) -> f64 + 'a>,
     pub(super) direction: Direction,
     pub(super) action: Action<'a, S>,
+    /// The number of values, from the first on, that the function reads.
+    pub(super) reads: usize,
 }
 
 /// The direction of a zero crossing that counts.
@@ -73,7 +75,14 @@ impl<'a, S> Event<'a, S> {
     /// An event of any first-order equations. Crossings in both directions count, as for
     /// [`Event::record`].
     pub fn new(function: impl Fn(&S) -> f64 + 'a, action: Action<'a, S>) -> Self {
-        Self { function: Box::new(function), direction: Direction::Either, action }
+        let function = Box::new(function);
+        Self { function, direction: Direction::Either, action, reads: usize::MAX }
+    }
+
+    /// The function reads only so many values, from the first on, and the time: between the ends of a
+    /// step it is given the others as they are at its start.
+    pub fn reading(self, values: usize) -> Self {
+        Self { reads: values, ..self }
     }
 
     /// Counts only crossings from negative to positive.
@@ -132,7 +141,7 @@ impl SignTracker {
         event: &Event<S>,
         moved: Option<&S>,
     ) -> Result<Vec<(f64, bool)>, NotFinite> {
-        let value_at = |fraction: f64| (event.function)(&step.state_at(fraction));
+        let value_at = |fraction: f64| (event.function)(&step.first_at(fraction, event.reads));
         let first = moved.is_some();
         let mut samples = Vec::with_capacity(SAMPLES.len() + NEAR_START);
         for fraction in sample_fractions(first) {
@@ -202,13 +211,13 @@ fn rounding_at<S: Sample>(event: &Event<S>, state: &S) -> f64 {
     let (time, values) = (state.time(), state.values());
     let here = (event.function)(state);
     let change =
-        |time: f64, values: &S::Values| ((event.function)(&S::new(time, values)) - here).abs();
-    let changes = (0..values.as_ref().len()).map(|index| {
+        |time: f64, values: S::Values| ((event.function)(&S::new(time, values)) - here).abs();
+    let changes = (0..values.as_ref().len().min(event.reads)).map(|index| {
         let mut changed = values.clone();
         changed.as_mut()[index] *= 1.0 + LAST_DIGITS;
-        change(time, &changed)
+        change(time, changed)
     });
-    let sum = changes.sum::<f64>() + change(time * (1.0 + LAST_DIGITS), &values);
+    let sum = changes.sum::<f64>() + change(time * (1.0 + LAST_DIGITS), values.clone());
     if sum.is_finite() { sum } else { 0.0 }
 }
 

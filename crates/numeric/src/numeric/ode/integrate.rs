@@ -398,7 +398,7 @@ fn run<S: Sample>(
                 let time = trajectory.end.time();
                 let idle = time - begin <= 256.0 * f64::EPSILON * time.abs();
                 idle_switches = if idle { idle_switches + 1 } else { 0 };
-                trajectory.end = S::new(time, &next.values());
+                trajectory.end = S::new(time, next.values());
                 if !trajectory.end.is_finite() {
                     trajectory.stop_reason = StopReason::NonFinite { time };
                     break;
@@ -489,7 +489,7 @@ impl<S: Sample> Leg<'_, '_, S> {
             let time = state.time();
             let remaining = self.end_time - time;
             if remaining <= 2.0 * f64::EPSILON * self.end_time.abs() {
-                trajectory.end = S::new(self.end_time, &trajectory.end.values());
+                trajectory.end = S::new(self.end_time, trajectory.end.values());
                 return LegEnd::Stopped(StopReason::EndReached);
             }
             if let Some(reason) = self.given_up(time, *attempts) {
@@ -578,7 +578,7 @@ impl<S: Sample> Leg<'_, '_, S> {
                 if time + shorter <= time {
                     return None;
                 }
-                solver = self.solver(scheme, &S::new(time, &values), shorter)?;
+                solver = self.solver(scheme, &S::new(time, values.clone()), shorter)?;
                 continue;
             }
             let is_stuck = || time + solver.h() <= time;
@@ -694,7 +694,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         for (value, rate) in values.as_mut().iter_mut().zip(rates.as_ref()) {
             *value += length * rate;
         }
-        S::new(start.time() + length, &values)
+        S::new(start.time() + length, values)
     }
 
     /// Returns the step just taken, as polynomials, and the state at its end; `None` if a value is
@@ -711,7 +711,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         for (values, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
             *values = (scheme.inside)(solver, (from + fraction * length).min(to))?;
         }
-        let next = S::new(to, solver.y());
+        let next = S::new(to, solver.y().clone());
         let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());
         let finite = next.is_finite() && values.iter().all(finite);
         finite.then(|| (TrajectoryStep::new(self.phase, start.clone(), length, values), next))

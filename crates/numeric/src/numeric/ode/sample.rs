@@ -22,7 +22,7 @@ pub trait Sample: Clone + Debug {
     type Values: StateVector;
 
     /// A sample from a time and the values at it.
-    fn new(t: f64, values: &Self::Values) -> Self;
+    fn new(t: f64, values: Self::Values) -> Self;
 
     /// The time.
     fn time(&self) -> f64;
@@ -58,8 +58,8 @@ pub struct Point<Y> {
 impl<Y: StateVector> Sample for Point<Y> {
     type Values = Y;
 
-    fn new(t: f64, values: &Y) -> Self {
-        Self { t, y: values.clone() }
+    fn new(t: f64, values: Y) -> Self {
+        Self { t, y: values }
     }
 
     fn time(&self) -> f64 {
@@ -74,7 +74,7 @@ impl<Y: StateVector> Sample for Point<Y> {
 impl Sample for State {
     type Values = [f64; 2];
 
-    fn new(t: f64, &[x, v]: &[f64; 2]) -> Self {
+    fn new(t: f64, [x, v]: [f64; 2]) -> Self {
         Self { t, x, v }
     }
 

@@ -139,7 +139,7 @@ impl<S: Sample> Trajectory<S> {
             return None;
         }
         let step = self.steps.get(self.step_index(t)?)?;
-        Some(S::new(t, &step.values_at((t - step.start.time()) / step.length)))
+        Some(S::new(t, step.values_at((t - step.start.time()) / step.length)))
     }
 
     /// The initial state.
@@ -234,8 +234,13 @@ impl<S: Sample> TrajectoryStep<S> {
 
     /// The values at the fraction s of the step.
     pub(super) fn values_at(&self, fraction: f64) -> S::Values {
+        self.first_values_at(fraction, usize::MAX)
+    }
+
+    /// The first `count` values at the fraction s of the step, the others as at its start.
+    fn first_values_at(&self, fraction: f64, count: usize) -> S::Values {
         let mut values = self.start.values();
-        for (component, value) in values.as_mut().iter_mut().enumerate() {
+        for (component, value) in values.as_mut().iter_mut().take(count).enumerate() {
             *value += fraction * clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
         }
         values
@@ -243,7 +248,13 @@ impl<S: Sample> TrajectoryStep<S> {
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        S::new(self.start.time() + fraction * self.length, &self.values_at(fraction))
+        self.first_at(fraction, usize::MAX)
+    }
+
+    /// The state at the fraction s of the step in its first `count` values, the others as at its start.
+    pub(super) fn first_at(&self, fraction: f64, count: usize) -> S {
+        let time = self.start.time() + fraction * self.length;
+        S::new(time, self.first_values_at(fraction, count))
     }
 }
 

@@ -120,7 +120,8 @@ impl CoupledProblem<'_> {
         let states: Vec<Symbol> = self.states.iter().copied().chain([second]).collect();
         let names: Vec<Symbol> =
             states.iter().copied().chain([self.question.parameter, Symbol::new("t")]).collect();
-        let flow = flow_in_phase(&names, &states, (&right, &[]), &base, self.question.parameter)?;
+        let flow = flow_in_phase(&names, &states, (&right, &[]), &base, self.question.parameter)?
+            .until(self.question.interrupt);
         let two = TwoParameters { problem: self, flow, scale: &known.scale };
         let mut curves: Vec<BifurcationCurve> = Vec::new();
         for branch in &known.branches {

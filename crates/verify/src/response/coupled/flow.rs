@@ -19,6 +19,7 @@ use nalgebra::{DMatrix, DVector};
 use super::sliding::{self, SlidingRun, SlidingStop};
 use super::surfaces::{FlowWall, JumpSurfaces};
 use crate::expr::{CompiledList, Expr};
+use crate::interrupt::Interrupt;
 use crate::numeric::ode::{IntegrationOptions, Point, end_values};
 use crate::response::ResponseError;
 use crate::symbol::Symbol;
@@ -49,6 +50,8 @@ pub(super) struct Flow {
     by_parameter: Vec<usize>,
     /// The surfaces across which the right sides jump.
     jumps: Option<JumpSurfaces>,
+    /// The request to stop, after which no motion is followed to its end.
+    interrupt: Interrupt,
     /// The reason why the last motion that was not followed across jumps was not.
     stopped: Cell<Option<SlidingStop>>,
     /// Whether a motion came to rest on a wall.
@@ -131,10 +134,16 @@ impl Flow {
             slopes,
             by_parameter,
             jumps: JumpSurfaces::new(states, time, right, parameter, walls)?,
+            interrupt: Interrupt::default(),
             stopped: Cell::new(None),
             rested: Cell::new(false),
             evaluations: Cell::new(0),
         })
+    }
+
+    /// The same flow, of which no motion is followed to its end once this interrupt is requested.
+    pub(super) fn until(self, interrupt: Interrupt) -> Self {
+        Self { interrupt, ..self }
     }
 
     /// Whether the right sides jump, or the states on a wall.
@@ -280,6 +289,7 @@ impl Flow {
         IntegrationOptions {
             maximum_steps: STEPS,
             maximum_step: if self.smooth { f64::INFINITY } else { length / STEPS_WITH_CORNERS },
+            interrupt: self.interrupt,
             ..IntegrationOptions::with_tolerance(TOLERANCE)
         }
     }

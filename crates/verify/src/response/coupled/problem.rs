@@ -167,7 +167,8 @@ impl<'a> CoupledProblem<'a> {
             .iter()
             .map(|wall| flow_wall(wall, &mass, &states, &equations.coordinates))
             .collect::<Result<_, _>>()?;
-        let in_time = Flow::new(&states, time, &right, parameter, &flow_walls)?;
+        let in_time =
+            Flow::new(&states, time, &right, parameter, &flow_walls)?.until(question.interrupt);
         let numbers = [(parameter, ANY)].into();
         let series = System::new(&states, time, &right, &numbers)
             .map_err(|error| ResponseError::Rates(error.to_string()))?
@@ -222,7 +223,7 @@ impl<'a> CoupledProblem<'a> {
             walls,
             mass,
             in_time,
-            in_phase,
+            in_phase: in_phase.map(|flow: Flow| flow.until(question.interrupt)),
             series,
             undamped,
         };

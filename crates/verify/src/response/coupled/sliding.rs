@@ -658,7 +658,7 @@ impl<'a> EventRun<'a> {
                             None => f64::NAN,
                         }
                     };
-                    events.push(Event::new(beyond, Action::Stop).rising());
+                    events.push(Event::new(beyond, Action::Stop).rising().reading(n));
                     meetings.push(Meeting::Released(index, side));
                 }
             } else if !run.held.contains(index) {
@@ -668,7 +668,7 @@ impl<'a> EventRun<'a> {
                     run.set_arguments(point.t, &point.y, arguments);
                     side * surfaces.heights[index].call(arguments) + unseen
                 };
-                events.push(Event::new(height, Action::Stop).falling());
+                events.push(Event::new(height, Action::Stop).falling().reading(n));
                 meetings.push(Meeting::Reached(index));
             }
         }
@@ -679,7 +679,7 @@ impl<'a> EventRun<'a> {
                 run.set_arguments(point.t, &point.y, arguments);
                 wall.gap.call(arguments) + unseen
             };
-            events.push(Event::new(gap, Action::Stop).falling());
+            events.push(Event::new(gap, Action::Stop).falling().reading(n));
             meetings.push(Meeting::Struck(index));
         }
         let begin = Point { t: run.time, y: run.values.clone() };

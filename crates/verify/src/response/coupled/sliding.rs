@@ -17,6 +17,9 @@
 //! An event is where u_i has fallen to a level just below zero, which rounding does not reach at the
 //! onset of a slip, where u_i and its rate both begin at zero.
 
+mod held;
+mod passages;
+
 use std::cell::{Cell, RefCell};
 
 use nalgebra::{DMatrix, DVector};
@@ -25,7 +28,7 @@ use super::surfaces::{JumpSurfaces, WallMap};
 use crate::numeric::ode::{
     Action, Event, IntegrationOptions, Point, StopReason, integrate_first_order,
 };
-use crate::trajectory::shares_of_one_size;
+use held::{Held, set_shares};
 
 /// Distance from a surface, in the sizes of the states, at which an event is: that of rounding.
 const UNSEEN: f64 = 1e-12;
@@ -89,56 +92,6 @@ enum Meeting {
     Released(usize, f64),
     /// The motion has reached this wall.
     Struck(usize),
-}
-
-/// The surfaces on which a motion sticks.
-#[derive(Clone, Debug, Default)]
-struct Held {
-    /// The surfaces with independent normals, whose du/dt is zero: an equation each.
-    rows: Vec<usize>,
-    /// The surfaces whose sides are the unknowns, as many.
-    unknowns: Vec<usize>,
-    /// The other surfaces: each has the side of an unknown one, the second number counts which, times a
-    /// sign.
-    tied: Vec<(usize, usize, f64)>,
-}
-
-impl Held {
-    fn is_empty(&self) -> bool {
-        self.unknowns.is_empty()
-    }
-
-    fn contains(&self, index: usize) -> bool {
-        self.unknowns.contains(&index) || self.tied.iter().any(|(own, ..)| *own == index)
-    }
-
-    fn all(&self) -> Vec<usize> {
-        self.unknowns.iter().copied().chain(self.tied.iter().map(|(own, ..)| *own)).collect()
-    }
-
-    /// The columns of a matrix that go with the unknown sides, those of tied sides added; `first` is the
-    /// column of the first surface.
-    fn columns(&self, matrix: &DMatrix<f64>, first: usize, rows: &[usize]) -> DMatrix<f64> {
-        let mut found = DMatrix::from_fn(rows.len(), self.unknowns.len(), |i, j| {
-            matrix[(rows[i], first + self.unknowns[j])]
-        });
-        for (own, lead, sign) in &self.tied {
-            for (i, row) in rows.iter().enumerate() {
-                found[(i, *lead)] += sign * matrix[(*row, first + own)];
-            }
-        }
-        found
-    }
-
-    /// Writes the sides of the unknown surfaces, and of those tied to them.
-    fn write(&self, shares: &[f64], sides: &mut [f64]) {
-        for (index, share) in self.unknowns.iter().zip(shares) {
-            sides[*index] = *share;
-        }
-        for (own, lead, sign) in &self.tied {
-            sides[*own] = sign * shares[*lead];
-        }
-    }
 }
 
 /// The state of a run.
@@ -314,36 +267,6 @@ pub(super) fn linearised(
     Some((all.column(0).into_owned(), slopes))
 }
 
-/// The sides of the surfaces that hold, in the arguments, so that du/dt is zero on all of them;
-/// `None` if these equations are singular.
-fn set_shares(surfaces: &JumpSurfaces, arguments: &mut [f64], held: &Held) -> Option<()> {
-    if held.is_empty() {
-        return Some(());
-    }
-    let first = surfaces.states + 2;
-    held.write(&vec![0.0; held.unknowns.len()], &mut arguments[first..]);
-    let rises = surfaces.rises.at(arguments);
-    let matrix = held.columns(&rises, 1, &held.rows);
-    let right = DVector::from_fn(held.rows.len(), |i, _| -rises[(held.rows[i], 0)]);
-    let shares = solved(matrix, right)?;
-    held.write(shares.as_slice(), &mut arguments[first..]);
-    Some(())
-}
-
-/// The solution of linear equations; `None` if they are singular.
-fn solved(matrix: DMatrix<f64>, right: DVector<f64>) -> Option<DVector<f64>> {
-    /// Ratio of a pivot to the largest entry below which the equations are singular.
-    const SINGULAR: f64 = 1e-10;
-    if matrix.nrows() == 1 {
-        return (matrix[(0, 0)] != 0.0).then(|| right / matrix[(0, 0)]);
-    }
-    let largest = matrix.amax();
-    let factors = matrix.full_piv_lu();
-    let pivots = factors.u().diagonal();
-    let is_regular = pivots.iter().all(|pivot| pivot.abs() > SINGULAR * largest);
-    if is_regular { factors.solve(&right) } else { None }
-}
-
 impl<'a> EventRun<'a> {
     /// The state at the start, on no surface yet.
     fn new(
@@ -439,152 +362,10 @@ impl<'a> EventRun<'a> {
         Ok(())
     }
 
-    /// Whether the rates on both sides of a surface can lead back to it.
-    fn can_hold(&self, index: usize) -> bool {
-        self.surfaces.holds[index] && self.surfaces.rises.at(&self.here())[(index, 1 + index)] < 0.0
-    }
-
-    /// Finds those of these surfaces, on all of which the motion is, that hold, and the sides of the
-    /// others: each is released to the side to which the force leads that would be needed beyond its
-    /// bound. The side of the surface that was `hit` is at its bound, unless others take over.
-    fn find_held(&mut self, on: Vec<usize>, hit: Option<usize>) -> Result<(), SlidingStop> {
-        let first = self.surfaces.states + 2;
-        let mut holding = on.clone();
-        for _ in 0..=2 * on.len() {
-            self.tie(&holding)?;
-            let mut arguments = self.here();
-            if set_shares(self.surfaces, &mut arguments, &self.held).is_none() {
-                return Err(SlidingStop::Undetermined(holding[0]));
-            }
-            if arguments.iter().any(|value| value.is_nan()) {
-                return Err(SlidingStop::NoValue);
-            }
-            let share = |index: usize| arguments[first + index];
-            let group = |lead: usize| {
-                let tied = self.held.tied.iter().filter(move |(_, own, _)| *own == lead);
-                tied.map(|(own, ..)| *own).chain([self.held.unknowns[lead]])
-            };
-            let is_beyond = |lead: &usize| {
-                let is_hit = hit.is_some_and(|hit| group(*lead).any(|index| index == hit));
-                let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 };
-                share(self.held.unknowns[*lead]).abs() > bound
-            };
-            let size = |lead: usize| share(self.held.unknowns[lead]).abs();
-            let worst = (0..self.held.unknowns.len())
-                .filter(is_beyond)
-                .max_by(|one, other| size(*one).total_cmp(&size(*other)));
-            if let Some(lead) = worst {
-                let released: Vec<usize> = group(lead).collect();
-                for index in &released {
-                    self.sides[*index] = share(*index).signum();
-                }
-                holding.retain(|index| !released.contains(index));
-                continue;
-            }
-            self.sides.copy_from_slice(&arguments[first..]);
-            // One that was released may be held back once others are.
-            let rises = self.surfaces.rises.at(&arguments);
-            let returns = on.iter().copied().find(|index| {
-                let jump = rises[(*index, 1 + index)].abs();
-                !self.held.contains(*index)
-                    && self.sides[*index] * rises[(*index, 0)] < -ROUNDING * jump
-            });
-            match returns {
-                Some(index) => holding.push(index),
-                None => return Ok(()),
-            }
-        }
-        Err(SlidingStop::Undetermined(on[0]))
-    }
-
-    /// Those of these surfaces whose normals are independent of those of the ones before.
-    fn independent(&self, surfaces: &[usize]) -> Vec<usize> {
-        let normals = self.surfaces.normals.at(&self.here());
-        let mut directions: Vec<DVector<f64>> = Vec::new();
-        let mut is_independent = |index: &usize| {
-            let part = |k: usize, _: usize| normals[(*index, k)] * self.sizes[k];
-            let normal = DVector::from_fn(self.surfaces.states, part);
-            let along = |left: DVector<f64>, known: &DVector<f64>| &left - known * known.dot(&left);
-            let left = directions.iter().fold(normal.clone(), along);
-            let own = left.norm() > ROUNDING * normal.norm();
-            if own {
-                directions.push(left.normalize());
-            }
-            own
-        };
-        surfaces.iter().copied().filter(|index| is_independent(index)).collect()
-    }
-
-    /// Adds to surfaces on which the motion is those on which it must then be too, as between two bodies
-    /// that are both at rest.
-    fn with_dependent(&self, mut on: Vec<usize>) -> Vec<usize> {
-        const NEAR: f64 = 10.0 * UNSEEN;
-        let count = self.independent(&on).len();
-        for index in 0..self.sides.len() {
-            let is_near = || self.height(index).abs() <= NEAR * self.size_of_height(index);
-            if on.contains(&index) || !self.can_hold(index) || !is_near() {
-                continue;
-            }
-            on.push(index);
-            if self.independent(&on).len() > count {
-                on.pop();
-            }
-        }
-        on
-    }
-
-    /// Holds the motion on these surfaces, with ties between the sides that the rates leave
-    /// undetermined.
-    fn tie(&mut self, holding: &[usize]) -> Result<(), SlidingStop> {
-        let n = self.surfaces.states;
-        let rows = self.independent(holding);
-        self.held = Held { rows, unknowns: holding.to_vec(), tied: vec![] };
-        if self.held.rows.len() == holding.len() {
-            return Ok(());
-        }
-        let undetermined = || SlidingStop::Undetermined(holding[0]);
-        let mut arguments = self.here();
-        for index in holding {
-            arguments[n + 2 + index] = 0.0;
-        }
-        let rises = self.surfaces.rises.at(&arguments);
-        let row = |index: &usize| holding.iter().map(|other| rises[(*index, 1 + other)]).collect();
-        let matrix: Vec<Vec<f64>> = holding.iter().map(row).collect();
-        let right: Vec<f64> = holding.iter().map(|index| -rises[(*index, 0)]).collect();
-        let groups = shares_of_one_size(&matrix, &right).ok_or_else(undetermined)?;
-        let mut tied: Vec<(usize, usize, f64)> = Vec::new();
-        for group in groups {
-            let Some(((lead, first), others)) = group.split_first() else { continue };
-            tied.extend(others.iter().map(|(own, sign)| (*own, *lead, (sign * first) as f64)));
-        }
-        let is_tied = |place: usize| tied.iter().any(|(own, ..)| *own == place);
-        let leads: Vec<usize> = (0..holding.len()).filter(|place| !is_tied(*place)).collect();
-        let number = |lead: usize| leads.iter().position(|place| *place == lead);
-        let mut numbered = Vec::new();
-        for (own, lead, sign) in &tied {
-            numbered.push((holding[*own], number(*lead).ok_or_else(undetermined)?, *sign));
-        }
-        self.held.tied = numbered;
-        self.held.unknowns = leads.into_iter().map(|place| holding[place]).collect();
-        match self.held.unknowns.len() == self.held.rows.len() {
-            true => Ok(()),
-            false => Err(undetermined()),
-        }
-    }
-
     /// The rates, in the sizes of the states.
     fn rates(&self) -> DVector<f64> {
         let rates = self.surfaces.rates.at(&self.here());
         DVector::from_fn(self.surfaces.states, |i, _| rates[(i, 0)] / self.sizes[i])
-    }
-
-    /// Computes the sides of the surfaces that hold where the motion is.
-    fn refresh(&mut self) -> Result<(), SlidingStop> {
-        let mut arguments = self.here();
-        set_shares(self.surfaces, &mut arguments, &self.held)
-            .ok_or_else(|| SlidingStop::Undetermined(self.held.unknowns[0]))?;
-        self.sides.copy_from_slice(&arguments[self.surfaces.states + 2..]);
-        Ok(())
     }
 
     /// Passes the events that rounding has put at the same time as the one before: surfaces that the
@@ -765,188 +546,6 @@ impl<'a> EventRun<'a> {
             1 => Some(right / matrix[(0, 0)]),
             _ => matrix.full_piv_lu().solve(&right),
         }
-    }
-
-    /// Passes the event at which the motion reaches a surface: it crosses it or begins to stick.
-    fn meet(&mut self, index: usize) -> Result<(), SlidingStop> {
-        self.refresh()?;
-        let before = self.rates();
-        let speed = self.surfaces.rises.at(&self.here())[(index, 0)];
-        let mut on = self.held.all();
-        if self.can_hold(index) {
-            on.push(index);
-        } else {
-            self.sides[index] = -self.sides[index];
-        }
-        self.find_held(self.with_dependent(on), None)?;
-        let behind = self.rates();
-        self.jump(index, &(behind - before), speed);
-        if self.held.contains(index) {
-            self.put_on()?;
-        }
-        Ok(())
-    }
-
-    /// The gap of a wall where every state changes by a unit of its size.
-    fn size_of_gap(&self, wall: usize) -> f64 {
-        let normal = self.surfaces.walls[wall].normal.at(&self.here());
-        (0..self.surfaces.states).map(|k| (normal[(0, k)] * self.sizes[k]).abs()).sum()
-    }
-
-    /// Checks that the motion does not begin behind a wall.
-    fn check_walls(&self) -> Result<(), SlidingStop> {
-        let arguments = self.here();
-        let is_behind = |(index, wall): (usize, &WallMap)| {
-            let gap = wall.gap.call(&arguments);
-            gap.is_nan() || gap < -AT_REST * self.size_of_gap(index)
-        };
-        match self.surfaces.walls.iter().enumerate().any(is_behind) {
-            true => Err(SlidingStop::NoValue),
-            false => Ok(()),
-        }
-    }
-
-    /// Carries out the impact on a wall, with the saltation matrix of the variations.
-    fn strike(&mut self, wall: usize, duration: f64) -> Result<(), SlidingStop> {
-        /// Part of a run below which an impact follows the one before at once.
-        const AT_ONCE: f64 = 1e-7;
-        const MOST_AT_ONCE: usize = 3;
-        self.refresh()?;
-        let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
-        let arguments = self.here();
-        let map = &self.surfaces.walls[wall];
-        let (normal, after) = (map.normal.at(&arguments), map.after.at(&arguments));
-        let rates = self.surfaces.rates.at(&arguments);
-        let before = DVector::from_fn(n, |i, _| rates[(i, 0)]);
-        let speed: f64 =
-            (0..n).map(|k| normal[(0, k)] * before[k]).sum::<f64>() + normal[(0, n + 1)];
-        // A gap that has turned to rounding opens again.
-        if speed >= 0.0 {
-            return Ok(());
-        }
-        self.at_once =
-            if self.time - self.struck < AT_ONCE * duration { self.at_once + 1 } else { 0 };
-        if self.at_once > MOST_AT_ONCE {
-            return Err(SlidingStop::RestsOnWall);
-        }
-        (self.struck, self.impacts) = (self.time, self.impacts + 1);
-        self.slowest = self.slowest.min(-speed * duration / self.size_of_gap(wall));
-        // Onto the wall, from which the event is a rounding away, and away from it.
-        let gap = map.gap.call(&arguments);
-        let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
-        let variations = self.values.clone();
-        for i in 0..n {
-            self.values[i] = (after[(i, 0)] - gap * normal[(0, i)] / square) / self.sizes[i];
-        }
-        self.begin()?;
-        let Some(unit) = self.unit else { return Ok(()) };
-        let rates = self.surfaces.rates.at(&self.here());
-        // R_y f + R_t - f behind.
-        let lost = DVector::from_fn(n, |i, _| {
-            let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * before[k]).sum();
-            carried + after[(i, n + 2)] - rates[(i, 0)]
-        });
-        for column in 0..width {
-            let own = |k: usize| variations[n + k * width + column] * self.sizes[k];
-            let by_parameter = if column == n { unit } else { 0.0 };
-            let height: f64 = (0..n).map(|k| normal[(0, k)] * own(k)).sum::<f64>()
-                + by_parameter * normal[(0, n)];
-            let varied: Vec<f64> = (0..n)
-                .map(|i| {
-                    let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * own(k)).sum();
-                    carried + by_parameter * after[(i, 1 + n)] - lost[i] * height / speed
-                })
-                .collect();
-            for (i, varied) in varied.into_iter().enumerate() {
-                self.values[n + i * width + column] = varied / self.sizes[i];
-            }
-        }
-        if self.held.is_empty() { Ok(()) } else { self.lose_normals() }
-    }
-
-    /// Leaves a surface to a side, unless others on which it sticks too can take over.
-    fn release(&mut self, index: usize, side: f64) -> Result<(), SlidingStop> {
-        if !self.held.tied.is_empty() {
-            return self.find_held(self.held.all(), Some(index));
-        }
-        let left = |own: &usize| *own != index;
-        self.held.rows.retain(left);
-        self.held.unknowns.retain(left);
-        self.sides[index] = side;
-        Ok(())
-    }
-
-    /// Changes the variations by the saltation matrix of a surface, with the change of the rates, in
-    /// the sizes of the states, and du/dt before.
-    fn jump(&mut self, index: usize, change: &DVector<f64>, speed: f64) {
-        let Some(unit) = self.unit else { return };
-        let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
-        let normals = self.surfaces.normals.at(&self.here());
-        for column in 0..width {
-            let of_states = (0..n)
-                .map(|k| normals[(index, k)] * self.sizes[k] * self.values[n + k * width + column]);
-            let own = if column == n { unit * normals[(index, n)] } else { 0.0 };
-            let height: f64 = of_states.sum::<f64>() + own;
-            // A variation that is zero stays zero, also if the speed across the surface vanishes.
-            if height != 0.0 {
-                for i in 0..n {
-                    self.values[n + i * width + column] += change[i] * height / speed;
-                }
-            }
-        }
-    }
-
-    /// f_s in the sizes of the states, and A, of the surfaces that hold.
-    fn directions(&self) -> (DMatrix<f64>, DMatrix<f64>) {
-        let n = self.surfaces.states;
-        let arguments = self.here();
-        let rows: Vec<usize> = (0..n).collect();
-        let mut along = self.held.columns(&self.surfaces.varied.at(&arguments), 2 + n, &rows);
-        for (mut row, size) in along.row_iter_mut().zip(self.sizes) {
-            row /= *size;
-        }
-        let rises = self.surfaces.rises.at(&arguments);
-        (along, self.held.columns(&rises, 1, &self.held.rows))
-    }
-
-    /// Puts the states on the surfaces that hold, in the directions in which the rates jump.
-    fn put_on(&mut self) -> Result<(), SlidingStop> {
-        if self.held.is_empty() {
-            return Ok(());
-        }
-        let (along, matrix) = self.directions();
-        let rows = &self.held.rows;
-        let heights = DVector::from_fn(rows.len(), |i, _| -self.height(rows[i]));
-        let steps = solved(matrix, heights).ok_or(SlidingStop::Undetermined(rows[0]))?;
-        for (value, step) in self.values.iter_mut().zip((along * steps).iter()) {
-            *value += step;
-        }
-        Ok(())
-    }
-
-    /// Takes from the variations what leads off the surfaces on which the motion begins to stick at
-    /// once, z - f_s A^-1 (u_y z + u_p).
-    fn lose_normals(&mut self) -> Result<(), SlidingStop> {
-        let Some(unit) = self.unit else { return Ok(()) };
-        let (n, rows) = (self.surfaces.states, self.held.rows.clone());
-        let width = n + 1;
-        let (along, matrix) = self.directions();
-        let normals = self.surfaces.normals.at(&self.here());
-        for column in 0..width {
-            let height = DVector::from_fn(rows.len(), |i, _| {
-                let of_states = (0..n).map(|k| {
-                    normals[(rows[i], k)] * self.sizes[k] * self.values[n + k * width + column]
-                });
-                let own = if column == n { unit * normals[(rows[i], n)] } else { 0.0 };
-                of_states.sum::<f64>() + own
-            });
-            let steps = solved(matrix.clone(), height).ok_or(SlidingStop::Undetermined(rows[0]))?;
-            let change = &along * steps;
-            for i in 0..n {
-                self.values[n + i * width + column] -= change[i];
-            }
-        }
-        Ok(())
     }
 }
 

@@ -1,0 +1,192 @@
+//! The events at which a motion meets a surface, leaves it or hits a wall, with the saltation matrices of
+//! its variations (the head of `sliding.rs`).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::held::solved;
+use super::{AT_REST, EventRun, SlidingStop};
+use crate::response::coupled::surfaces::WallMap;
+
+impl EventRun<'_> {
+    /// Passes the event at which the motion reaches a surface: it crosses it or begins to stick.
+    pub(super) fn meet(&mut self, index: usize) -> Result<(), SlidingStop> {
+        self.refresh()?;
+        let before = self.rates();
+        let speed = self.surfaces.rises.at(&self.here())[(index, 0)];
+        let mut on = self.held.all();
+        if self.can_hold(index) {
+            on.push(index);
+        } else {
+            self.sides[index] = -self.sides[index];
+        }
+        self.find_held(self.with_dependent(on), None)?;
+        let behind = self.rates();
+        self.jump(index, &(behind - before), speed);
+        if self.held.contains(index) {
+            self.put_on()?;
+        }
+        Ok(())
+    }
+
+    /// The gap of a wall where every state changes by a unit of its size.
+    pub(super) fn size_of_gap(&self, wall: usize) -> f64 {
+        let normal = self.surfaces.walls[wall].normal.at(&self.here());
+        (0..self.surfaces.states).map(|k| (normal[(0, k)] * self.sizes[k]).abs()).sum()
+    }
+
+    /// Checks that the motion does not begin behind a wall.
+    pub(super) fn check_walls(&self) -> Result<(), SlidingStop> {
+        let arguments = self.here();
+        let is_behind = |(index, wall): (usize, &WallMap)| {
+            let gap = wall.gap.call(&arguments);
+            gap.is_nan() || gap < -AT_REST * self.size_of_gap(index)
+        };
+        match self.surfaces.walls.iter().enumerate().any(is_behind) {
+            true => Err(SlidingStop::NoValue),
+            false => Ok(()),
+        }
+    }
+
+    /// Carries out the impact on a wall, with the saltation matrix of the variations.
+    pub(super) fn strike(&mut self, wall: usize, duration: f64) -> Result<(), SlidingStop> {
+        /// Part of a run below which an impact follows the one before at once.
+        const AT_ONCE: f64 = 1e-7;
+        const MOST_AT_ONCE: usize = 3;
+        self.refresh()?;
+        let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
+        let arguments = self.here();
+        let map = &self.surfaces.walls[wall];
+        let (normal, after) = (map.normal.at(&arguments), map.after.at(&arguments));
+        let rates = self.surfaces.rates.at(&arguments);
+        let before = DVector::from_fn(n, |i, _| rates[(i, 0)]);
+        let speed: f64 =
+            (0..n).map(|k| normal[(0, k)] * before[k]).sum::<f64>() + normal[(0, n + 1)];
+        // A gap that has turned to rounding opens again.
+        if speed >= 0.0 {
+            return Ok(());
+        }
+        self.at_once =
+            if self.time - self.struck < AT_ONCE * duration { self.at_once + 1 } else { 0 };
+        if self.at_once > MOST_AT_ONCE {
+            return Err(SlidingStop::RestsOnWall);
+        }
+        (self.struck, self.impacts) = (self.time, self.impacts + 1);
+        self.slowest = self.slowest.min(-speed * duration / self.size_of_gap(wall));
+        // Onto the wall, from which the event is a rounding away, and away from it.
+        let gap = map.gap.call(&arguments);
+        let square: f64 = (0..n).map(|k| normal[(0, k)].powi(2)).sum();
+        let variations = self.values.clone();
+        for i in 0..n {
+            self.values[i] = (after[(i, 0)] - gap * normal[(0, i)] / square) / self.sizes[i];
+        }
+        self.begin()?;
+        let Some(unit) = self.unit else { return Ok(()) };
+        let rates = self.surfaces.rates.at(&self.here());
+        // R_y f + R_t - f behind.
+        let lost = DVector::from_fn(n, |i, _| {
+            let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * before[k]).sum();
+            carried + after[(i, n + 2)] - rates[(i, 0)]
+        });
+        for column in 0..width {
+            let own = |k: usize| variations[n + k * width + column] * self.sizes[k];
+            let by_parameter = if column == n { unit } else { 0.0 };
+            let height: f64 = (0..n).map(|k| normal[(0, k)] * own(k)).sum::<f64>()
+                + by_parameter * normal[(0, n)];
+            let varied: Vec<f64> = (0..n)
+                .map(|i| {
+                    let carried: f64 = (0..n).map(|k| after[(i, 1 + k)] * own(k)).sum();
+                    carried + by_parameter * after[(i, 1 + n)] - lost[i] * height / speed
+                })
+                .collect();
+            for (i, varied) in varied.into_iter().enumerate() {
+                self.values[n + i * width + column] = varied / self.sizes[i];
+            }
+        }
+        if self.held.is_empty() { Ok(()) } else { self.lose_normals() }
+    }
+
+    /// Leaves a surface to a side, unless others on which it sticks too can take over.
+    pub(super) fn release(&mut self, index: usize, side: f64) -> Result<(), SlidingStop> {
+        if !self.held.tied.is_empty() {
+            return self.find_held(self.held.all(), Some(index));
+        }
+        let left = |own: &usize| *own != index;
+        self.held.rows.retain(left);
+        self.held.unknowns.retain(left);
+        self.sides[index] = side;
+        Ok(())
+    }
+
+    /// Changes the variations by the saltation matrix of a surface, with the change of the rates, in
+    /// the sizes of the states, and du/dt before.
+    pub(super) fn jump(&mut self, index: usize, change: &DVector<f64>, speed: f64) {
+        let Some(unit) = self.unit else { return };
+        let (n, width) = (self.surfaces.states, self.surfaces.states + 1);
+        let normals = self.surfaces.normals.at(&self.here());
+        for column in 0..width {
+            let of_states = (0..n)
+                .map(|k| normals[(index, k)] * self.sizes[k] * self.values[n + k * width + column]);
+            let own = if column == n { unit * normals[(index, n)] } else { 0.0 };
+            let height: f64 = of_states.sum::<f64>() + own;
+            // A variation that is zero stays zero, also if the speed across the surface vanishes.
+            if height != 0.0 {
+                for i in 0..n {
+                    self.values[n + i * width + column] += change[i] * height / speed;
+                }
+            }
+        }
+    }
+
+    /// f_s in the sizes of the states, and A, of the surfaces that hold.
+    pub(super) fn directions(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        let n = self.surfaces.states;
+        let arguments = self.here();
+        let rows: Vec<usize> = (0..n).collect();
+        let mut along = self.held.columns(&self.surfaces.varied.at(&arguments), 2 + n, &rows);
+        for (mut row, size) in along.row_iter_mut().zip(self.sizes) {
+            row /= *size;
+        }
+        let rises = self.surfaces.rises.at(&arguments);
+        (along, self.held.columns(&rises, 1, &self.held.rows))
+    }
+
+    /// Puts the states on the surfaces that hold, in the directions in which the rates jump.
+    pub(super) fn put_on(&mut self) -> Result<(), SlidingStop> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
+        let (along, matrix) = self.directions();
+        let rows = &self.held.rows;
+        let heights = DVector::from_fn(rows.len(), |i, _| -self.height(rows[i]));
+        let steps = solved(matrix, heights).ok_or(SlidingStop::Undetermined(rows[0]))?;
+        for (value, step) in self.values.iter_mut().zip((along * steps).iter()) {
+            *value += step;
+        }
+        Ok(())
+    }
+
+    /// Takes from the variations what leads off the surfaces on which the motion begins to stick at
+    /// once, z - f_s A^-1 (u_y z + u_p).
+    pub(super) fn lose_normals(&mut self) -> Result<(), SlidingStop> {
+        let Some(unit) = self.unit else { return Ok(()) };
+        let (n, rows) = (self.surfaces.states, self.held.rows.clone());
+        let width = n + 1;
+        let (along, matrix) = self.directions();
+        let normals = self.surfaces.normals.at(&self.here());
+        for column in 0..width {
+            let height = DVector::from_fn(rows.len(), |i, _| {
+                let of_states = (0..n).map(|k| {
+                    normals[(rows[i], k)] * self.sizes[k] * self.values[n + k * width + column]
+                });
+                let own = if column == n { unit * normals[(rows[i], n)] } else { 0.0 };
+                of_states.sum::<f64>() + own
+            });
+            let steps = solved(matrix.clone(), height).ok_or(SlidingStop::Undetermined(rows[0]))?;
+            let change = &along * steps;
+            for i in 0..n {
+                self.values[n + i * width + column] -= change[i];
+            }
+        }
+        Ok(())
+    }
+}

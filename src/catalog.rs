@@ -29,6 +29,9 @@ pub struct CatalogEntry {
     pub source: &'static str,
     /// The published law, for comparison.
     pub published: Option<Published>,
+    /// The sides of rigid walls on which motions are allowed, `x < d`, each with the coefficient of
+    /// restitution `e`; empty where there are none.
+    pub walls: &'static [&'static str],
 }
 
 /// A formula of the frequency over a whole range of amplitudes, as its source prints it.
@@ -83,6 +86,21 @@ impl CatalogEntry {
     pub fn is_coupled(&self) -> bool {
         self.equation.contains(';')
     }
+
+    /// The entry as a problem file, with its walls.
+    ///
+    /// ```
+    /// use lindstedt::{catalog::find, problem::Problem};
+    ///
+    /// let ball: Problem = find("bouncing-ball").ok_or("no entry")?.problem_file().parse()?;
+    /// assert_eq!(ball.walls()?[0].0, "x > Z*sin(w*t)");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn problem_file(&self) -> String {
+        let wall = |bound: &&str| format!("\n[[wall]]\nbound = \"{bound}\"\nrestitution = \"e\"\n");
+        let walls: String = self.walls.iter().map(wall).collect();
+        format!("equation = \"{}\"\n{walls}", self.equation)
+    }
 }
 
 impl fmt::Display for Published {
@@ -103,6 +121,7 @@ const fn omega_squared(law: &'static str, order: u32) -> Option<Published> {
 const NAYFEH_MOOK: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 2";
 const NAYFEH_MOOK_DAMPED: &str =
     "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 3";
+const IMPACT_DAMPERS: &str = "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm";
 const MICKENS: &str = "R. E. Mickens, Truly Nonlinear Oscillations, World Scientific 2010";
 
 /// Every oscillator, in the order of the listing.
@@ -113,6 +132,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + sin(x) = 0",
         source: "NIST Digital Library of Mathematical Functions, 22.19(i): the expansion of omega = pi/(2 K(sin^2(A/2)))",
         published: omega("1 - A^2/16 + A^4/3072", 4),
+        walls: &[],
     },
     CatalogEntry {
         name: "cubic-pendulum",
@@ -120,6 +140,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x - x^3/6 = 0",
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equations (11) and (12)",
         published: omega_squared("1 - A^2/8", 2),
+        walls: &[],
     },
     CatalogEntry {
         name: "quintic-pendulum",
@@ -127,6 +148,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x - x^3/6 + x^5/120 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - A^2/16 + A^4/3072", 4),
+        walls: &[],
     },
     CatalogEntry {
         name: "duffing",
@@ -134,6 +156,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + eps*x^3 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 + 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
+        walls: &[],
     },
     CatalogEntry {
         name: "duffing-softening",
@@ -141,6 +164,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x - eps*x^3 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - 3*eps*A^2/8 - 21*eps^2*A^4/256", 2),
+        walls: &[],
     },
     CatalogEntry {
         name: "double-well",
@@ -148,6 +172,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' - x + x^3 = 0",
         source: "J. Guckenheimer, P. Holmes, Nonlinear Oscillations, Dynamical Systems and Bifurcations, Springer 1983, section 2.2",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "pure-cubic",
@@ -155,6 +180,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x^3 = 0",
         source: MICKENS,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "quintic",
@@ -162,6 +188,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + eps*x^5 = 0",
         source: MICKENS,
         published: omega("1 + 5*eps*A^4/16", 1),
+        walls: &[],
     },
     CatalogEntry {
         name: "helmholtz",
@@ -169,6 +196,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + eps*x^2 = 0",
         source: NAYFEH_MOOK,
         published: omega("1 - 5*eps^2*A^2/12", 2),
+        walls: &[],
     },
     CatalogEntry {
         name: "mixed-parity",
@@ -176,6 +204,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + eps*(alpha*x^2 + beta*x^3) = 0",
         source: NAYFEH_MOOK,
         published: omega("1 + 3*beta*eps*A^2/8", 1),
+        walls: &[],
     },
     CatalogEntry {
         name: "van-der-pol",
@@ -183,6 +212,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' - mu*(1 - x^2)*x' + x = 0",
         source: "C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693",
         published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
+        walls: &[],
     },
     CatalogEntry {
         name: "rayleigh",
@@ -190,6 +220,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' - mu*(1 - x'^2/3)*x' + x = 0",
         source: "Lord Rayleigh, Philosophical Magazine 15 (1883) 229-235; its x' solves van der Pol's equation, so the law is that of Andersen and Geer",
         published: omega("1 - mu^2/16 + 17*mu^4/3072", 4),
+        walls: &[],
     },
     CatalogEntry {
         name: "duffing-harmonic",
@@ -197,6 +228,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x^3/(1 + x^2) = 0",
         source: "R. E. Mickens, J. Sound Vib. 244 (2001) 563-567",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "relativistic",
@@ -204,6 +236,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + (1 - x'^2)^(3/2)*x = 0",
         source: "R. E. Mickens, J. Sound Vib. 212 (1998) 905-908",
         published: omega_squared("1 - 3*A^2/8", 2),
+        walls: &[],
     },
     CatalogEntry {
         name: "mathews-lakshmanan",
@@ -211,6 +244,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "(1 + x^2)*x'' - x*x'^2 + x = 0",
         source: "P. M. Mathews, M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215-218: omega^2 = 1/(1 + A^2)",
         published: omega_squared("1 - A^2 + A^4", 4),
+        walls: &[],
     },
     CatalogEntry {
         name: "morse",
@@ -218,6 +252,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + exp(-x) - exp(-2*x) = 0",
         source: "P. M. Morse, Phys. Rev. 34 (1929) 57-64",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "toda",
@@ -225,6 +260,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + exp(x) - 1 = 0",
         source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "bubble",
@@ -232,6 +268,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 5/2*(x^(1/5) - x^(-7/5)) = 0",
         source: "Lord Rayleigh, Phil. Mag. 34 (1917) 94-98, polytropic exponent 4/3; x by N. A. Kudryashov, D. I. Sinelshchikov, J. Phys. A 47 (2014) 405202",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "quadratic-odd",
@@ -239,6 +276,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x*abs(x) = 0",
         source: MICKENS,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "signum",
@@ -246,6 +284,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + sgn(x) = 0",
         source: MICKENS,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "cube-root",
@@ -253,6 +292,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x^(1/3) = 0",
         source: "R. E. Mickens, J. Sound Vib. 246 (2001) 375-378",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "rotating-pendulum",
@@ -260,6 +300,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + sin(x) - lambda*sin(x)*cos(x) = 0",
         source: NAYFEH_MOOK,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "magnetic-wire",
@@ -267,6 +308,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x - lambda/(1 - x) = 0",
         source: NAYFEH_MOOK,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "damped-pendulum",
@@ -274,6 +316,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*zeta*x' + sin(x) = 0",
         source: "Investigating Vibratory Behavior of Nonlinear Single Unit Impact Dampers Using Perturbation Method and Genetic Algorithm, equation (7) without friction, excitation and barrier",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "forced-duffing",
@@ -281,6 +324,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.1",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "forced-helmholtz",
@@ -288,6 +332,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 4.2",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "mathieu-duffing",
@@ -295,6 +340,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 5.7",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "dry-friction",
@@ -302,6 +348,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + alpha*sgn(x') + x = 0",
         source: NAYFEH_MOOK_DAMPED,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "quadratic-damping",
@@ -309,6 +356,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + c*abs(x')*x' + x = 0",
         source: NAYFEH_MOOK_DAMPED,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "damped-duffing",
@@ -316,6 +364,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*zeta*x' + x + eps*x^3 = 0",
         source: NAYFEH_MOOK_DAMPED,
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "similar-pair",
@@ -323,6 +372,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + x^3 + K*(x - y)^3 = 0; y'' + y + y^3 + K*(y - x)^3 = 0",
         source: "A. F. Vakakis, R. H. Rand, Int. J. Non-Linear Mech. 27 (1992) 861-874: similar modes, of which two more branch off at K = 1/4",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "modal-pair",
@@ -330,6 +380,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*x - y + x^3/2 = 0; y'' + 2*y - x = 0",
         source: "G. Kerschen, M. Peeters, J. C. Golinval, A. F. Vakakis, Mech. Syst. Signal Process. 23 (2009) 170-194",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "coupled-duffing",
@@ -337,6 +388,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + eps*x^3 + k*(x - y) = 0; y'' + y + eps*y^3 + k*(y - x) = 0",
         source: "R. M. Rosenberg, Adv. Appl. Mech. 9 (1966) 155-242",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "coupled-pendulums",
@@ -344,6 +396,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + sin(x) + k*(x - y) = 0; y'' + sin(y) + k*(y - x) = 0",
         source: "A. Sommerfeld, Mechanics, Academic Press 1952: sympathetic pendulums",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "double-pendulum",
@@ -351,6 +404,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "2*x'' + y''*cos(x - y) + y'^2*sin(x - y) + 2*sin(x) = 0; y'' + x''*cos(x - y) - x'^2*sin(x - y) + sin(y) = 0",
         source: "L. D. Landau, E. M. Lifshitz, Mechanics, Pergamon 1960, section 5",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "elastic-pendulum",
@@ -358,6 +412,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "r'' - (1 + r)*b'^2 + W^2*r + 1 - cos(b) = 0; (1 + r)*b'' + 2*r'*b' + sin(b) = 0",
         source: "A. Vitt, G. Gorelik, J. Tech. Phys. USSR 3 (1933) 294-307: energy goes to and fro at W = 2",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "cart-pendulum",
@@ -365,6 +420,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "(1 + m)*x'' + m*b''*cos(b) - m*b'^2*sin(b) + k*x = 0; b'' + x''*cos(b) + sin(b) = 0",
         source: "L. Meirovitch, Methods of Analytical Dynamics, McGraw-Hill 1970",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "henon-heiles",
@@ -372,6 +428,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x + 2*x*y = 0; y'' + y + x^2 - y^2 = 0",
         source: "M. Henon, C. Heiles, Astron. J. 69 (1964) 73-79",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "toda-pair",
@@ -379,6 +436,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' - exp(-x) + exp(x - y) = 0; y'' - exp(x - y) + exp(y) = 0",
         source: "M. Toda, J. Phys. Soc. Japan 22 (1967) 431-436",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "fermi-pasta-ulam",
@@ -386,6 +444,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*x - y - alpha*((y - x)^2 - x^2) = 0; y'' + 2*y - x - z - alpha*((z - y)^2 - (y - x)^2) = 0; z'' + 2*z - y - alpha*(z^2 - (z - y)^2) = 0",
         source: "E. Fermi, J. Pasta, S. Ulam, Los Alamos report LA-1940 (1955)",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "quadratic-pair",
@@ -393,6 +452,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + x - alpha1*x*y = 0; y'' + 4*y - alpha2*x^2 = 0",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 6.2",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "saturation",
@@ -400,6 +460,7 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' + 2*mu1*x' + x - alpha1*x*y = 0; y'' + 2*mu2*y' + 4*y - alpha2*x^2 = F*cos(2*t)",
         source: "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, section 6.5",
         published: None,
+        walls: &[],
     },
     CatalogEntry {
         name: "coupled-van-der-pol",
@@ -407,6 +468,47 @@ pub const CATALOG: &[CatalogEntry] = &[
         equation: "x'' - eps*(1 - x^2)*x' + x - eps*kappa*(y' - x') = 0; y'' - eps*(1 - y^2)*y' + (1 + eps*delta)*y - eps*kappa*(x' - y') = 0",
         source: "D. G. Aronson, G. B. Ermentrout, N. Kopell, Physica D 41 (1990) 403-449",
         published: None,
+        walls: &[],
+    },
+    CatalogEntry {
+        name: "bouncing-ball",
+        title: "ball on a shaking table",
+        equation: "x'' + g = 0",
+        source: "P. J. Holmes, J. Sound Vib. 84 (1982) 173-189",
+        published: None,
+        walls: &["x > Z*sin(w*t)"],
+    },
+    CatalogEntry {
+        name: "impact-oscillator",
+        title: "driven oscillator beside a rigid stop",
+        equation: "x'' + 2*zeta*x' + x = F*cos(w*t)",
+        source: "S. W. Shaw, P. J. Holmes, J. Sound Vib. 90 (1983) 129-155",
+        published: None,
+        walls: &["x < d"],
+    },
+    CatalogEntry {
+        name: "impact-damper",
+        title: "pendulum that hits a rigid barrier",
+        equation: "x'' + 2*zeta*x' + sin(x) = 0",
+        source: IMPACT_DAMPERS,
+        published: None,
+        walls: &["x < d"],
+    },
+    CatalogEntry {
+        name: "newtons-cradle",
+        title: "three balls on strings",
+        equation: "p'' + p = 0; q'' + q = 0; r'' + r = 0",
+        source: "F. Herrmann, P. Schmaelzle, Am. J. Phys. 49 (1981) 761-764",
+        published: None,
+        walls: &["p < q", "q < r"],
+    },
+    CatalogEntry {
+        name: "rattling-gear",
+        title: "loose gear wheel between the flanks of another",
+        equation: "z'' + beta*z' = A*cos(w*t)",
+        source: "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, section 9.1",
+        published: None,
+        walls: &["-b < z < b"],
     },
 ];
 
@@ -431,6 +533,10 @@ pub fn find(name: &str) -> Option<&'static CatalogEntry> {
 /// assert!(answers.iter().any(|(_, answer)| answer.is_ok()) && answers.iter().any(|(_, answer)| answer.is_err()));
 /// ```
 pub fn methods(entry: &CatalogEntry) -> Vec<(Method, Result<(), String>)> {
+    if !entry.walls.is_empty() {
+        let reason = "no law across impacts on rigid walls: simulate, response and orbits take it";
+        return Method::ALL.map(|method| (method, Err(reason.to_owned()))).to_vec();
+    }
     if entry.is_coupled() {
         let methods = [
             Method::LindstedtPoincare,

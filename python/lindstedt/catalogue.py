@@ -14,7 +14,8 @@ from .tables import Table
 class CatalogOfOscillators(Mapping[str, Oscillator]):
     """The oscillators of one coordinate by their names.
 
-    Coupled ones are in `entries`: `derive`, `modes` and `slow_equations` take their names.
+    Coupled ones are in `entries`: `derive`, `modes` and `slow_equations` take their names. Those
+    with rigid walls are there too: `simulate`, `response` and `orbits` take them.
 
     >>> import lindstedt as ls
     >>> ls.catalog["pendulum"]
@@ -30,7 +31,8 @@ class CatalogOfOscillators(Mapping[str, Oscillator]):
 
     @cached_property
     def _names(self) -> tuple[str, ...]:
-        return tuple(entry.name for entry in self.entries if ";" not in entry.equation)
+        of_one = [entry for entry in self.entries if ";" not in entry.equation]
+        return tuple(entry.name for entry in of_one if not entry.walls)
 
     def __getitem__(self, name: str) -> Oscillator:
         if name not in self._names:

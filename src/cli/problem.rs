@@ -110,7 +110,11 @@ fn from_words(text: &str) -> Result<Problem, Failure> {
     // is not there.
     let word = text.split_whitespace().collect::<Vec<_>>().join("-");
     if let Some(entry) = catalog::find(&word.replace('_', "-")) {
-        return Ok(with_equation(entry.equation));
+        let of_file = |error: ProblemError| Failure::refused(&error, error.help());
+        return match entry.walls {
+            [] => Ok(with_equation(entry.equation)),
+            _ => entry.problem_file().parse().map_err(of_file),
+        };
     }
     let is_word = word.len() > 1
         && word.starts_with(|letter: char| letter.is_ascii_alphabetic())

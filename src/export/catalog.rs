@@ -71,11 +71,10 @@ pub fn html(entries: &[CatalogEntry], page: &html::HtmlPage) -> String {
 }
 
 fn entry_as_text(entry: &CatalogEntry) -> String {
-    let mut lines = vec![
-        format!("{}: {}", entry.name, entry.title),
-        format!("  {}", entry.equation),
-        format!("  {}", entry.source),
-    ];
+    let mut lines =
+        vec![format!("{}: {}", entry.name, entry.title), format!("  {}", entry.equation)];
+    lines.extend(entry.walls.iter().map(|bound| format!("  wall {bound}, restitution e")));
+    lines.push(format!("  {}", entry.source));
     lines.extend(entry.published.map(|law| format!("  published: {law}")));
     let (mut applying, mut refused): (Vec<&str>, Vec<(String, Vec<&str>)>) = (vec![], vec![]);
     for (method, result) in methods(entry) {

@@ -230,7 +230,7 @@ fn distance(orbit: &ImpactOrbit, frequency: f64, (time, _, speed): (f64, usize, 
 
 #[test]
 fn simulations_stay_on_stable_orbits_and_settle_on_listed_ones() {
-    const COUNT: usize = 150;
+    const COUNT: usize = 300;
     let mut source = Random::new(15);
     let (mut stayed, mut settled, mut passed) = (0, 0, 0);
     for number in 0..COUNT {

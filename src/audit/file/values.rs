@@ -65,8 +65,16 @@ pub(super) fn equal_to_zero(text: &Text) -> ReadResult<Expr> {
 
 /// The equation of a claim, or the mode of this number of coupled ones.
 pub(super) fn equation(text: &Text, mode: Option<&Spanned<usize>>) -> ReadResult<ClaimEquation> {
-    let equation =
-        catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
+    let entry = catalog::find(text.get_ref());
+    if entry.is_some_and(|entry| !entry.walls.is_empty()) {
+        let name = text.get_ref();
+        return helped(
+            text.span(),
+            format!("`{name}` meets rigid walls, across which no claim is judged"),
+            "write the equation alone to judge a claim about the motion between impacts".to_owned(),
+        );
+    }
+    let equation = entry.map_or(text.get_ref().as_str(), |entry| entry.equation);
     // The picture of the position in an error refers to the text alone, so that it is left out.
     let refused = |error: &dyn std::fmt::Display| {
         mistake(text.span(), error.to_string().lines().next().unwrap_or_default())

@@ -32,6 +32,10 @@ pub struct Entry {
     /// The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`; null where
     /// none is printed.
     pub published: Option<String>,
+    /// The sides of rigid walls on which motions are allowed, such as `x < d`, each with the coefficient
+    /// of restitution `e`.
+    #[serde(default)]
+    pub walls: Vec<String>,
     /// Every method, and whether it applies.
     pub methods: Vec<Applicability>,
 }
@@ -75,6 +79,7 @@ fn entry(entry: &catalog::CatalogEntry) -> Entry {
         equation: entry.equation.to_owned(),
         source: entry.source.to_owned(),
         published: entry.published.map(|published| published.to_string()),
+        walls: entry.walls.iter().map(|bound| (*bound).to_owned()).collect(),
         methods: catalog::methods(entry).into_iter().map(applicability).collect(),
     }
 }

@@ -72,7 +72,7 @@ fn is_scale_free(equation: &str) -> bool {
 #[test]
 fn every_method_on_every_entry_it_claims() {
     let (mut judged, mut slopes) = (0, 0);
-    for entry in CATALOG.iter().filter(|entry| !entry.is_coupled()) {
+    for entry in CATALOG.iter().filter(|entry| !entry.is_coupled() && entry.walls.is_empty()) {
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
         for method in Method::ALL {
             let Ok(solution) = by(entry.equation, method) else {

@@ -136,11 +136,11 @@ type Measures = [f64; 6];
 fn measure(
     family: OrbitFamily,
     numbers: &ImpactNumbers,
-    relation: &OneImpact,
+    (relation, states): (&OneImpact, &[Option<ImpactState>; 2]),
     index: usize,
 ) -> f64 {
     let of_state = |index: usize, measure: &dyn Fn(&ImpactState) -> f64| {
-        relation.states()[index].as_ref().map_or(f64::NAN, measure)
+        states[index].as_ref().map_or(f64::NAN, measure)
     };
     match index {
         0 => relation.grazing().unwrap_or(f64::NAN),
@@ -164,9 +164,10 @@ fn look(
         let own = numbers.as_ref().and_then(|numbers| Some((numbers, family.relation(numbers)?)));
         let (mut orbits, mut stable) = (0, 0);
         let measures = own.as_ref().map_or([f64::NAN; 6], |(numbers, relation)| {
+            let states = relation.states();
             let measures: Measures =
-                std::array::from_fn(|index| measure(*family, numbers, relation, index));
-            for (state, admissible) in relation.states().iter().zip(&measures[4..]) {
+                std::array::from_fn(|index| measure(*family, numbers, (relation, &states), index));
+            for (state, admissible) in states.iter().zip(&measures[4..]) {
                 if let Some(state) = state.as_ref().filter(|_| *admissible > 0.0) {
                     orbits += 1;
                     stable += u8::from(family.stability(relation, state) == OrbitStability::Stable);
@@ -235,7 +236,9 @@ fn crossing(
         Some((numbers, relation))
     };
     let at = |part: f64| {
-        relation(part).map_or(f64::NAN, |(numbers, own)| measure(family, &numbers, &own, index))
+        relation(part).map_or(f64::NAN, |(numbers, own)| {
+            measure(family, &numbers, (&own, &own.states()), index)
+        })
     };
     let (first, last) = (at(0.0), at(1.0));
     let holds = |part: f64| (at(part) > 0.0) == (first > 0.0);

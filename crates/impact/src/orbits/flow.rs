@@ -136,8 +136,10 @@ impl ClosedFlow {
                     bisect(|t| gap(t)[0] > 0.0, left, right, BisectionStop::Halvings(40));
                 return Some(first);
             }
-            // A minimum between two samples.
-            if before[1] < 0.0 && now[1] > 0.0 {
+            // A minimum between two samples, unless the gap is larger than the way to it: the speed
+            // falls to zero there.
+            let way = -2.0 * step * before[1];
+            if before[1] < 0.0 && now[1] > 0.0 && before[0] <= way {
                 let [least, _] =
                     bisect(|t| gap(t)[1] < 0.0, left, right, BisectionStop::Halvings(50));
                 if gap(least)[0] < 0.0 {

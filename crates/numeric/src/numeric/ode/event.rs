@@ -238,8 +238,13 @@ fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
 }
 
-/// Inserts the minimum of |value| between samples of one sign if it lies beyond zero.
+/// Inserts the minimum of |value| between samples of one sign if it lies beyond zero. It is searched
+/// only where it may: a parabola through three samples, the one in the middle the lowest, goes below
+/// that by no more than 0.6 of the rise to the higher of its neighbours, however the Chebyshev points
+/// lie; beside an end of the step a function falls by no more than at the slope there.
 fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f64) {
+    /// Factor by which a function may fall lower than the parabola, or the slope, says.
+    const SAFETY: f64 = 2.0;
     let mut misses = Vec::new();
     let mut search = |from: f64, to: f64, sign: f64| {
         let (fraction, height) = find_minimum(|fraction| sign * value_at(fraction), from, to);
@@ -253,7 +258,9 @@ fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f
         let sign = value.signum();
         let (height_left, height, height_right) =
             (sign * value_left, sign * value, sign * value_right);
-        if value != 0.0 && height < height_left && height <= height_right {
+        let rises = height_left + height_right - 2.0 * height;
+        let may_reach_zero = height < SAFETY * rises;
+        if value != 0.0 && height < height_left && height <= height_right && may_reach_zero {
             search(left, right, sign);
         }
     }
@@ -271,8 +278,12 @@ fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f
             (first, value_first, second, value_second),
             (last, value_last, last_but_one, value_before),
         ] {
+            const PARTS: f64 = 64.0;
             let sign = value_end.signum();
-            let dips = || sign * value_at(end + (inner - end) / 64.0) < sign * value_end;
+            let dips = || {
+                let fall = sign * (value_end - value_at(end + (inner - end) / PARTS));
+                fall > 0.0 && value_end.abs() < SAFETY * PARTS * fall
+            };
             if value_end != 0.0 && sign * value_inner >= sign * value_end && dips() {
                 search(end.min(inner), end.max(inner), sign);
             }

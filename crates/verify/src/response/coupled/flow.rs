@@ -211,7 +211,7 @@ impl Flow {
         sizes: &[f64],
         unit: Option<f64>,
     ) -> Option<SlidingRun> {
-        let options = self.options(times[1] - times[0]);
+        let options = self.options(times[1] - times[0], jumps.smooth);
         match sliding::follow(jumps, start, times, parameter, sizes, unit, &options) {
             Ok(run) => {
                 self.evaluations.set(self.evaluations.get() + run.evaluations);
@@ -283,12 +283,12 @@ impl Flow {
         self.evaluations.set(self.evaluations.get() + columns as u64);
     }
 
-    fn options(&self, length: f64) -> IntegrationOptions {
+    fn options(&self, length: f64, smooth: bool) -> IntegrationOptions {
         /// Least number of steps where a corner may lie between them.
         const STEPS_WITH_CORNERS: f64 = 100.0;
         IntegrationOptions {
             maximum_steps: STEPS,
-            maximum_step: if self.smooth { f64::INFINITY } else { length / STEPS_WITH_CORNERS },
+            maximum_step: if smooth { f64::INFINITY } else { length / STEPS_WITH_CORNERS },
             interrupt: self.interrupt,
             ..IntegrationOptions::with_tolerance(TOLERANCE)
         }
@@ -321,7 +321,8 @@ impl Flow {
             }
         };
         let scaled = start.iter().zip(sizes).map(|(value, size)| value / size).collect();
-        let end = end_values(rates, Point { t: from, y: scaled }, to, &self.options(to - from))?;
+        let options = self.options(to - from, self.smooth);
+        let end = end_values(rates, Point { t: from, y: scaled }, to, &options)?;
         Some(end.iter().zip(sizes).map(|(value, size)| value * size).collect())
     }
 
@@ -384,7 +385,8 @@ impl Flow {
         for i in 0..n {
             begin[n + i * width + i] = UNIT_OF_VARIATIONS;
         }
-        let end = end_values(rates, Point { t: 0.0, y: begin }, length, &self.options(length))?;
+        let options = self.options(length, self.smooth);
+        let end = end_values(rates, Point { t: 0.0, y: begin }, length, &options)?;
         let (low, high) = bounds.into_inner();
         Some(image_of(n, &end, sizes, &low, &high))
     }

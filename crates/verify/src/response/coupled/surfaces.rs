@@ -84,14 +84,16 @@ pub(super) struct WallMap {
     pub(super) after: Table,
 }
 
-/// Rates with the surfaces across which they jump and the walls on which states do, compiled. The arguments of all functions are the
-/// states, the time, the parameter, then the side of each surface.
+/// Rates with the surfaces across which they jump and the walls on which states do, compiled. The
+/// arguments of all functions are the states, the time, the parameter, then the side of each surface.
 #[derive(Clone, Debug)]
 pub(super) struct JumpSurfaces {
     /// The number of states.
     pub(super) states: usize,
     /// The arguments u of the jumps.
     pub(super) arguments: Vec<Expr>,
+    /// Whether the rates on one side of all surfaces, and the arguments, have no corner.
+    pub(super) smooth: bool,
     /// Whether a motion can stay on each surface, because du/dt depends on its side.
     pub(super) holds: Vec<bool>,
     /// The factors c of the states where u = d/dt (c y), so that c y stays what it is on the surface; `None`
@@ -221,6 +223,7 @@ impl JumpSurfaces {
             varied: table(&rates, true, &[&with_parameter, &names])?,
             rises: table(&rises, true, &[&names])?,
             varied_rises: table(&rises, false, &[&with_parameter])?,
+            smooth: !rates.iter().chain(&sides.arguments).any(Expr::contains_corner),
             arguments: sides.arguments,
             holds,
             places,

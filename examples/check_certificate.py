@@ -2,12 +2,14 @@
 
 A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, of one
 coordinate or several, whose equations have polynomials, sin, cos and exp, and of laws on a range: the largest error of a formula for the
-frequency over all amplitudes up to one, or all values of a parameter, up to infinity too, or of one for the duration of a contact over
-all speeds up to one. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of
+frequency over all amplitudes up to one, or all values of a parameter, up to infinity too, of one for that of a nonlinear normal mode over
+a range of its amplitude, or of one for the duration of a contact over all speeds up to one. What a file claims of the stability is not looked at. A number is a pair (m, r) of integers, all reals within r of
 m, in units of 2^-P; a series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below and from above, after every claim of the
 file has been held against it, or says which inequality or claim does not hold."""
+import collections
 import functools
 import heapq
+import itertools
 import json
 import math
 import re
@@ -158,6 +160,10 @@ def least(a):                               # no number of the ball is nearer to
     return max(0, abs(a[0]) - a[1])
 
 
+def part_of(r, s):                          # of what is known by norms: the product, rounded up
+    return up(r * s, ONE)
+
+
 def quotient(a, b):
     demand(least(b) > 0, "a division by what may be zero")
     m = (a[0] << P) // b[0]
@@ -260,34 +266,43 @@ def widened(u, r):
     return u[0], u[1], u[2] + r
 
 
-def exponential_of(u):
+def without_constant(u):
+    return at(u[0], 0), ([ZERO] + u[0][1:], u[1], u[2])
+
+
+# The operations of such series, and of those of two angles below: the unit of their norms, and how a ball becomes one.
+Operations = collections.namedtuple("Operations", "one constant plus times shrunk widened norm without_constant")
+SERIES = Operations(ONE, lambda ball: ([ball], [], 0), plus, times, shrunk, widened, norm, without_constant)
+
+
+def exponential_of(u, by=SERIES):
     """exp(u) = exp(c_0) exp(u - c_0)."""
-    first, y, halvings = at(u[0], 0), ([ZERO] + u[0][1:], u[1], u[2]), 6
-    while norm(y) << 6 > ONE << halvings:
+    (first, y), halvings, unity = by.without_constant(u), 6, by.constant((ONE, 0))
+    while by.norm(y) << 6 > by.one << halvings:
         halvings += 1
     demand(halvings < 14, "the argument of exp is too large")
-    y, result = shrunk(y, 1 << halvings), constant(1)
+    y, result = by.shrunk(y, 1 << halvings), unity
     for k in range(18, 0, -1):
-        result = plus(constant(1), shrunk(times(y, result), k))
-    result = widened(result, ONE >> 150)    # 2^-114/19! is below 2^-170
+        result = by.plus(unity, by.shrunk(by.times(y, result), k))
+    result = by.widened(result, (by.one >> 150) + 1)    # 2^-114/19! is below 2^-170
     for _ in range(halvings):
-        result = times(result, result)
-    return times(result, ([exponential(first)], [], 0))
+        result = by.times(result, result)
+    return by.times(result, by.constant(exponential(first)))
 
 
-def sine_and_cosine(u):
-    halvings = 0
-    while norm(u) << 1 > ONE << halvings:
+def sine_and_cosine(u, by=SERIES):
+    halvings, unity = 0, by.constant((ONE, 0))
+    while by.norm(u) << 1 > by.one << halvings:
         halvings += 1
     demand(halvings < 7, "the argument of sin is too large")
-    y = shrunk(u, 1 << halvings)
-    w, s, c = times(y, y), constant(1), constant(1)
+    y = by.shrunk(u, 1 << halvings)
+    w, s, c = by.times(y, y), unity, unity
     for k in range(14, 0, -1):
-        s, c = (plus(constant(1), shrunk(times(w, t), n), -1) for t, n in ((s, 2*k*(2*k + 1)), (c, 2*k*(2*k - 1))))
-    rest = ONE >> 128                       # what is left of either series is below 2 (1/2)^30/30!
-    s, c = widened(times(y, s), rest), widened(c, rest)
+        s, c = (by.plus(unity, by.shrunk(by.times(w, t), n), -1) for t, n in ((s, 2*k*(2*k + 1)), (c, 2*k*(2*k - 1))))
+    rest = (by.one >> 128) + 1              # what is left of either series is below 2 (1/2)^30/30!
+    s, c = by.widened(by.times(y, s), rest), by.widened(c, rest)
     for _ in range(halvings):
-        s, c = times(times(s, c), constant(2)), plus(constant(1), times(times(s, s), constant(2)), -1)
+        s, c = by.times(by.times(s, c), by.constant((2 * ONE, 0))), by.plus(unity, by.times(by.times(s, s), by.constant((2 * ONE, 0))), -1)
     return s, c
 
 
@@ -612,77 +627,107 @@ def radius(Y0, Z1, curvature, distinct):
     raise NotProved(reason)
 
 
+class Swings:
+    """q'' + f(q) = 0, q'(0) = 0: -k^2 c_ik + mu f_ik = 0, and sum_k c_sk given where the condition is a place s among the coordinates, or
+    sum_i p_i c_i1 where it is a list of factors. One coordinate is one of several. Bounds about mu and X; B holds for the harmonics of the
+    block, and beyond it stands -1/k^2. Others are series of further letters of f."""
+
+    def __init__(self, forces, names, condition, B, harmonics, odd, mu, X, others={}):
+        self.forces, self.names, self.condition, self.B, self.mu, self.X, self.others = forces, names, condition, B, mu, X, others
+        self.count, self.N, self.step = range(len(names)), harmonics[-1], 2 if odd else 1
+        self.block = [(i, k) for i in self.count for k in harmonics]
+        parts = self.jets_of(X)
+        self.F, self.G = [part[0] for part in parts], [part[1] for part in parts]
+        demand(not any(u[1] for u in self.F) and not any(u[1] for row in self.G for u in row), "sines in a force along cosines")
+        self.of_start = B.column(0)
+        beyond = up(ONE + (self.of_start if any(map(self.felt, self.count)) else 0), (self.N + self.step) ** 2)
+        self.alpha = max([B.column(k) for k in range(1, B.size)] + [beyond])
+
+    def jets_of(self, X):
+        return [jets(f, {**self.others, **dict(zip(self.names, X))}, self.names) for f in self.forces]
+
+    def felt(self, i):                      # whether the condition feels the harmonics of a coordinate beyond the block
+        return self.condition == i
+
+    def sum_felt(self, balls):
+        return total(ball for (i, _), ball in balls.items() if self.felt(i))
+
+    def beyond(self, end, begin=0):
+        return [(i, k) for i in self.count for k in range(self.N + self.step, end + 1, self.step) if k >= begin]
+
+    def conditioned(self, lists):           # the left side of the condition
+        if isinstance(self.condition, int):
+            return total(lists[self.condition])
+        return total(mul(p, at(c, 1)) for p, c in zip(self.condition, lists))
+
+    def turned(self, start, left, end):
+        """The norm of B of what is left of the condition, and of the equations of the harmonics up to the end."""
+        y = {(i, k): over(left(i, k), k * k) for i, k in self.beyond(end)}
+        return self.B.norm(self.B.image([add(start, self.sum_felt(y))] + [left(i, k) for i, k in self.block])) + sum(map(size, y.values()))
+
+    def unseen(self, tails):                # the same of parts of mu f that are known by this norm
+        return part_of(self.alpha, tails)
+
+    def defect(self, A):                    # Y0
+        lists = [u[0] for u in self.X]
+        left = lambda i, k: add(mul(self.mu, at(self.F[i][0], k)), scale(at(lists[i], k), -k * k))
+        Y = self.turned(add(self.conditioned(lists), number(A), -1), left, max(len(u[0]) for u in self.X + self.F))
+        return Y + self.unseen(part_of(size(self.mu), sum(u[2] for u in self.F)))
+
+    def contraction(self):                  # Z1
+        B, F, G, N, step, count, mu, condition = self.B, self.F, self.G, self.N, self.step, self.count, self.mu, self.condition
+        places = {wave: n + 1 for n, wave in enumerate(self.block)}
+        halves = [[[over(g, 2) if k else g for k, g in enumerate(u[0])] for u in row] for row in G]
+
+        def M(row, column):
+            (i, k), (j, m) = row, column
+            h = halves[i][j]
+            return at(G[i][j][0], k) if m == 0 else at(h, m) if k == 0 else add(at(h, abs(k - m)), at(h, k + m))
+
+        L = max(len(u[0]) for row in G for u in row)
+        images = {(i, k): over(at(F[i][0], k), k * k) for i, k in self.beyond(max(len(u[0]) for u in F))}
+        column = B.norm(unit(B.image([self.sum_felt(images)] + [at(F[i][0], k) for i, k in self.block]), 0))
+        worst = B.per_sigma(column + sum(map(size, images.values())) + self.unseen(sum(u[2] for u in F)))
+        felt = [part_of(size(mu), ONE + (self.of_start if self.felt(i) else 0)) for i in count]
+        at_far = max(sum(part_of(felt[i], finite(G[i][j])) for i in count) for j in count)
+        m = 1 if step == 2 else 0
+        while True:
+            for wave in ((j, m) for j in count):
+                images = {row: over(mul(mu, M(row, wave)), row[1] ** 2) for row in self.beyond(m + L, m - L)}
+                start, tail = self.sum_felt(images), sum(map(size, images.values()))
+                if m > N + L:
+                    worst = max(worst, tail + part_of(self.of_start, size(start)))
+                    continue
+                if m <= N and self.felt(wave[0]):
+                    start = add(start, (ONE, 0))
+                elif m == 1 and not isinstance(condition, int):
+                    start = add(start, condition[wave[0]])
+                v = B.image([start] + [add(mul(mu, M(row, wave)), (-m * m * ONE if row == wave else 0, 0)) for row in self.block])
+                worst = max(worst, B.norm(unit(v, places[wave]) if wave in places else v) + tail)
+                demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
+            far = m + step - L              # all further columns together
+            if far > 0 and m > N + L:
+                rest = up(at_far, far * far)
+                if 5 * rest < ONE or rest < worst:
+                    worst = max(worst, rest)
+                    break
+            demand(m < 8000, "a force too steep for its columns to be bounded")
+            m += step
+        return worst + self.unseen(part_of(size(mu), max(sum(G[i][j][2] for i in count) for j in count)))
+
+    def curvature(self, R):                 # Z2
+        ball = self.jets_of([widened(u, R) for u in self.X])
+        first = max(sum(norm(df[j]) for _, df, _ in ball) for j in self.count)
+        second = max(sum(norm(ddf[j][m]) for _, _, ddf in ball) for j in self.count for m in self.count)
+        return part_of(self.alpha, max(self.B.per_sigma(first), part_of(size(self.mu) + self.B.per_sigma(R), second)))
+
+    def is_distinct(self, r):               # neither rest nor a shorter period is as near
+        return self.B.per_sigma(r) < self.mu[0] and r < max(least(at(u[0], 1)) for u in self.X)
+
+
 def prove_motion(forces, names, condition, A, B, harmonics, odd, mu, X):
-    """q'' + f(q) = 0, q'(0) = 0: -k^2 c_ik + mu f_ik = 0, and sum_k c_sk = A where the condition is a place s among the coordinates, or
-    sum_i p_i c_i1 = A where it is a list of factors. One coordinate is one of several."""
-    N, step, count = harmonics[-1], 2 if odd else 1, range(len(names))
-    jets_of = lambda X: [jets(f, dict(zip(names, X)), names) for f in forces]
-    parts = jets_of(X)
-    F, G = [part[0] for part in parts], [part[1] for part in parts]
-    demand(not any(u[1] for u in F) and not any(u[1] for row in G for u in row), "sines in a force along cosines")
-    block = [(i, k) for i in count for k in harmonics]
-    places = {wave: n + 1 for n, wave in enumerate(block)}
-    beyond = lambda end, begin=0: [(i, k) for i in count for k in range(N + step, end + 1, step) if k >= begin]
-    felt = lambda i: condition == i         # whether the condition feels the harmonics beyond the block
-    sum_felt = lambda balls: total(ball for (i, _), ball in balls.items() if felt(i))
-    bounded = lambda t, e: up(t * e, ONE)
-    a = B.column(0)
-    alpha = max([B.column(k) for k in range(1, B.size)] + [up(ONE + (a if any(map(felt, count)) else 0), (N + step) ** 2)])
-    length = lambda series: max(len(u[0]) for u in series)
-    bent = lambda i, k: mul(mu, at(F[i][0], k))
-    tails = sum(u[2] for u in F)
-    # Y0
-    y = {(i, k): add(at(X[i][0], k), over(bent(i, k), k * k), -1) for i, k in beyond(max(length(X), length(F)))}
-    own = total(X[condition][0]) if isinstance(condition, int) else total(mul(p, at(u[0], 1)) for p, u in zip(condition, X))
-    start = add(add(own, number(A), -1), sum_felt(y), -1)
-    rows = [add(bent(i, k), scale(at(X[i][0], k), -k * k)) for i, k in block]
-    Y0 = B.norm(B.image([start] + rows)) + sum(map(size, y.values())) + bounded(alpha, bounded(size(mu), tails))
-    # Z1
-    halves = [[[over(g, 2) if k else g for k, g in enumerate(u[0])] for u in row] for row in G]
-
-    def M(row, column):
-        (i, k), (j, m) = row, column
-        h = halves[i][j]
-        return at(G[i][j][0], k) if m == 0 else at(h, m) if k == 0 else add(at(h, abs(k - m)), at(h, k + m))
-
-    L = max(length(row) for row in G)
-    images = {(i, k): over(at(F[i][0], k), k * k) for i, k in beyond(length(F))}
-    column = B.norm(unit(B.image([sum_felt(images)] + [at(F[i][0], k) for i, k in block]), 0))
-    worst = B.per_sigma(column + sum(map(size, images.values())) + bounded(alpha, tails))
-    at_far = max(sum(bounded(bounded(size(mu), ONE + (a if felt(i) else 0)), sum(map(size, G[i][j][0]))) for i in count) for j in count)
-    m = harmonics[0]
-    while True:
-        for wave in ((j, m) for j in count):
-            images = {row: over(mul(mu, M(row, wave)), row[1] ** 2) for row in beyond(m + L, m - L)}
-            start, tail = sum_felt(images), sum(map(size, images.values()))
-            if m > N + L:
-                worst = max(worst, tail + bounded(a, size(start)))
-                continue
-            if m <= N and felt(wave[0]):
-                start = add(start, (ONE, 0))
-            elif m == 1 and not isinstance(condition, int):
-                start = add(start, condition[wave[0]])
-            v = B.image([start] + [add(mul(mu, M(row, wave)), (-m * m * ONE if row == wave else 0, 0)) for row in block])
-            worst = max(worst, B.norm(unit(v, places[wave]) if wave in places else v) + tail)
-            demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
-        far = m + step - L                  # all further columns together
-        if far > 0 and m > N + L:
-            rest = up(at_far, far * far)
-            if 5 * rest < ONE or rest < worst:
-                worst = max(worst, rest)
-                break
-        demand(m < 8000, "a force too steep for its columns to be bounded")
-        m += step
-    Z1 = worst + bounded(alpha, bounded(size(mu), max(sum(G[i][j][2] for i in count) for j in count)))
-
-    def curvature(R):
-        ball = jets_of([widened(u, R) for u in X])
-        first = max(sum(norm(df[j]) for _, df, _ in ball) for j in count)
-        second = max(sum(norm(ddf[j][m]) for _, _, ddf in ball) for j in count for m in count)
-        return bounded(alpha, max(B.per_sigma(first), bounded(size(mu) + B.per_sigma(R), second)))
-
-    largest_first = max(least(at(u[0], 1)) for u in X)
-    return radius(Y0, Z1, curvature, lambda r: B.per_sigma(r) < mu[0] and r < largest_first)
+    swings = Swings(forces, names, condition, B, harmonics, odd, mu, X)
+    return radius(swings.defect(A), swings.contraction(), swings.curvature, swings.is_distinct)
 
 
 def wave_of(X, wave):                       # the coefficient of a cosine or sine, kind 0 or 1, of a coordinate
@@ -981,10 +1026,6 @@ def reach(x):                               # of a positive fraction, rounded up
 
 def enlarged(a, r):
     return a[0], a[1] + r
-
-
-def part_of(r, s):                          # of what is known by norms: the product, rounded up
-    return up(r * s, ONE)
 
 
 class Family:
@@ -1783,15 +1824,437 @@ def contact_of(text):
     return n, c
 
 
+# Sheets (rows, tail): the functions sum c_kn cos(k theta) cos(n phi) + h of two angles, rows[k][n] = c_kn in units of 2^-Q, where |h| in the
+# norm by theta is at most tail for each phi.
+
+Q = 80
+
+
+def sheet_of(ball):
+    return [[ball[0] >> P - Q]], up(ball[1], 1 << P - Q) + 1
+
+
+def sheet_plus(u, v, sign=1):
+    join = lambda a, b: [m + sign * n for m, n in itertools.zip_longest(a, b, fillvalue=0)]
+    return cleared([join(a, b) for a, b in itertools.zip_longest(u[0], v[0], fillvalue=[])], u[1] + v[1])
+
+
+def cleared(rows, tail):                    # what is negligible is a part of the tail
+    negligible = 1 << 14
+    tail += sum(abs(m) for row in rows for m in row if abs(m) < negligible)
+    rows = [[m if abs(m) >= negligible else 0 for m in row] for row in rows]
+    for part in rows + [rows]:
+        while part and not part[-1]:
+            part.pop()
+    return rows, tail
+
+
+def sheet_finite(u):
+    return sum(abs(m) for row in u[0] for m in row)
+
+
+def sheet_norm(u):
+    return sheet_finite(u) + u[1]
+
+
+def sheet_shrunk(u, n):                     # by a positive integer
+    rows = [[m // n for m in row] for row in u[0]]
+    return cleared(rows, up(u[1], n) + sum(map(len, rows)))
+
+
+def sheet_times(u, v):
+    """Of polynomials in exp(i theta) and exp(i phi), all coefficients of each in one integer."""
+    in_time()
+    tail = up(u[1] * sheet_norm(v) + v[1] * sheet_finite(u), 1 << Q)
+    if not u[0] or not v[0]:
+        return [], tail
+    heights, widths = [len(f[0]) - 1 for f in (u, v)], [max(map(len, f[0])) - 1 for f in (u, v)]
+    # Where all harmonics are odd or all are even, every other one.
+    is_sparse = all(not row or (height - k) % 2 == 0 for f, height in zip((u, v), heights) for k, row in enumerate(f[0]))
+    height, step, width = sum(heights), 2 if is_sparse else 1, 2 * sum(widths) + 1
+    most = math.prod(max(map(abs, itertools.chain(*f[0]))) for f in (u, v))
+    octets = (most.bit_length() + ((2 * height + 1) * width).bit_length() + 6) // 8 + 1
+
+    def packed(f, own):
+        numbers = []
+        for k in range(-own, own + 1, step):
+            row = [m * (1 if k else 2) * (1 if n else 2) for n, m in enumerate(f[0][abs(k)])]
+            row += [0] * ((width + 1) // 2 - len(row))
+            numbers += row[:0:-1] + row
+        signed = lambda sign: int.from_bytes(b"".join(max(0, sign * m).to_bytes(octets, "little") for m in numbers), "little")
+        return signed(1) - signed(-1)
+
+    # A row of the product is twice as wide as its entries, whose places those of the next ones do not reach.
+    count, half = (2 * height // step + 2) * width, 1 << 8 * octets - 1
+    shifted = packed(u, heights[0]) * packed(v, heights[1]) + int.from_bytes(half.to_bytes(octets, "little") * count, "little")
+    text, rows = shifted.to_bytes(octets * count + 1, "little"), []
+    for k in range(height + 1):
+        places = range((height + k) // step * width + width - 1, (height + k) // step * width + width + sum(widths))
+        numbers = [int.from_bytes(text[octets * place:octets * (place + 1)], "little") - half for place in places] if (height - k) % step == 0 else []
+        rows.append([m >> Q + 4 - (k > 0) - (n > 0) for n, m in enumerate(numbers)])
+    return cleared(rows, tail + sum(map(len, rows)))
+
+
+def sheet_without_constant(u):
+    if not u[0] or not u[0][0]:
+        return ZERO, u
+    return (u[0][0][0] << P - Q, 0), ([[0] + u[0][0][1:]] + u[0][1:], u[1])
+
+
+SHEETS = Operations(1 << Q, sheet_of, sheet_plus, sheet_times, sheet_shrunk, lambda u, r: (u[0], u[1] + r), sheet_norm, sheet_without_constant)
+
+
+def on_sheet(tree, letters, known):         # equal parts are one
+    key, kind, by = repr(tree), tree[0], SHEETS
+    if key in known:
+        return known[key]
+    if kind in ("number", "letter"):
+        value = letters[tree[1]] if kind == "letter" else sheet_of(number(tree[1]))
+    elif kind in "+*":
+        value = functools.reduce(by.plus if kind == "+" else by.times, (on_sheet(part, letters, known) for part in tree[1]))
+    elif kind == "^":
+        base, value = on_sheet(tree[1], letters, known), sheet_of((ONE, 0))
+        for bit in bin(tree[2])[2:]:
+            value = by.times(value, value)
+            value = by.times(value, base) if bit == "1" else value
+    elif kind == "exp":
+        value = exponential_of(on_sheet(tree[1], letters, known), by)
+    else:
+        value = sine_and_cosine(on_sheet(tree[1], letters, known), by)[kind == "cos"]
+    known[key] = value
+    return value
+
+
+# Normal modes q = a v: v'' + mu f(a v)/a = 0 on pieces of the range of amplitudes.
+
+def by_degrees(tree, names):
+    """Of a polynomial its homogeneous parts, by their degrees, with differences as they stand; None of other functions."""
+    kind = tree[0]
+    if kind in ("number", "letter"):
+        return {1 if kind == "letter" and tree[1] in names else 0: tree}
+    if kind not in "+*^":
+        return None
+    parts = [by_degrees(part, names) for part in tree[1]] if kind in "+*" else [by_degrees(tree[1], names)]
+    if None in parts:
+        return None
+    if kind == "+":
+        degrees = sorted({degree for part in parts for degree in part})
+        return {degree: ("+", [part[degree] for part in parts if degree in part]) for degree in degrees}
+    if kind == "^":
+        if len(parts[0]) == 1:
+            return {degree * tree[2]: ("^", part, tree[2]) for degree, part in parts[0].items()}
+        parts *= tree[2]
+    product = {0: ("number", Fraction(1))}
+    for part in parts:
+        demand(len(product) * len(part) <= 400, "a force that is written with too many sums in products")
+        terms = {}
+        for (m, one), (n, other) in itertools.product(product.items(), part.items()):
+            terms.setdefault(m + n, []).append(("*", [one, other]))
+        product = {degree: ("+", some) if len(some) > 1 else some[0] for degree, some in terms.items()}
+    return product
+
+
+def over_amplitude(force, names, a, reciprocal):
+    """f(a v)/a: of a polynomial without the reciprocal."""
+    degrees = by_degrees(force, names)
+    if degrees is None:
+        scaled = lambda tree: (tree[0], *(list(map(scaled, part)) if isinstance(part, list) else scaled(part) if isinstance(part, tuple) else part
+                                          for part in tree[1:])) if tree[0] != "letter" else ("*", [("letter", a), tree])
+        return ("*", [("letter", reciprocal), scaled(force)])
+    return ("+", [("*", [("^", ("letter", a), degree - 1), part]) for degree, part in degrees.items() if degree])
+
+
+def sampled(tree, lists, count):            # in floating point
+    kind = tree[0]
+    if kind == "number":
+        return [float(tree[1])] * count
+    if kind == "letter":
+        return lists[tree[1]]
+    if kind in "+*":
+        parts = [sampled(part, lists, count) for part in tree[1]]
+        return list(map(sum, zip(*parts))) if kind == "+" else list(map(math.prod, zip(*parts)))
+    inner = sampled(tree[1], lists, count)
+    return [x ** tree[2] for x in inner] if kind == "^" else list(map(getattr(math, kind), inner))
+
+
+def inverse_nearly(rows):                   # by elimination with the largest pivot, in floating point
+    n = len(rows)
+    rows = [list(row) + [float(i == j) for j in range(n)] for i, row in enumerate(rows)]
+    for k in range(n):
+        in_time()
+        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[best] = rows[best], rows[k]
+        demand(rows[k][k] != 0, "a derivative without an inverse")
+        own = rows[k] = [x / rows[k][k] for x in rows[k]]
+        for i, row in enumerate(rows):
+            if i != k and row[k]:
+                factor = row[k]
+                rows[i] = [x - factor * y for x, y in zip(row, own)]
+    return [row[n:] for row in rows]
+
+
+class ModeNearly:
+    """Newton's steps for mu and the harmonics of v up to the last one, in floating point. No bound depends on them."""
+
+    def __init__(self, forces, names, a, reciprocal, condition, odd, last):
+        self.forces, self.names, self.a, self.reciprocal, self.condition = forces, names, a, reciprocal, condition
+        self.slopes = [[slope(force, name) for name in names] for force in forces]
+        self.last, self.step, self.first = last, 2 if odd else 1, 1 if odd else 0
+        self.harmonics = range(self.first, last + 1, self.step)
+        self.waves = [(i, k) for i in range(len(names)) for k in self.harmonics]
+        self.samples = last + 1 if odd else 2 * (last + 1)
+        angles = [(math.pi / 2 if odd else math.pi) * (j + 0.5) / self.samples for j in range(self.samples)]
+        self.cosines = [[math.cos(k * angle) for angle in angles] for k in range(2 * last + 1)]
+        self.inverse = None
+
+    def letters(self, u, v):
+        n, lists = len(self.harmonics), {self.a: [v] * self.samples, self.reciprocal: [1 / v if v else 0.0] * self.samples}
+        by_angle = list(zip(*(self.cosines[k] for k in self.harmonics)))
+        for i, name in enumerate(self.names):
+            own = u[1 + i * n:1 + (i + 1) * n]
+            lists[name] = [sum(map(product_of, own, waves)) for waves in by_angle]
+        return lists
+
+    def harmonic(self, values, k):
+        return sum(map(product_of, values, self.cosines[k])) * (2 if k else 1) / self.samples
+
+    def conditioned(self, wave):            # the derivative of the condition
+        i, k = wave
+        return float(self.condition == i) if isinstance(self.condition, int) else float(Fraction(self.condition[i][0], ONE)) if k == 1 else 0.0
+
+    def left(self, u, v):
+        forces = [sampled(force, self.letters(u, v), self.samples) for force in self.forces]
+        off = sum(self.conditioned(wave) * c for wave, c in zip(self.waves, u[1:])) - 1
+        return [off] + [u[0] * self.harmonic(forces[i], k) - k * k * c for (i, k), c in zip(self.waves, u[1:])]
+
+    def derivative(self, u, v, last):       # on the harmonics up to a last one, and the largest sum of norms of slopes
+        lists, waves = self.letters(u, v), [(i, k) for i, k in self.waves if k <= last]
+        forces = [sampled(force, lists, self.samples) for force in self.forces]
+        halves = [[[self.harmonic(values, k) / (2 if k else 1) for k in range(2 * last + 1)] for values in (sampled(s, lists, self.samples) for s in row)]
+                  for row in self.slopes]
+        entry = lambda h, k, m: (2 if k else 1) * h[k] if m == 0 else h[m] if k == 0 else h[abs(k - m)] + h[k + m]
+        rows = [[0.0] + [self.conditioned(wave) for wave in waves]]
+        for i, k in waves:
+            rows.append([self.harmonic(forces[i], k)] + [u[0] * entry(halves[i][j], k, m) - (k * k if (i, k) == (j, m) else 0) for j, m in waves])
+        places = range(len(self.names))
+        return rows, max(sum(2 * sum(map(abs, halves[i][j])) for i in places) for j in places)
+
+    def solved(self, u, v):
+        before = math.inf
+        for _ in range(40):
+            left = self.left(u, v)
+            if self.inverse is None:
+                self.inverse = inverse_nearly(self.derivative(u, v, self.last)[0])
+            step = [sum(map(product_of, row, left)) for row in self.inverse]
+            size = sum(map(abs, step))
+            if size > before / 4 and size > 1e-11:
+                self.inverse = None if before < math.inf else self.inverse
+            if not size < 1e3 or size >= before and size < 1e-11:
+                break
+            u, before = [x - y for x, y in zip(u, step)], size
+            if size < 1e-15:
+                break
+        demand(before < 1e-11, "no motion is found")
+        return u
+
+
+class ModeBranch:
+    """The motions of a mode, one for each amplitude of a range.
+
+    On a piece v = middle + half cos(phi) let z(phi) be an approximation, of mu and v, and z_0 its mean. Z1 and Z2 are those of Swings about z_0,
+    for all amplitudes of the piece. If Z = Z1 + Z2 R < 1, 1 - B F contracts on the ball of radius R about z_0, which holds one motion at most,
+    and holds it within s = max ||B F(z)||/(1 - Z) of z where all that is near z is in the ball. At its end each piece has the motion of the
+    next one in its ball, and the first one all that is near to the numbers of the file."""
+
+    def __init__(self, forces, names, name, condition, odd, low, mu, lists):
+        self.names, self.name, self.condition, self.odd, self.reciprocal = names, name, condition, odd, "1/" + name
+        self.forces = [over_amplitude(force, names, name, self.reciprocal) for force in forces]
+        self.is_polynomial = all(by_degrees(force, names) is not None for force in forces)
+        self.named, self.end, self.last = (number(mu), [list(map(number, c)) for c in lists]), None, 0
+        self.waves = [(i, k) for i, c in enumerate(lists) for k in range(len(c))]
+        self.known = [(float(low), [float(mu)] + [float(a) for c in lists for a in c])]    # motions at places before, nearly
+        self.fit(max([7] + [len(c) - 1 | 1 for c in lists]))
+
+    def fit(self, last):                    # to harmonics up to this one
+        demand(last <= 63, "motions with more than 63 harmonics")
+        self.nearly = ModeNearly(self.forces, self.names, self.name, self.reciprocal, self.condition, self.odd, last)
+        put = lambda u: [u[0]] + [dict(zip(self.waves, u[1:])).get(wave, 0.0) for wave in self.nearly.waves]
+        self.known, self.waves, self.last = [(v, put(u)) for v, u in self.known], self.nearly.waves, last
+
+    def solved(self, known, v):             # from what the last motions lead to
+        last = known[-3:]
+        weight = lambda own: math.prod((v - other) / (own - other) for other, _ in last if other != own)
+        return self.nearly.solved([sum(terms) for terms in zip(*([weight(own) * a for a in u] for own, u in last))], v)
+
+    def approximate(self, middle, half):
+        """mu, the harmonics of all coordinates, and the root of mu, as sheets."""
+        angles = [math.pi * (j + 0.5) / PLACES for j in range(PLACES)]
+        while True:
+            known = list(self.known)
+            for angle in reversed(angles):
+                v = float(middle) + float(half) * math.cos(angle)
+                known.append((v, self.solved(known, v)))
+            found = [u for _, u in known[:-PLACES - 1:-1]]
+            if all(abs(c) < 1e-13 for u in found for (_, k), c in zip(self.waves, u[1:]) if k > self.last - self.nearly.step):
+                break
+            self.fit(self.last + 8)
+
+        def series(values):                 # by cos(n phi)
+            coefficients = (sum(a * math.cos(n * angle) for a, angle in zip(values, angles)) * (2 if n else 1) / PLACES for n in range(PLACES))
+            return [round(c * 2.0 ** 60) << Q - 60 for c in coefficients]
+
+        rows = [series(values) for values in zip(*found)]
+        demand(min(u[0] for u in found) > 0, "a frequency without a value")
+        harmonics = [[[] for _ in range(self.last + 1)] for _ in self.names]
+        for (i, k), row in zip(self.waves, rows[1:]):
+            harmonics[i][k] = row
+        exactly = lambda rows: (cleared(rows, 0)[0], 0)
+        return exactly([rows[0]]), [exactly(own) for own in harmonics], exactly([series([math.sqrt(u[0]) for u in found])]), known
+
+    def swings(self, middle, half, mu, X):
+        """About the means of mu and X, for all amplitudes of the piece."""
+        mean = lambda row: row[0] if row else 0
+        mu, X = mean(mu[0][0]) << P - Q, [[(mean(row) << P - Q, 0) for row in u[0]] for u in X]
+        u, v = [mu / ONE] + [at(X[i], k)[0] / ONE for i, k in self.waves], float(middle)
+        rows, stiffness = self.nearly.derivative(u, v, self.last)
+        N = min(max(3, math.ceil(math.sqrt(10 * u[0] * stiffness))) | 1, self.last)
+        kept = [0] + [1 + n for n, (_, k) in enumerate(self.waves) if k <= N]
+        inverse = inverse_nearly([[rows[n][m] for m in kept] for n in kept])
+        sigma = Fraction(2) ** max(-20, min(20, round(-math.log2(u[0]))))
+        B = Block([[round(a * 2.0 ** 60) for a in row] for row in inverse], 60, sigma)
+        ball = enlarged(number(middle), reach(half))
+        others = {self.name: ([ball], [], 0)}
+        if not self.is_polynomial:
+            others[self.reciprocal] = [quotient((ONE, 0), ball)], [], 0
+        harmonics = [k for k in self.nearly.harmonics if k <= N]
+        return Swings(self.forces, self.names, self.condition, B, harmonics, self.odd, (mu, 0), [trimmed(c, [], 0) for c in X], others)
+
+    def defect(self, swings, middle, half, mu, X):
+        c, h, way = number(middle), number(half), ([[0, 1 << Q]], 0)
+        letters = {**dict(zip(self.names, X)), self.name: sheet_plus(sheet_of(c), sheet_times(sheet_of(h), way))}
+        if not self.is_polynomial:
+            # 1/(c + h cos(phi)) = (1 + 2 sum (-rho)^n cos(n phi))/q, q^2 = c^2 - h^2, rho = (c - q)/h.
+            q = root(add(mul(c, c), mul(h, h), -1))
+            term, rho, reciprocal, n = quotient((ONE, 0), q), quotient(add(c, q, -1), h), ([], 0), 0
+            while size(term) << 72 > ONE:
+                in_time()
+                own = sheet_of(scale(term, 2 if n else 1))
+                reciprocal, term, n = sheet_plus(reciprocal, ([[0] * n + own[0][0]], own[1])), scale(mul(term, rho), -1), n + 1
+            left = up(2 * size(term) * ONE, ONE - size(rho))
+            letters[self.reciprocal] = reciprocal[0], reciprocal[1] + up(left, 1 << P - Q)
+        known = {}
+        bent = [sheet_times(mu, on_sheet(force, letters, known)) for force in self.forces]
+        entry = lambda u, k, n: ((u[0][k][n] << P - Q) if k < len(u[0]) and n < len(u[0][k]) else 0, 0)
+        end, Y = max(len(u[0]) for u in X + bent), 0
+        for n in range(max(len(row) for u in X + bent for row in u[0])):
+            condition = swings.conditioned([[entry(u, k, n) for k in range(len(u[0]))] for u in X])
+            Y += swings.turned(add(condition, (0 if n else ONE, 0), -1), lambda i, k: add(entry(bent[i], k, n), scale(entry(X[i], k, n), -k * k)), end)
+        return Y + swings.unseen(sum(u[1] for u in bent) << P - Q)
+
+    def piece(self, low, high):
+        middle, half = (low + high) / 2, (high - low) / 2
+        mu, X, root_of_mu, known = self.approximate(middle, half)
+        swings = self.swings(middle, half, mu, X)
+        weight = swings.B.sigma
+        weighed = lambda of_mu, of_motion, by=weight: up(of_mu * by.numerator, by.denominator) + of_motion
+        beside = lambda u: sum(abs(m) for row in u[0] for m in row[1:]) << P - Q
+        spread = weighed(beside(mu), sum(map(beside, X)))
+        heavier = max(1, math.ceil(weight))
+        R = up(65 * spread, 64) + (heavier * ONE >> 18)
+        demand(swings.is_distinct(R), "the radius is too large")
+        turned = part_of(swings.curvature(R), R)
+        demand(turned < ONE, "Z2 R is not below 1")
+        Z = swings.contraction() + turned
+        demand(Z < ONE, "Z1 + Z2 R is not below 1")
+        s = up(self.defect(swings, middle, half, mu, X) * ONE, ONE - Z)
+        demand(spread + s <= R and s << 33 < ONE, f"B F is not small, but {s / ONE:.3g}")
+        # This branch is that of the piece before, or of the file.
+        ends = [[[sum(sign ** n * m for n, m in enumerate(row)) << P - Q for row in u[0]] for u in [mu] + X] for sign in (-1, 1)]
+        balls = lambda end: ((end[0][0], 0), [[(m, 0) for m in c] for c in end[1:]])
+        apart = lambda one, other: (size(add(one[0], other[0], -1)), sum(size(add(at(c, k), at(d, k), -1)) for c, d in zip(one[1], other[1])
+                                                                          for k in range(max(len(c), len(d)))))
+        mean = (swings.mu, [u[0] for u in swings.X])
+        left_out = sum(u[2] for u in swings.X)
+        if self.end is None:
+            near = ONE >> 20
+            if sum(apart(self.named, balls(ends[0]))) + s + swings.B.per_sigma(s) > near:
+                raise Settled("the motion at the lower end of the range is not that of mu and c in mode")
+            demand(weighed(*apart(self.named, mean)) + left_out + heavier * near <= R, "another motion may be as near to mu and c in mode")
+        else:
+            before, own, own_weight = self.end
+            demand(weighed(*apart(before, mean)) + left_out + math.ceil(max(Fraction(1), weight / own_weight) * own) <= R, "the pieces do not join")
+        # |1/omega - w| = |mu - w^2|/(1/omega + w).
+        w = root_of_mu[0][0]
+        lowest = w[0] - sum(map(abs, w[1:])) << P - Q
+        demand(lowest > 0, "a frequency without a value")
+        off = (sheet_norm(sheet_plus(sheet_times(root_of_mu, root_of_mu), mu, -1)) << P - Q) + swings.B.per_sigma(s)
+        return (middle, half, by_powers(w), up(off * ONE, lowest)), (balls(ends[1]), s, weight), known[-3:], Z / ONE
+
+    def pieces(self, low, high, spoken):
+        steps = 1 << 14
+        place, width = 0, steps // 8
+        while place < steps:
+            in_time()
+            end = min(place + width, steps)
+            try:
+                piece, self.end, self.known, Z = self.piece(*(low + (high - low) * Fraction(n, steps) for n in (place, end)))
+            except Settled:
+                raise
+            except (NotProved, OverflowError, ZeroDivisionError, ValueError) as error:
+                width = (end - place) * 2 // 3
+                if width == 0:
+                    raise Settled(f"at {spoken(low + (high - low) * Fraction(place, steps))} no single motion of the mode is proved: {error}")
+                continue
+            yield piece
+            place, width = end, max(1, int(width * min(1.4, 0.8 / Z)))
+
+
+PLACES = 20                                 # on each piece
+
+
+def by_powers(w):                           # of a cosine series in phi, of e = cos(phi)
+    one, next_one, powers = [1], [0, 1], [0] * max(len(w), 2)
+    for a in w:
+        for n, m in enumerate(one):
+            powers[n] += a * m
+        one, next_one = next_one, [2 * m - n for m, n in itertools.zip_longest([0] + next_one, one, fillvalue=0)]
+    return [(m << P - Q, 0) for m in powers]
+
+
+def branch_of(z, name, low):
+    """The mode of a law."""
+    mode = z["mode"]
+    keys(mode, {"coordinates", "f", "start_of", "first_harmonic_of", "mu", "c"}, set(), "mode")
+    lists = mode["c"]
+    demand(isinstance(lists, list) and 0 < len(lists) <= SIZES["coordinates"], "the number of coordinates")
+    demand(all(isinstance(c, list) and 0 < len(c) <= 64 for c in lists), "at most 64 harmonics in c")
+    lists = [[signed_claim(a, "c") for a in c] for c in lists]
+    amplitude = {"value": "1", "start_of": mode["start_of"], "first_harmonic_of": mode["first_harmonic_of"]}
+    names, forces, condition, _ = read_mode({**mode, "amplitude": amplitude}, len(lists))
+    demand(name not in names, "a variable with the name of a coordinate")
+    demand(all(at_zero(force) == 0 for force in forces), "a force that is not zero where all coordinates are")
+    mu = signed_claim(mode["mu"], "mu")
+    demand(mu > 0, "a frequency without a value")
+    odd = all(a == 0 for c in lists for a in c[::2]) and all(parity(force, set(names)) in (-1, None) for force in forces)
+    return ModeBranch(forces, names, name, condition, odd, low, mu, lists)
+
+
+def signed_claim(text, what):               # a decimal or a fraction
+    if isinstance(text, str) and "/" in text:
+        return fraction(text, what)
+    return -claim(text[1:], what) if isinstance(text, str) and text.startswith("-") else claim(text, what)
+
+
 def check_law(z):
     global smallest
-    smallest = ONE >> 80                    # many short series
-    keys(z, {"schema", "ode", "f", "variable", "start", "quantity", "law", "from", "to", "worst", "error"}, {"mass"}, "the file")
+    is_contact, is_mode = z["ode"] == CONTACT, z["ode"] == LAW_OF_MODE
+    smallest = ONE >> (30 if is_mode else 80)    # many short series; of modes what follows from them need not be sharp
+    keys(z, {"schema", "ode", "f", "variable", "start", "quantity", "law", "from", "to", "worst", "error"}, {"mass", "mode"}, "the file")
     demand(z.get("mass") is None, "a mass that depends on the position is beyond this program")
     name = of_form("[A-Za-z_][A-Za-z0-9_]*", z["variable"], "a name in variable")
-    is_contact = z["ode"] == CONTACT
     demand(name not in FUNCTIONS + ("x", "pi") + (("e",) if is_contact else ()), "a variable with the name of something else")
-    demand(isinstance(z["f"], str) and isinstance(z["law"], str), "a text in f and in law")
+    demand(isinstance(z["law"], str) and (z["f"] is None if is_mode else isinstance(z["f"], str)), "a text in f and in law")
+    demand((z.get("mode") is not None) == is_mode, "a mode")
     law = steps_of(parse(z["law"], {name, "e"} if is_contact else {name}, True))
     start = None if z["start"] == "variable" else fraction(z["start"], "start")
     demand(start is None or start > 0, "a start that is not positive")
@@ -1815,6 +2278,12 @@ def check_law(z):
         there = Touch(r_low, r_high, {name: (number(worst), None), "e": (e, None)})
         ends = near.place(low)[0], near.place(high)[1]
         ranges = [(near, *ends, 0, lambda *ends: Touch(*ends, near.letters(*ends)), lambda r: near.speed(r))]
+    elif is_mode:
+        demand(start is None, "a start that is not the variable")
+        demand(high is not None, "an amplitude that goes to infinity in to")
+        near, there = branch_of(z, name, low), Interval(worst, worst, False)
+        demand(low > 0 or near.is_polynomial, "a range from rest, of forces that are no polynomials: beyond this program")
+        ranges = [(near, low, high, 0, near_and_far(False), lambda v: v)]
     else:
         force = parse(z["f"], {"x", name})
         demand(start is not None or not has_letter(force, name), "a force that contains the amplitude")
@@ -1826,20 +2295,28 @@ def check_law(z):
             ranges = [(near, low, Fraction(1), 0, near_and_far(False), lambda v: v)] if low < 1 else []
             far = family_of(far, name, start), Fraction(0), 1 / max(low, Fraction(1))
             ranges.append((*far, growth, near_and_far(True), lambda v: 1 / v if v else None))
+    def hold_below(truth):
+        below = least(add(over_truth(law, there, (truth, None), n, 0)[0], (ONE, 0), -1))
+        demand(Fraction(below, ONE) >= claimed[0], f"at {name} = {worst} the error is not as large as claimed")
+        return below
+
     # From below, at one place.
-    try:
-        truth = near.inverse_frequency(r if is_contact else number(worst)), None
-    except Settled:
-        raise
-    except NotProved as error:
-        raise NotProved(f"at {name} = {decimal_of(worst)} in worst the truth of f is not enclosed: {error}")
-    below = least(add(over_truth(law, there, truth, n, 0)[0], (ONE, 0), -1))
-    demand(Fraction(below, ONE) >= claimed[0], f"at {name} = {worst} the error is not as large as claimed")
+    if not is_mode:
+        try:
+            truth = near.inverse_frequency(r if is_contact else number(worst))
+        except Settled:
+            raise
+        except NotProved as error:
+            raise NotProved(f"at {name} = {decimal_of(worst)} in worst the truth of f is not enclosed: {error}")
+        below = hold_below(truth)
     # From above, everywhere.
     above, most = 0, min(units(claimed[1]), 1000 * ONE)
     for family, begin, end, growth, interval, variable_of in ranges:
         spoken = lambda v: f"{name} = {'infinity' if variable_of(v) is None else decimal_of(variable_of(v))}"
         for piece in family.pieces(begin, end, spoken):
+            middle, half, coefficients, remainder = piece
+            if is_mode and abs(worst - middle) <= half:
+                below = hold_below(enlarged(on_polynomial(coefficients, None, number((worst - middle) / half), False)[0], remainder))
             above = max(above, largest_on(piece, law, n, growth, interval, most, spoken))
     return {"law": f"{z['quantity']} = {z['law']}", "range": [z["from"], z["to"]], "largest_error": [decimal(below), decimal(above, 1)]}
 
@@ -1853,9 +2330,8 @@ def check(text):
     z = json.loads(text, object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number,
                    parse_int=lambda digits: int(digits) if len(digits) <= 20 else no_number(digits))
     demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1", "another schema")
-    if z.get("ode") in (LAW, CONTACT):
+    if z.get("ode") in (LAW, CONTACT, LAW_OF_MODE):
         return check_law(z)
-    demand(z.get("ode") != LAW_OF_MODE, "the law of a normal mode on a range is beyond this program: lindstedt check proves it again")
     demand(z.get("nu") == "1", "another schema")
     z = with_names_in_words(z)
     kind = z.get("ode")

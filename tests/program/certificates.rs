@@ -487,6 +487,82 @@ fn both_programs_prove_laws_on_ranges() {
     }
 }
 
+/// Laws of normal modes on a range of their amplitude are proved by both programs, and by neither with a smaller
+/// error, another branch, a longer range or another law.
+#[test]
+fn both_programs_prove_laws_of_normal_modes() {
+    let Some(python) = python() else {
+        eprintln!("python3 is not here: the second program was not run");
+        return;
+    };
+    let folder = folder("laws-of-modes");
+    let cubic = "x'' + 2*x - y + x^3 = 0; y'' + 2*y - x + y^3 = 0";
+    let chain = "x'' + 2*x - y + x^3 + (x - y)^3 = 0; \
+                 y'' + 2*y - x - z + (y - x)^3 + (y - z)^3 = 0; \
+                 z'' + 2*z - y + z^3 + (z - y)^3 = 0";
+    let pendulums = "x'' + sin(x) + (x - y)/3 = 0; y'' + 2*sin(y) + (y - x)/3 = 0";
+    let uneven = "x'' + 2*x - y + x^2/5 + x^3/2 = 0; 2*y'' + 3*y - x + y^2/7 = 0";
+    let questions = [
+        (cubic, "1", "a=0:1", "first-harmonic"),
+        (cubic, "2", "a=0:1", "first-harmonic"),
+        (chain, "1", "a=0:1", "first-harmonic"),
+        (pendulums, "1", "A=1/2:1", "initial"),
+        (uneven, "2", "a=0:1/5", "first-harmonic"),
+    ];
+    let documents = questions.map(|(equations, mode, range, amplitude)| {
+        let question = ["shortest", equations, "--mode", mode, "--range", range];
+        let more = ["--amplitude", amplitude, "--longest", "8", "--certificate"];
+        let output = run(&[&question[..], &more, &["--format", "json"]].concat());
+        serde_json::from_slice::<Value>(&output.stdout).expect("JSON")
+    });
+    let file = folder.join("law.json");
+    let reasons = |document: &Value| {
+        std::fs::write(&file, document.to_string()).expect("a file");
+        let own = run(&["check", file.to_str().expect("a path in text")]);
+        let program = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/check_certificate.py");
+        let second = Command::new(&python).args(["-I", "-S", program]).arg(&file).output();
+        let second = second.expect("Python starts");
+        let errors = String::from_utf8_lossy(&second.stderr).into_owned();
+        assert!(second.status.success() || errors.starts_with("not proved: "), "{errors}");
+        [!own.status.success(), !second.status.success()].map(|fails| fails.then(|| errors.clone()))
+    };
+    for (document, question) in documents.iter().zip(questions) {
+        assert_eq!(reasons(document), [None, None], "{question:?}");
+    }
+    let refused = |document: &Value, change: &dyn Fn(&mut Value), reason: &str| {
+        let mut changed = document.clone();
+        change(&mut changed);
+        let [own, second] = reasons(&changed);
+        assert!(own.is_some(), "`check` proves another one: {reason}");
+        let second = second.unwrap_or_default();
+        assert!(second.contains(reason), "{second} instead of {reason}");
+    };
+    let [first, second, ..] = &documents;
+    for document in [first, second] {
+        let [lower, upper] = [0, 1].map(|which| document["error"][which].clone());
+        refused(document, &|law| law["error"][1] = lower.clone(), "the error is above its bound");
+        refused(document, &|law| law["error"][0] = upper.clone(), "not as large as claimed");
+        refused(document, &|law| law["to"] = json!("11/10"), "error");
+        let more = format!("{} + a^8/50", document["law"].as_str().expect("a law"));
+        refused(document, &|law| law["law"] = json!(more), "error");
+        // A law that is off at one place alone.
+        let hidden =
+            format!("{} + exp(-(5*(a - 1/3))^2)/10", document["law"].as_str().expect("a law"));
+        refused(document, &|law| law["law"] = json!(hidden), "error");
+        let moved = "the motion at the lower end";
+        refused(document, &|law| law["mode"]["mu"] = json!("0.9999"), moved);
+        refused(document, &|law| law["mode"]["c"][1][1] = json!("0.9999"), moved);
+        refused(document, &|law| law["mode"]["f"][0] = json!("2*x - y + 101*x^3/100"), "error");
+        refused(document, &|law| law["mode"]["f"][0] = json!("2*x - y + 1/9"), "not zero");
+        refused(document, &|law| law["mode"]["start_of"] = json!("x"), "one condition");
+    }
+    // The other branch with the law of the one.
+    refused(first, &|law| law["mode"] = second["mode"].clone(), "error");
+    // Without coupling the motions are a family.
+    refused(first, &|law| law["mode"]["f"] = json!(["x + x^3", "y + y^3"]), "no single motion");
+    std::fs::remove_dir_all(&folder).expect("an own folder");
+}
+
 /// omega, of a driven motion the amplitude, from below and from above, by the second program;
 /// `None` where it does not prove the certificate with all its claims.
 fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {

@@ -240,15 +240,26 @@ pub fn fit(
             })
         };
         let next: Vec<&(Law, Vec<MapFit>)> = maps.iter().filter(is_next).collect();
-        let own = par_map(&next, |(law, maps)| -> Result<Option<SampleFit>, FitError> {
-            let solver = MotionSolver::new(law)?;
-            let starts = maps.iter().filter_map(|map| start_of(&solver, &records, map));
-            let starts = nearest_starts(&solver, &samples, starts.collect());
-            let own = starts.iter().filter_map(|start| fit_samples(law, &solver, &samples, start));
-            Ok(own.min_by(|one, other| one.square().total_cmp(&other.square())))
-        });
-        for fit in own {
-            fits.extend(fit?);
+        // The first law of a spring is searched from many starts, the others begin from the spring that it found.
+        let is_known = |spring: Spring, fits: &[SampleFit]| {
+            fits.iter().any(|fit| fit.law.parts.is_some_and(|parts| parts.0 == spring))
+        };
+        let spring_of = |(law, _): &&(Law, Vec<MapFit>)| law.parts.map(|parts| parts.0);
+        let is_first = |place: usize| {
+            let spring = spring_of(&next[place]);
+            spring.is_some_and(|spring| !is_known(spring, &fits))
+                && !next[..place].iter().any(|other| spring_of(other) == spring)
+        };
+        let (first, rest): (Vec<usize>, Vec<usize>) =
+            (0..next.len()).partition(|place| is_first(*place));
+        for places in [first, rest] {
+            let own = par_map(&places, |place| {
+                let (law, maps) = next[*place];
+                fit_from_maps(law, maps, &records, &samples, &fits)
+            });
+            for fit in own {
+                fits.extend(fit?);
+            }
         }
         tried.extend(next.iter().filter_map(|(law, _)| law.parts));
         let winner = order(&mut fits, 1.0).and_then(|fit| fit.law.parts);
@@ -259,6 +270,39 @@ pub fn fit(
     }
     refit_wider(&mut fits, &samples);
     Ok(Answer { excluded, ..finish(fits, records, options)? })
+}
+
+/// Fits a law of the list to the samples, from its fits to the turning points and from the best of the known fits with its spring.
+fn fit_from_maps(
+    law: &Law,
+    maps: &[MapFit],
+    records: &[FittedRecord],
+    samples: &[&Samples],
+    known: &[SampleFit],
+) -> Result<Option<SampleFit>, FitError> {
+    /// One of two starts may lead to a minimum of its own.
+    const WITHOUT_KNOWN: usize = 2;
+    let solver = MotionSolver::new(law)?;
+    let spring = |law: &Law| law.parts.map(|parts| parts.0);
+    let alike = known.iter().filter(|fit| spring(&fit.law) == spring(law));
+    let best = alike.min_by(|one, other| one.square().total_cmp(&other.square()));
+    let starts = match (best, maps.first()) {
+        (Some(best), Some(map)) => {
+            let own = start_of(&solver, records, map);
+            let count = spring(law).map_or(0, Spring::count);
+            let (width, known_width) = (law.parameters.len(), best.law.parameters.len());
+            let loss = &map.parameters[count..width];
+            let moved = [&best.values[..count], loss, &best.values[known_width..]].concat();
+            let both = own.into_iter().chain([moved]).collect();
+            nearest_starts(&solver, samples, both, 1)
+        }
+        _ => {
+            let starts = maps.iter().filter_map(|map| start_of(&solver, records, map));
+            nearest_starts(&solver, samples, starts.collect(), WITHOUT_KNOWN)
+        }
+    };
+    let fits = starts.iter().filter_map(|start| fit_samples(law, &solver, samples, start));
+    Ok(fits.min_by(|one, other| one.square().total_cmp(&other.square())))
 }
 
 /// Fits laws of one's own to one record or several, each from a start of its parameters; without one it is found from the accelerations.
@@ -296,14 +340,14 @@ pub fn fit_laws(
     finish(fits, records, options)
 }
 
-/// The starts whose motions are nearest to the samples: two of them, since one may lead to a minimum of its own.
+/// The starts whose motions are nearest to the samples, this number of them.
 fn nearest_starts(
     solver: &MotionSolver,
     samples: &[&Samples],
     starts: Vec<Vec<f64>>,
+    most: usize,
 ) -> Vec<Vec<f64>> {
-    const MOST: usize = 2;
-    if starts.len() <= MOST {
+    if starts.len() <= most {
         return starts;
     }
     let mut near: Vec<(f64, Vec<f64>)> = starts
@@ -311,7 +355,7 @@ fn nearest_starts(
         .filter_map(|start| Some((misfit(solver, samples, &start)?, start)))
         .collect();
     near.sort_by(|one, other| one.0.total_cmp(&other.0));
-    near.into_iter().take(MOST).map(|(_, start)| start).collect()
+    near.into_iter().take(most).map(|(_, start)| start).collect()
 }
 
 fn prepare(

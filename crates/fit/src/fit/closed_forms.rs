@@ -186,13 +186,18 @@ impl Numbers {
     pub(crate) fn frequency_and_damping(&self, amplitude: f64) -> Option<[f64; 2]> {
         const STEP: f64 = 1e-4;
         let energy_at = |amplitude: f64| self.energy(amplitude);
-        let energy = energy_at(amplitude)?;
-        let turning = |sign| Some([self.turning_point(energy, sign)?, energy]);
-        let [time, work] = self.half_swing([turning(-1.0)?, turning(1.0)?])?;
+        let [time, work] = self.symmetric_half_swing(amplitude)?;
         let [above, below] = [1.0 + STEP, 1.0 - STEP].map(|share| energy_at(share * amplitude));
         let slope = (above? - below?) / (2.0 * STEP * amplitude);
         let pi = std::f64::consts::PI;
         Some([pi / time, work / (pi * amplitude * slope)])
+    }
+
+    /// The duration of a half swing of this amplitude and the work of the loss in it.
+    fn symmetric_half_swing(&self, amplitude: f64) -> Option<[f64; 2]> {
+        let energy = self.energy(amplitude)?;
+        let turning = |sign| Some([self.turning_point(energy, sign)?, energy]);
+        self.half_swing([turning(-1.0)?, turning(1.0)?])
     }
 
     /// The energy of a motion of this amplitude.
@@ -229,12 +234,21 @@ pub fn fit_maps(laws: &[Law], records: &[&Swings]) -> Vec<Vec<MapFit>> {
     par_map(laws, |law| {
         let Some((spring, loss)) = law.parts else { return vec![] };
         let Some(first) = guess(spring, loss, &rows, largest.centre[2]) else { return vec![] };
-        let own = springs.iter().zip(&found).filter(|(own, _)| **own == spring);
-        let fits = own.flat_map(|(_, starts)| starts).filter_map(|(numbers, held)| {
-            let start = [numbers, &first[numbers.len()..]].concat();
-            fit_map_from((spring, loss), records, &start, *held)
+        let own = springs.iter().zip(&found).find(|(own, _)| **own == spring);
+        let Some((_, SpringStarts { free, held })) = own else { return vec![] };
+        let fits = free.iter().filter_map(|known| {
+            let start = with_work_of((spring, loss), known, &first, largest)?;
+            fit_map_from((spring, loss), records, &start, None)
         });
-        distinct(fits.collect())
+        let mut fits = distinct(fits.collect());
+        // The turning points say no more of these than that they are possible: the samples decide.
+        if !fits.is_empty() {
+            fits.extend(held.iter().filter_map(|known| {
+                let parameters = with_work_of((spring, loss), &known.parameters, &first, largest)?;
+                Some(MapFit { parameters, ..known.clone() })
+            }));
+        }
+        fits
     })
 }
 
@@ -250,25 +264,62 @@ fn distinct(mut fits: Vec<MapFit>) -> Vec<MapFit> {
     fits
 }
 
-/// Numbers of a spring to start from, each with the index of the one that is held.
+/// Springs with viscous damping and dry friction to start from.
+struct SpringStarts {
+    /// The parameters of fits to the turning points.
+    free: Vec<Vec<f64>>,
+    /// Fits with the second number of the spring held, where the turning points do not determine it.
+    held: Vec<MapFit>,
+}
+
+/// Searches the numbers of a spring.
 fn spring_starts(
     spring: Spring,
     rows: &[BackbonePoint],
     records: &[&Swings],
     largest: &Swings,
-) -> Vec<(Vec<f64>, Option<usize>)> {
+) -> SpringStarts {
     let loss = Loss::ViscousAndCoulomb;
-    let Some(first) = guess(spring, loss, rows, largest.centre[2]) else { return vec![] };
-    let count = first.len() - 2;
+    let none = SpringStarts { free: vec![], held: vec![] };
+    let Some(first) = guess(spring, loss, rows, largest.centre[2]) else { return none };
     let fit = |start: &Vec<f64>, held| fit_map_from((spring, loss), records, start, held);
     let starts = further_starts(spring, &first, largest);
     let fits = distinct(starts.iter().filter_map(|start| fit(start, None)).collect());
-    let Some(best) = fits.first() else { return vec![(first[..count].to_vec(), None)] };
+    let Some(best) = fits.first() else { return SpringStarts { free: vec![first], ..none } };
     let others = undetermined(spring, best, largest);
     // The second number of the spring stays, the first one follows the period.
-    let others = others.iter().filter_map(|start| Some((fit(start, Some(1))?, Some(1))));
-    let all = fits.iter().cloned().map(|fit| (fit, None)).chain(others);
-    all.map(|(fit, held)| (fit.parameters[..count].to_vec(), held)).collect()
+    let held = others.iter().filter_map(|start| fit(start, Some(1))).collect();
+    SpringStarts { free: fits.into_iter().map(|fit| fit.parameters).collect(), held }
+}
+
+/// The parameters of a law with the spring of a known one, which has viscous damping and dry friction, and its own guess of the loss
+/// multiplied so that it does the same work in the middle of the record. A guess that takes too much would bring the law
+/// to rest within the record, from where no search finds back. Returns `None` if the known law has no motion there.
+fn with_work_of(
+    (spring, loss): (Spring, Loss),
+    known: &[f64],
+    guess: &[f64],
+    swings: &Swings,
+) -> Option<Vec<f64>> {
+    let numbers = known.len() - 2;
+    if loss == Loss::ViscousAndCoulomb {
+        return Some(known.to_vec());
+    }
+    let mut start = [&known[..numbers], &guess[numbers..]].concat();
+    let amplitudes = swings.amplitudes();
+    let amplitude = *amplitudes.get(amplitudes.len() / 2)?;
+    let work = |loss, parameters: &[f64]| {
+        let own = Numbers::new(spring, loss, parameters).symmetric_half_swing(amplitude);
+        own.map(|[_, work]| work)
+    };
+    if let Some(coefficient) = start.get(numbers).copied() {
+        let [wanted, own] = [work(Loss::ViscousAndCoulomb, known)?, work(loss, &start)?];
+        let ratio = wanted / own;
+        if ratio.is_finite() && ratio > 0.0 {
+            start[numbers] = coefficient * ratio;
+        }
+    }
+    Some(start)
 }
 
 /// The first guess and others: where the amplitude hardly changes, frequencies do not tell a quadratic spring or a power from a line.

@@ -66,6 +66,11 @@ impl Spring {
         }
     }
 
+    /// The number of its parameters, which are the first ones of a law.
+    pub(crate) fn count(self) -> usize {
+        self.parameters().len()
+    }
+
     fn parameters(self) -> &'static [&'static str] {
         match self {
             Self::Linear | Self::Pendulum => &["w"],

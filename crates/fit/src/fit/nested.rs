@@ -56,16 +56,20 @@ pub fn refit_wider(fits: &mut [SampleFit], samples: &[&Samples]) {
     for place in 0..fits.len() {
         let (before, rest) = fits.split_at_mut(place);
         let Some(wide) = rest.first_mut() else { continue };
-        let starts = before.iter().filter(|narrow| narrow.square() < wide.square());
-        let starts = starts.filter_map(|narrow| {
+        let better = before.iter().filter(|narrow| narrow.square() < wide.square());
+        let starts = better.filter_map(|narrow| {
             let (parameters, local) = narrow.values.split_at(narrow.law.parameters.len());
-            Some([within(&narrow.law, parameters, &wide.law)?.as_slice(), local].concat())
+            let own = within(&narrow.law, parameters, &wide.law)?;
+            Some((narrow.square(), [own.as_slice(), local].concat()))
         });
+        // The best of the narrower laws is below all others.
+        let Some((_, start)) = starts.min_by(|one, other| one.0.total_cmp(&other.0)) else {
+            continue;
+        };
         let Ok(solver) = MotionSolver::new(&wide.law) else { continue };
-        let again = starts.filter_map(|start| fit_samples(&wide.law, &solver, samples, &start));
-        let best = again.min_by(|one, other| one.square().total_cmp(&other.square()));
-        if let Some(best) = best.filter(|best| best.square() < wide.square()) {
-            *wide = best;
+        let again = fit_samples(&wide.law, &solver, samples, &start);
+        if let Some(again) = again.filter(|again| again.square() < wide.square()) {
+            *wide = again;
         }
     }
 }

@@ -107,7 +107,9 @@ pub fn fit_samples(
         }
         let next = minimise(&minimum.parameters, ITERATIONS, |values| evaluate(values, &totals))?;
         let gain = minimum.square() - next.square();
-        let is_better = gain > 1e-9 * next.square();
+        // A gain within the distance that counts as converged leaves the order of the laws as it is.
+        let freedom = next.residuals.len().saturating_sub(start.len()).max(1);
+        let is_better = gain > NEAR * next.square() / freedom as f64;
         minimum = next;
         if !is_better {
             break;
